@@ -34,6 +34,18 @@ def page_parser(
     return parser, alternatives
 
 
+def logs_parser(name: str, about: str, folder: str) -> argparse.ArgumentParser:
+    """Return the parser of a study of logs, whose page is in a folder by default."""
+    parser = Parser(prog=f"python -m studies.{name}", description=about)
+    about = "a folder of logs, each in a folder; without it the page is written from results.json"
+    parser.add_argument("logs", metavar="FOLDER", nargs="?", help=about)
+    about = f"folder for page and results.json (default {folder})"
+    parser.add_argument("-o", "--output", metavar="DIR", help=about)
+    parser.add_argument("--json", action="store_true", help="print results.json on stdout")
+    parser.set_defaults(default_folders=(folder,), quick=False)
+    return parser
+
+
 def main(
     parser: argparse.ArgumentParser, study: Callable[[argparse.Namespace, Path], Answer]
 ) -> NoReturn:

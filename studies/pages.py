@@ -8,22 +8,35 @@ from pathlib import Path
 from typing import Any
 
 from pe_core import InputError
-from pe_core.base import read_bytes
+from pe_core.base import dump_json, read_bytes, write_bytes
+
+from .results_file import RESULTS
 
 PAGE = "README.md"
-TEMPLATE = "page.md.j2"
 LINE_WIDTH = 100
 
 
-def render(folder: Path, values: Mapping[str, Any], **filters: Callable[..., str]) -> str:
-    """Return the page of a study, whose template is in its folder, in lines of even width.
+def render(path: Path, values: Mapping[str, Any], **filters: Callable[..., str]) -> str:
+    """Return a page from its template, in lines of even width.
 
     Templates have some filters: of this module, and those that are passed.
     """
+    text = _templates(path, filters).get_template(path.name).render(values)
+    blocks = (block.strip("\n") for block in text.split("\n\n"))
+    return "\n\n".join(_wrapped(block) for block in blocks if block.strip()) + "\n"
+
+
+def sentence(path: Path, macro: str, *values: Any) -> str:
+    """Return what a macro of a template says, in one line."""
+    module = _templates(path, {}).get_template(path.name).module
+    return " ".join(str(getattr(module, macro)(*values)).split())
+
+
+def _templates(path: Path, filters: Mapping[str, Callable[..., str]]) -> Any:
     import jinja2
 
     templates = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(folder),
+        loader=jinja2.FileSystemLoader(path.parent),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -31,9 +44,7 @@ def render(folder: Path, values: Mapping[str, Any], **filters: Callable[..., str
     templates.filters |= {"joined": joined, "range": range_text, "rho": rho_text, "p": p_text}
     templates.filters |= filters
     templates.globals |= {"table": table}
-    text = templates.get_template(TEMPLATE).render(values)
-    blocks = (block.strip("\n") for block in text.split("\n\n"))
-    return "\n\n".join(_wrapped(block) for block in blocks if block.strip()) + "\n"
+    return templates
 
 
 def _wrapped(block: str) -> str:
@@ -71,6 +82,12 @@ def table(head: Sequence[str], lines: Sequence[Sequence[str]]) -> str:
     """Return a table in Markdown."""
     rule = ["---"] * len(head)
     return "\n".join(f"| {' | '.join(cells)} |" for cells in (head, rule, *lines))
+
+
+def write_study(folder: Path, found: Mapping[str, Any], page: str) -> None:
+    """Write what was found, and the page of it, into the folder of a study."""
+    write_bytes(folder / RESULTS, dump_json(found).encode())
+    write_bytes(folder / PAGE, page.encode())
 
 
 def check_page(folder: Path, title: str, study: str) -> None:

@@ -165,17 +165,18 @@ def _commit() -> str:
     """Return the commit of the checkout, marked when the code has changes that are not in it."""
     root = Path(__file__).resolve().parents[1]
     code = ("pe_core", "pe_tools", "studies", "blend_assets")
+    git = ["git", "-C", str(root)]
     try:
-        commit = _git(root, "rev-parse", "--short=12", "HEAD")
-        changed = _git(root, "status", "--porcelain", "--", *code)
+        commit, changed = (
+            subprocess.run([*git, *arguments], capture_output=True, text=True, check=True).stdout
+            for arguments in (
+                ("rev-parse", "--short=12", "HEAD"),
+                ("status", "--porcelain", "--", *code),
+            )
+        )
     except (OSError, subprocess.CalledProcessError):
         return "not a checkout"
-    return f"{commit}, changed since" if changed else commit
-
-
-def _git(root: Path, *arguments: str) -> str:
-    command = ["git", "-C", str(root), *arguments]
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+    return f"{commit.strip()}, changed since" if changed.strip() else commit.strip()
 
 
 def _processor() -> str:

@@ -11,26 +11,28 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..ranks import holm
-from ..results_file import Json
-from .placements import Placement, placements
-from .plan import ACROSS, CAMERAS, FIXED, GRID, MIXED, PLAIN, StudyPlan
-from .rank_tests import (
+from pe_core.base import Floats, Ints
+
+from ..ranks import (
     PlacementSamples,
     Resample,
     Statistic,
+    bca_interval,
+    holm,
     interval,
     ordered_share,
-    partial_rho,
     permutation_p,
+    permutation_p_beyond,
+    rho_statistic,
     rho_within,
 )
-from .runs import Run, runs
+from ..results_file import Json
+from .placements import Placement, camera_placements, placements
+from .plan import ACROSS, CAMERAS, FIXED, GRID, MIXED, PLAIN, Plan
+from .runs import Run, runs, seed_by_seed
 from .scores import COMPARED, EXPECTED_AP, HEIGHT, PRIMARY, ComparedScore
 
-Floats = NDArray[np.float64]
 Results = Mapping[str, Json]
 """Results by the name of the run, or scores by that of the placement."""
 ApOf = Callable[[Json], float]
@@ -45,6 +47,8 @@ MIN_SO_FAR = 6
 """Fewer placements give no figures at all."""
 MOSTLY_RIGHT = 2.0 / 3.0
 """Share of pairs from which a score may be trusted across hardware."""
+OF_CAMERAS = ("rho", "interval", "p", "holm")
+"""Figures of a score in the study of cameras; eight placements are too few for the others."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +94,7 @@ class DesignResults:
         return replace(self, chosen=chosen, samples=self.samples.subset(index))
 
 
-def analysis(plan: StudyPlan, results: Results, scores: Results) -> Json:
+def analysis(plan: Plan, results: Results, scores: Results) -> Json:
     """Return what the plan asks for, as JSON data."""
     tables = {d.name: design_table(plan, d, scores) for d in designs_of(plan, results)}
     pairs, steps = _pairs(plan, results, scores), _steps(plan, results, scores)
@@ -103,10 +107,11 @@ def analysis(plan: StudyPlan, results: Results, scores: Results) -> Json:
     }
 
 
-def designs_of(plan: StudyPlan, results: Results) -> list[DesignResults]:
+def designs_of(plan: Plan, results: Results) -> list[DesignResults]:
     """Return the finished parts of all designs."""
     own = [plain_design(plan, [name], results) for name in (FIXED, ACROSS)]
-    return own + [_mixed(plan, results, name) for name in (MIXED, FRESH)]
+    mixed = [run for run in runs(plan) if run.placement is None]
+    return own + [of_mixed(name, mixed, placements(plan), results) for name in (MIXED, FRESH)]
 
 
 def mean_ap(found: Json) -> float:
@@ -119,8 +124,13 @@ def mean_ap_in(ring: str) -> ApOf:
     return lambda found: float(np.mean(list(found["by_ring"][ring].values())))
 
 
+def mean_ap_of(name: str) -> ApOf:
+    """Return what takes the AP of a class from what a run has found."""
+    return lambda found: float(found["by_class"][name])
+
+
 def plain_design(
-    plan: StudyPlan, names: Sequence[str], results: Results, ap_of: ApOf = mean_ap
+    plan: Plan, names: Sequence[str], results: Results, ap_of: ApOf = mean_ap
 ) -> DesignResults:
     """Return the finished part of designs with a detector a placement, in the plain world."""
     wanted = [r for r in runs(plan) if r.design in names and (r.world, r.detector) == (PLAIN, GRID)]
@@ -135,42 +145,37 @@ def of_runs(
     for run in wanted:
         if run.name in results and run.placement is not None:
             aps.setdefault(run.placement, []).append(ap_of(results[run.name]))
-    return DesignResults(name, list(aps), _samples(aps), sum(map(len, aps.values())), len(wanted))
-
-
-def _mixed(plan: StudyPlan, results: Results, name: str) -> DesignResults:
-    """Return the placements at which the mixed detector was tested; only fresh ones for `FRESH`."""
-    wanted = [run for run in runs(plan) if run.placement is None]
-    return of_mixed(name, wanted, placements(plan), results)
+    return _design(name, aps, sum(map(len, aps.values())), len(wanted))
 
 
 def of_mixed(
     name: str, wanted: Sequence[Run], chosen: Sequence[Placement], results: Results
 ) -> DesignResults:
     """Return what a detector for many placements found at them; only at fresh ones for `FRESH`."""
-    by_name = {p.name: p for p in chosen}
+    by_name, aps = {p.name: p for p in chosen}, dict[Placement, list[float]]()
     done = [run for run in wanted if run.name in results]
-    aps: dict[Placement, list[float]] = {}
     for run in done:
         for placement, found in results[run.name]["placements"].items():
             if name != FRESH or not found["trained_with"]:
                 aps.setdefault(by_name[placement], []).append(found["ap"])
-    return DesignResults(name, list(aps), _samples(aps), len(done), len(wanted))
+    return _design(name, aps, len(done), len(wanted))
 
 
-def _samples(aps: Mapping[Placement, Sequence[float]]) -> PlacementSamples:
-    """Return samples with the seeds that all placements have."""
+def _design(
+    name: str, aps: Mapping[Placement, Sequence[float]], done: int, planned: int
+) -> DesignResults:
+    """Return a design with the AP of the seeds that all placements have."""
     count = min(map(len, aps.values()), default=0)
     values = np.array([list(row)[:count] for row in aps.values()]).reshape(len(aps), count)
-    groups = np.array([p.vehicle for p in aps])
-    return PlacementSamples(values, groups, np.array([p.hardware for p in aps]))
+    groups, hardware = (np.array([getattr(p, k) for p in aps]) for k in ("vehicle", "hardware"))
+    return DesignResults(name, list(aps), PlacementSamples(values, groups, hardware), done, planned)
 
 
 def _of_design(name: str) -> list[ComparedScore]:
     return [s for s in COMPARED if name == ACROSS or not s.across_only]
 
 
-def design_table(plan: StudyPlan, design: DesignResults, scores: Results) -> Json:
+def design_table(plan: Plan, design: DesignResults, scores: Results) -> Json:
     """Return the correlations of a design with each score."""
     head = {**design.state, "placements": len(design.chosen)}
     if not design.has_figures:
@@ -190,74 +195,70 @@ def design_table(plan: StudyPlan, design: DesignResults, scores: Results) -> Jso
     }
 
 
-def _row(plan: StudyPlan, design: DesignResults, score: ComparedScore, scores: Results) -> Json:
+def _row(plan: Plan, design: DesignResults, score: ComparedScore, scores: Results) -> Json:
     values, samples = design.values(score, scores), design.samples
     heights = np.array([p.mean_height for p in design.chosen])
     row = rho_of(plan, samples, values)
     row["p"] = permutation_p(values, samples, plan.statistics, plan.seed)
     if score.name != HEIGHT:
-        row["given_height"] = partial_of(plan, samples, values, heights)
-        row["height_given"] = partial_of(plan, samples, heights, values)
+        row["given_height"] = rho_of(plan, samples, values, heights)
+        row["height_given"] = rho_of(plan, samples, heights, values)
     if samples.aps.shape[1] > 1:
         index, half = samples.better_half()
         row["better_half"] = rho_of(plan, half, values[index]) if half.members else None
     return row
 
 
-def rho_of(plan: StudyPlan, samples: PlacementSamples, values: Floats) -> Json:
-    """Return the rank correlation of values with AP, and its interval."""
-    members = samples.members
-
-    def rho(resample: Resample) -> Floats:
-        return rho_within(values[resample.index], resample.ap, members)
-
-    found = rounded(float(rho_within(values, samples.ap, members)))
-    return {"rho": found, "interval": interval_of(plan, samples, rho)}
+def rho_of(
+    plan: Plan, samples: PlacementSamples, values: Floats, given: Floats | None = None
+) -> Json:
+    """Return the rank correlation of values with AP, partial where others are given."""
+    return _figure("rho", plan, samples, rho_statistic(values, samples, given))
 
 
-def partial_of(plan: StudyPlan, samples: PlacementSamples, values: Floats, given: Floats) -> Json:
-    """Return the partial rank correlation of values with AP, given others, and its interval."""
-    members = samples.members
+def rank_of(
+    plan: Plan, samples: PlacementSamples, values: Floats, given: Floats | None = None
+) -> Json:
+    """Return rho as `rho_of`, its interval corrected for bias, and its p; nothing is rounded."""
+    rule, seed = plan.statistics, plan.seed
+    if given is None:
+        p = permutation_p(values, samples, rule, seed)
+    else:
+        p = permutation_p_beyond(values, given, samples, rule, seed)
+    limits, _ = bca_interval(values, samples, rule, seed, given)
+    rho = float(rho_statistic(values, samples, given)(samples.whole))
+    return {"rho": rho, "interval": list(limits), "p": p}
 
-    def partial(resample: Resample) -> Floats:
-        index = resample.index
-        return partial_rho(values[index], resample.ap, given[index], members)
 
-    found = rounded(float(partial_rho(values, samples.ap, given, members)))
-    return {"rho": found, "interval": interval_of(plan, samples, partial)}
-
-
-def interval_of(
-    plan: StudyPlan, samples: PlacementSamples, statistic: Statistic
-) -> list[float | None]:
-    """Return the interval that the plan names, of any statistic."""
-    return [rounded(v) for v in interval(samples, plan.statistics, plan.seed, statistic)]
+def _figure(key: str, plan: Plan, samples: PlacementSamples, statistic: Statistic) -> Json:
+    """Return a statistic of all placements, and the interval that the plan names."""
+    limits = interval(samples, plan.statistics, plan.seed, statistic)
+    found = rounded(float(statistic(samples.whole)))
+    return {key: found, "interval": [rounded(v) for v in limits]}
 
 
 def share_of(
-    plan: StudyPlan, samples: PlacementSamples, values: Floats, less: Floats | None = None
+    plan: Plan, samples: PlacementSamples, values: Floats, less: Floats | None = None
 ) -> Json:
     """Return the share of pairs with different hardware that values order rightly, its interval.
 
     With other values, `less`, it is the difference from theirs.
     """
-    tie = plan.statistics.tie_ap
 
-    def share(index: NDArray[np.int64], ap: Floats) -> float:
-        hardware, groups = samples.hardware[index], samples.groups[index]
-        found = ordered_share(values[index], ap, hardware, groups, tie)
-        return (
-            found if less is None else found - ordered_share(less[index], ap, hardware, groups, tie)
-        )
+    def share(index: Ints, ap: Floats) -> float:
+        tie, what = plan.statistics.tie_ap, (samples.hardware[index], samples.groups[index])
+        found = ordered_share(values[index], ap, *what, tie)
+        return found if less is None else found - ordered_share(less[index], ap, *what, tie)
 
-    def of_each(resample: Resample) -> Floats:
-        return np.array([share(i, ap) for i, ap in zip(resample.index, resample.ap, strict=True)])
+    def shares(drawn: Resample) -> Floats:
+        pairs = zip(np.atleast_2d(drawn.index), np.atleast_2d(drawn.ap), strict=True)
+        found = np.array([share(index, ap) for index, ap in pairs])
+        return found if drawn.index.ndim > 1 else found[0]
 
-    found = rounded(share(np.arange(len(samples.ap)), samples.ap))
-    return {"share": found, "interval": interval_of(plan, samples, of_each)}
+    return _figure("share", plan, samples, shares)
 
 
-def _pairs(plan: StudyPlan, results: Results, scores: Results) -> Json:
+def _pairs(plan: Plan, results: Results, scores: Results) -> Json:
     """Return how many pairs of placements with different hardware each score orders rightly."""
     parts = [plain_design(plan, [name], results) for name in (FIXED, ACROSS)]
     design = plain_design(plan, (FIXED, ACROSS), results)
@@ -270,10 +271,10 @@ def _pairs(plan: StudyPlan, results: Results, scores: Results) -> Json:
     return {**head, "scores": rows, "expected_ap_minus_primary": difference}
 
 
-def _steps(plan: StudyPlan, results: Results, scores: Results) -> list[Json]:
+def _steps(plan: Plan, results: Results, scores: Results) -> list[Json]:
     """Return rho of each score in the steps, and of the same placements in the plain world."""
     found = []
-    for step in plan.steps:
+    for step in plan.steps.runs:
         wanted = [r for r in runs(plan) if (r.world, r.detector) == (step.world, step.detector)]
         for name in (FIXED, ACROSS):
             design = of_runs(name, [r for r in wanted if r.design == name], results)
@@ -294,13 +295,12 @@ def _steps(plan: StudyPlan, results: Results, scores: Results) -> list[Json]:
 
 
 def _statements(
-    plan: StudyPlan, tables: Mapping[str, Json], pairs: Json, steps: Sequence[Json]
+    plan: Plan, tables: Mapping[str, Json], pairs: Json, steps: Sequence[Json]
 ) -> list[Json]:
     """Return the statements of the plan, each with its figures, its verdict and its marks."""
     rule, fixed = plan.statistics, tables[FIXED]
     primary = fixed["scores"].get(PRIMARY, {})
-    half = primary.get("better_half") or {}
-    given = primary.get("given_height") or {}
+    half, given = (primary.get(key) or {} for key in ("better_half", "given_height"))
     share = pairs["scores"].get(PRIMARY, {})
     more = pairs.get("expected_ap_minus_primary", {})
     significant = bool(primary) and primary["p"] < rule.alpha and primary["rho"] > 0.0
@@ -319,24 +319,20 @@ def _statements(
             "statement": text,
             "figures": {k: figures[k] for k in ("rho", "share", "interval", "p") if k in figures},
             "verdict": verdict if figures and part["done"] == part["planned"] else OPEN,
-            "sign_changes": _sign_changes(
-                steps,
-                FIXED if part is fixed else ACROSS,
-                EXPECTED_AP if figures is more else PRIMARY,
-            ),
+            "sign_changes": [
+                step_title(step)
+                for step in steps
+                if step["design"] == (FIXED if part is fixed else ACROSS)
+                and _sign_changes(step["scores"].get(EXPECTED_AP if figures is more else PRIMARY))
+            ],
         }
         for text, figures, verdict, part in rows
     ]
 
 
-def _sign_changes(steps: Sequence[Json], design: str, score: str) -> list[str]:
-    """Return the steps in which the rho of a score has another sign than in the plain world."""
-    changed = []
-    for step in steps:
-        row = step["scores"].get(score) if step["design"] == design else None
-        if row and (row["rho"] or 0.0) * (row["plain"]["rho"] or 0.0) < 0.0:
-            changed.append(step_title(step))
-    return changed
+def _sign_changes(row: Json | None) -> bool:
+    """Whether the rho of a score in a step has another sign than in the plain world."""
+    return row is not None and (row["rho"] or 0.0) * (row["plain"]["rho"] or 0.0) < 0.0
 
 
 def step_title(step: Json) -> str:
@@ -355,3 +351,45 @@ def _beside(figures: Json, edge: float) -> str:
 def rounded(value: float) -> float | None:
     """Return a figure as results have it; None for one that is not there."""
     return None if math.isnan(value) else round(value, 4)
+
+
+# Cameras.
+
+
+def design_of_cameras(plan: Plan, results: Results) -> DesignResults:
+    """Return what the runs of cameras have found, as far as they are done."""
+    return of_runs(CAMERAS, seed_by_seed(plan, camera_placements(plan)), results)
+
+
+def camera_analysis(plan: Plan, results: Results, scores: Results) -> Json:
+    """Return all that follows from the results of the runs of cameras, as JSON data."""
+    design = design_of_cameras(plan, results)
+    found = design_table(plan, design, scores)
+    found["scores"] = {
+        score: {key: row[key] for key in OF_CAMERAS if key in row}
+        for score, row in found["scores"].items()
+    }
+    if found["scores"]:
+        aps, members = design.samples.aps, design.samples.members
+        seen = design_table(plan, design.all_round(), scores)["scores"]
+        found["all_round"] = {score: row["rho"] for score, row in seen.items()}
+        found["mean_ap"] = round(float(design.samples.ap.mean()), 4)
+        alike = rho_within(aps[:, 0], aps[:, 1], members) if aps.shape[1] > 1 else float("nan")
+        found["seed_rho"] = rounded(float(alike))
+    return {**found, "verdict": _verdict_of_cameras(plan, found)}
+
+
+def is_too_noisy(plan: Plan, found: Json) -> bool:
+    """Whether the detectors find too little, or their seeds agree too little, for a statement."""
+    rule, seed_rho = plan.statistics, found.get("seed_rho")
+    return seed_rho is None or seed_rho < rule.min_seed_rho or bool(found["mean_ap"] < rule.min_ap)
+
+
+def _verdict_of_cameras(plan: Plan, found: Json) -> str:
+    rule = plan.statistics
+    if found["done"] < found["planned"] or not found["scores"]:
+        return OPEN
+    primary = found["scores"][rule.primary]
+    if is_too_noisy(plan, found) or primary["p"] >= rule.alpha:
+        return UNDECIDED
+    return HOLDS if primary["rho"] > 0.0 else REFUTED

@@ -5,88 +5,103 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from ..pages import render
+from ..pages import render, rho_text, sentence
+from ..ranks import min_significant_rho
 from ..results_file import Json
-from . import findings, segmentation
-from .after_search.plan import START, AfterSearchPlan
-from .analysis import Results
-from .cameras.plan import CameraPlan
-from .plan import AFTER_SEARCH, CAMERAS, StudyPlan
+from .afterwards import outside
+from .analysis import FRESH, Results, is_too_noisy, step_title
+from .plan import ACROSS, FIXED, MIXED, OWN, Plan, rings_of
+from .scan_curves import A_BOUNDS
 from .scores import PRIMARY
 
-OWN = "."
-"""The folder of the study of LiDARs, from that of all."""
 TITLE = "# Does a better score find more? Our own study"
-
-
-@dataclass(frozen=True)
-class Plans:
-    """The plans of the studies of LiDARs, of cameras, and before and after a search."""
-
-    own: StudyPlan
-    cameras: CameraPlan
-    searches: AfterSearchPlan
+PAGE, ANSWERS = (Path(__file__).with_name(f"{name}.md.j2") for name in ("page", "answers"))
+DESIGNS = {
+    FIXED: "one rig: two LiDARs of 16 channels, a detector a placement",
+    ACROSS: "across hardware: one, two or four LiDARs, a detector a placement",
+    MIXED: "one detector for many placements",
+    FRESH: "the same at placements that it never met",
+}
 
 
 @dataclass(frozen=True)
 class Study:
-    """The three studies: plans, what follows from their runs, and these results by folder."""
+    """The studies of LiDARs, of cameras and before and after a search.
 
-    plans: Plans
-    found: Json
-    of_cameras: Json
-    searched: Json
+    Plans, what follows from their runs, and the results of these, by folder.
+    """
+
+    plans: Mapping[str, Plan]
+    found: Mapping[str, Json]
     runs: Mapping[str, Results]
 
-    def trainings(self, name: str) -> str:
-        """Return how the trainings of a study went; empty where none is done."""
-        return findings.trainings(self.runs[name]) if self.runs[name] else ""
+
+def short_answer(plan: Plan, found: Json, searched: Json, cameras: Json) -> str:
+    """Return what the study says in a few sentences; README and other pages have them, too.
+
+    `found` is the analysis with what was looked for afterwards; `searched` and `cameras` are those
+    of the runs before and after a search, and of those with cameras.
+    """
+    return sentence(ANSWERS, "short_answer", rings_of(plan), found, searched, cameras)
 
 
-def page(study: Study, outside: Mapping[str, Json]) -> str:
-    """Return the page as Markdown; `outside` has the scores of Place3D's placements."""
-    plan, found = study.plans.own, study.found
+def answer_after_search(found: Json) -> str:
+    """Return in a sentence for each objective whether its optimum finds more than the start."""
+    return sentence(ANSWERS, "after_search", found)
+
+
+def answer_of_cameras(plan: Plan, found: Json) -> str:
+    """Return what the study of cameras says about the primary score."""
+    return sentence(ANSWERS, "of_cameras", plan.statistics, found, *_why_nothing(plan, found))
+
+
+def _why_nothing(plan: Plan, found: Json) -> tuple[bool, float | None]:
+    """Return whether cameras find too little for a statement, and the least rho for one."""
+    least = min_significant_rho(found["placements"]) if found["scores"] else None
+    return bool(found["scores"]) and is_too_noisy(plan, found), least
+
+
+def page(study: Study, scores_outside: Mapping[str, Json]) -> str:
+    """Return the page as Markdown; `scores_outside` are those of Place3D's placements."""
+    plan, found, cameras = study.plans[OWN], study.found[OWN], study.found["cameras"]
+    rule, camera_plan = plan.statistics, study.plans["cameras"]
+    too_noisy, least_rho = _why_nothing(camera_plan, cameras)
     values = {
-        "t": findings,
         "found": found,
         "quick": plan.digest.startswith("quick"),
-        "alpha": plan.statistics.alpha,
-        "tie": plan.statistics.tie_ap,
+        "alpha": rule.alpha,
+        "tie": rule.tie_ap,
         "primary": PRIMARY,
-        "trainings": study.trainings(OWN),
-        "searched": _searched(study),
-        "camera": _cameras(study),
-        "outside": segmentation.tables(outside, plan.statistics, plan.seed) if outside else {},
+        "designs": DESIGNS,
+        "scores_of_all": dict.fromkeys(s for n in DESIGNS for s in found["designs"][n]["scores"]),
+        "plot_name": plot_name,
+        "step_title": step_title,
+        "rings": rings_of(plan),
+        "least_a": A_BOUNDS[0],
+        "searched": study.found["after_search"],
+        "cameras": cameras,
+        "camera_plan": camera_plan,
+        "too_noisy": too_noisy,
+        "least_rho": least_rho,
+        "runs": study.runs,
+        "outside": outside(scores_outside, rule, plan.seed) if scores_outside else {},
     }
-    return render(Path(__file__).parent, values, interval_of=findings.with_interval)
+    return render(PAGE, values, interval_of=with_interval)
 
 
-def _searched(study: Study) -> Json:
-    found = study.searched
-    after = [rig["placements"] for rig in found["rigs"].values()]
-    placed = any(
-        row["entropy"] is not None for rig in after for what, row in rig.items() if what != START
-    )
-    return {
-        "placed": placed,
-        "done": found["done"],
-        "planned": found["planned"],
-        "answer": findings.answer_after_search(found),
-        "lines": findings.searches(study.plans.searches, found),
-        "by_ring": findings.searches_by_ring(found),
-        "rings": list(study.plans.own.precision.rings),
-        "trainings": study.trainings(AFTER_SEARCH),
-    }
+def with_interval(figures: Mapping[str, Any] | None, key: str = "rho") -> str:
+    """Return a rank correlation, or a share, and its interval; a dash where there is none."""
+    if not figures:
+        return "-"
+    texts = [
+        rho_text(v) if key == "rho" else "-" if v is None else f"{v:.2f}"
+        for v in (figures[key], *figures["interval"])
+    ]
+    return f"{texts[0]} ({texts[1]} to {texts[2]})"
 
 
-def _cameras(study: Study) -> Json:
-    plan, found = study.plans.cameras, study.of_cameras
-    return {
-        "plan": plan,
-        "count": sum(plan.count.values()),
-        "found": found,
-        "answer": findings.answer_of_cameras(plan, found),
-        "lines": findings.cameras(found),
-        "trainings": study.trainings(CAMERAS),
-    }
+def plot_name(design: str) -> str:
+    """Return the file name of a design's plot."""
+    return f"{design.replace(', ', '_')}.png"

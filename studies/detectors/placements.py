@@ -3,33 +3,32 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import permutations
 
 import numpy as np
-from numpy.typing import NDArray
 
 import pe_core as pe
 import pe_tools as pt
 from pe_core import catalog
+from pe_core.base import Flags, Floats
 from pe_core.geometry import Pose, rotate, rotation_matrix
 from pe_core.scene.rig import SensorModel
+from pe_core.sensors.camera import Camera
 from pe_core.sensors.lidar import Lidar
 
 from ..paper.paper import STUDIES
 from ..published.scores import box_triangles
 from ..results_file import Json
-from .plan import ACROSS, FIXED, MIXED, PlacementRule, StudyPlan
+from .plan import ACROSS, CAMERAS, EQUAL_M, FIXED, FRAMES, GOOD, MIXED, SHUTTLE, Plan, full_plan
 
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 PoseValues = tuple[float, ...]
 """x, y, z, roll, pitch, yaw of a sensor [m, deg], rounded as in a file."""
-InView = Callable[[Floats], Mask]
+InView = Callable[[Floats], Flags]
 """Whether a sensor's field of view has directions (N, 3), sensor frame."""
 
-SHUTTLE = "shuttle"
 SHUTTLE_BOXES = {
     "hull": ((0.0, 0.0, 1.35), (6.0, 2.0, 2.1)),
     "pod": ((0.0, 0.0, 2.475), (1.6, 1.0, 0.25)),
@@ -111,18 +110,19 @@ def vehicle(name: str) -> pe.Vehicle:
     return pe.Vehicle(mesh.triangles, mesh.parts, mesh.part_names)
 
 
-def placements(plan: StudyPlan) -> list[Placement]:
-    """Return all placements of the plan, design by design, vehicle by vehicle."""
-    parts = plan.fixed, plan.mixed, plan.hardware
-    key = plan.seed, plan.vehicles, plan.placements, plan.across, *(tuple(p.items()) for p in parts)
-    if key not in _drawn:
-        designs = (_fixed, _across, _mixed)
-        _drawn[key] = [p for d in designs for name in plan.vehicles for p in d(plan, name)]
-    return list(_drawn[key])
+DRAWN_BY = ("seed", "vehicles", "placements", "hardware", "fixed", "across", "mixed")
+"""What the placements of LiDARs depend on: drawing takes seconds."""
 
 
-_drawn: dict[tuple[object, ...], list[Placement]] = {}
-"""Placements that were drawn, by what they depend on: drawing takes seconds."""
+def placements(plan: Plan) -> tuple[Placement, ...]:
+    """Return all placements of the plan of LiDARs, design by design, vehicle by vehicle."""
+    return _drawn(Plan({key: plan[key] for key in DRAWN_BY}))
+
+
+@cache
+def _drawn(plan: Plan) -> tuple[Placement, ...]:
+    designs = (_fixed, _across, _mixed)
+    return tuple(p for d in designs for name in plan.vehicles for p in d(plan, name))
 
 
 def listing(digest: str, drawn: Sequence[Placement]) -> Json:
@@ -130,36 +130,35 @@ def listing(digest: str, drawn: Sequence[Placement]) -> Json:
     return {"plan": digest, "placements": {p.name: p.listed() for p in drawn}}
 
 
-def _fixed(plan: StudyPlan, name: str) -> list[Placement]:
-    count = {True: plan.fixed["all_round"], False: plan.fixed["blind"]}
-    drawn = _draws(plan, name, FIXED, plan.fixed["lidars"], plan.fixed["channels"])
-    return numbered(first_of_each(drawn, count))
+def _fixed(plan: Plan, name: str) -> list[Placement]:
+    drawn = _draws(plan, name, FIXED, plan.fixed.lidars, plan.fixed.channels)
+    return first_of_each(drawn, plan.fixed)
 
 
-def _across(plan: StudyPlan, name: str) -> list[Placement]:
+def _across(plan: Plan, name: str) -> list[Placement]:
     kept: list[Placement] = []
-    for lidars, channels, count in plan.across:
+    for lidars, channels, count in plan.across.hardware:
         drawn = (p for p in _draws(plan, name, ACROSS, lidars, channels) if p.all_round)
         kept += [next(drawn) for _ in range(count)]
     return numbered(kept)
 
 
-def _mixed(plan: StudyPlan, name: str) -> list[Placement]:
+def _mixed(plan: Plan, name: str) -> list[Placement]:
     """Placements of the mixed detector besides those of the fixed design; trained ones first."""
-    drawn = _draws(plan, name, MIXED, plan.fixed["lidars"], plan.fixed["channels"])
-    total = (plan.mixed["trained"] + plan.mixed["fresh"]) // len(plan.vehicles)
+    drawn = _draws(plan, name, MIXED, plan.fixed.lidars, plan.fixed.channels)
+    total = (plan.mixed.trained + plan.mixed.fresh) // len(plan.vehicles)
     return numbered([next(drawn) for _ in range(total)])
 
 
-def first_of_each(drawn: Iterator[Placement], count: Mapping[bool, int]) -> list[Placement]:
-    """Return the first so many placements that see all round (True), and then that do not."""
-    kept: list[Placement] = []
+def first_of_each(drawn: Iterator[Placement], rule: Plan) -> list[Placement]:
+    """Return the first so many placements that see all round, and then that are blind somewhere."""
+    count, kept = {True: rule.all_round, False: rule.blind}, list[Placement]()
     for placement in drawn:
         if sum(p.all_round == placement.all_round for p in kept) < count[placement.all_round]:
             kept.append(placement)
         if len(kept) == sum(count.values()):
             break
-    return sorted(kept, key=lambda p: not p.all_round)
+    return numbered(sorted(kept, key=lambda p: not p.all_round))
 
 
 def numbered(kept: Sequence[Placement]) -> list[Placement]:
@@ -167,17 +166,15 @@ def numbered(kept: Sequence[Placement]) -> list[Placement]:
     return [replace(p, name=f"{p.name}-{k:02}") for k, p in enumerate(kept, 1)]
 
 
-def _draws(
-    plan: StudyPlan, name: str, design: str, lidars: int, channels: int
-) -> Iterator[Placement]:
+def _draws(plan: Plan, name: str, design: str, lidars: int, channels: int) -> Iterator[Placement]:
     """Yield placements of some hardware on a vehicle, without end but for `MAX_DRAWS`."""
     keys = (plan.seed, plan.vehicles.index(name), (FIXED, ACROSS, MIXED).index(design))
     rng = np.random.default_rng([*keys, lidars, channels])
-    body, rule, model = vehicle(name), plan.placements, catalog.load(plan.hardware[channels])
+    body, rule, model = vehicle(name), plan.placements, catalog.load(plan.hardware[str(channels)])
     assert isinstance(model, Lidar)
     elevations = float(model.elevations.min()), float(model.elevations.max())
 
-    def in_view(directions: Floats) -> Mask:
+    def in_view(directions: Floats) -> Flags:
         elevation = np.arcsin(np.clip(directions[:, 2], -1.0, 1.0))
         return np.asarray((elevation >= elevations[0]) & (elevation <= elevations[1]))
 
@@ -188,7 +185,7 @@ def _draws(
 
 
 def drawn_poses(
-    body: pe.Vehicle, rule: PlacementRule, rng: np.random.Generator, count: int
+    body: pe.Vehicle, rule: Plan, rng: np.random.Generator, count: int
 ) -> Iterator[list[PoseValues]]:
     """Yield poses of `count` sensors that are far enough apart, `MAX_DRAWS` times."""
     pose = _pose_source(body, rule, rng)
@@ -202,7 +199,7 @@ def drawn_poses(
 
 
 def _pose_source(
-    body: pe.Vehicle, rule: PlacementRule, rng: np.random.Generator
+    body: pe.Vehicle, rule: Plan, rng: np.random.Generator
 ) -> Callable[[], PoseValues]:
     """Return a function that draws a pose on the roof or at a side, rounded as in a file."""
     low, high = body.bounds
@@ -246,7 +243,7 @@ def _top_at(body: pe.Vehicle, x: float, y: float) -> float:
 
 
 def sees_all_round(
-    body: pe.Vehicle, rule: PlacementRule, in_view: InView, poses: Sequence[PoseValues]
+    body: pe.Vehicle, rule: Plan, in_view: InView, poses: Sequence[PoseValues]
 ) -> bool:
     """Whether in each direction a point near the ground is seen by a sensor, past the body."""
     seen = np.zeros(rule.round_directions, bool)
@@ -262,3 +259,120 @@ def sees_all_round(
             inside = in_view(rotate(rotation_matrix(*pose.rpy).T, directions))
             seen |= inside & (body.first_hit(pose.position, directions).distance > distance)
     return bool(seen.all())
+
+
+# Cameras.
+
+
+@cache
+def camera_model(rig: Plan) -> Camera:
+    """Return the model of all cameras of a plan's rig."""
+    return Camera("study camera", rig.width_px, rig.height_px, math.radians(rig.hfov_deg))
+
+
+def camera_placements(plan: Plan) -> tuple[Placement, ...]:
+    """Return all placements of the plan of cameras: those that see all round first."""
+    return _drawn_cameras(plan.cameras)
+
+
+@cache
+def _drawn_cameras(own: Plan) -> tuple[Placement, ...]:
+    return tuple(first_of_each(_camera_draws(own), own.rig))
+
+
+def _camera_draws(own: Plan) -> Iterator[Placement]:
+    name, count, model = own.rig.vehicle, own.rig.cameras, camera_model(own.rig)
+    rng = np.random.default_rng([own.seed, count])
+    body, rule = vehicle(name), own.placements
+
+    def in_view(directions: Floats) -> Flags:
+        return in_picture(model, directions)[2]
+
+    for poses in drawn_poses(body, rule, rng, count):
+        yaws = rng.uniform(0.0, 90.0) + np.arange(count) * 360.0 / count
+        yaws += rng.uniform(-rule.yaw_deg, rule.yaw_deg, count)
+        turned = tuple(_looking_outwards(body.bounds, poses, yaws))
+        seen = sees_all_round(body, rule, in_view, turned)
+        yield Placement(f"{CAMERAS}-{name}", name, turned, seen, CAMERAS, "")
+    raise AssertionError(f"no placement of cameras on {name}")
+
+
+def _looking_outwards(
+    bounds: tuple[Floats, Floats], poses: Sequence[PoseValues], yaws: Floats
+) -> list[PoseValues]:
+    """Return poses with the yaws [deg] given to them so that the cameras look outwards.
+
+    Of all orders of the yaws, that with the highest sum of the positions' components along the
+    directions; positions are relative to the body's middle and in halves of its sides.
+    """
+    low, high = (np.asarray(b)[:2] for b in bounds)
+    places = (np.array([p[:2] for p in poses]) - (low + high) / 2.0) / ((high - low) / 2.0)
+    gain = places @ np.stack([np.cos(np.radians(yaws)), np.sin(np.radians(yaws))])
+    cameras = range(len(poses))
+    best = max(permutations(cameras), key=lambda order: sum(gain[k, order[k]] for k in cameras))
+    wrapped = [round(float((yaws[k] + 180.0) % 360.0 - 180.0), 1) for k in best]
+    return [(*pose[:5], yaw) for pose, yaw in zip(poses, wrapped, strict=True)]
+
+
+def in_picture(model: Camera, directions: Floats) -> tuple[Floats, Floats, Flags]:
+    """Return where directions (..., 3), sensor frame, are: column, row [px], and whether inside.
+
+    Columns and rows are counted from the upper left corner.
+    """
+    depth, left, up = np.moveaxis(directions, -1, 0)
+    columns, rows = model.projection.project(depth, left, up)
+    inside = (depth > 0.0) & (columns >= 0.0) & (columns < model.width)
+    return columns, rows, inside & (rows >= 0.0) & (rows < model.height)
+
+
+# Frames, and the second plan.
+
+
+def frames_placements(plan: Plan) -> list[Placement]:
+    """Return the first placements of the first plan's design *mixed*, vehicles by turns."""
+    drawn, each = [p for p in placements(full_plan()) if p.design == MIXED], plan.frames.each
+    groups = [[p for p in drawn if p.vehicle == name][:each] for name in plan.vehicles]
+    turns = zip(*groups, strict=True)
+    return [_renamed(p, MIXED, FRAMES) for turn in turns for p in turn]
+
+
+def _renamed(placement: Placement, before: str, after: str) -> Placement:
+    return replace(placement, name=placement.name.replace(before, after), design=after)
+
+
+@cache
+def _good(each: int) -> tuple[Placement, ...]:
+    first = full_plan()
+    known = first.fixed.all_round
+    drawn = placements(first.but(fixed={"all_round": known + each, "blind": 0}))
+    return tuple(
+        replace(p, name=f"{GOOD}-{name}-{k:02}", design=GOOD)
+        for name in first.vehicles
+        for k, p in enumerate(
+            [p for p in drawn if p.design == FIXED and p.vehicle == name][known:], 1
+        )
+    )
+
+
+def good_placements(plan: Plan) -> tuple[Placement, ...]:
+    """Return the placements of part 1 of the second plan: the sedan's, then the bus's."""
+    return _good(plan.second.good.each)
+
+
+def arm_placements(plan: Plan) -> list[Placement]:
+    """Return the placements of part 2: the same poses for each number of rows."""
+    rule = plan.second.equal_m
+    first = [p for p in good_placements(plan) if int(p.name[-2:]) <= rule.each]
+    return [
+        replace(_renamed(p, GOOD, f"{EQUAL_M}-{rows}"), design=EQUAL_M, lidar=arm_lidar(rule, rows))
+        for p in first
+        for rows in rule.rows
+    ]
+
+
+@cache
+def arm_lidar(rule: Plan, rows: int) -> Lidar:
+    """Return the LiDAR of so many rows: all have the same number of beams."""
+    columns, top = rule.beams // rows, math.radians(rule.elevation_deg)
+    elevations = np.linspace(-top, top, rows)
+    return Lidar(f"{rows} x {columns}", elevations, columns, rule.max_range_m)

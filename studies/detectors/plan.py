@@ -1,23 +1,29 @@
-"""The plan of our own study, as `plan.toml` has it: fixed before the first run."""
+"""The plans of our own studies, as the files of `plans` have them: fixed before the first run.
+
+A plan is data: the keys of its file are its attributes. The plans of cameras, searches, frames and
+the second one are the first with some of its keys replaced, and their own file beside it.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import tomllib
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
 from functools import cache
-from importlib import resources
 from itertools import pairwise
-from typing import Any, TypeVar
+from pathlib import Path
+from typing import Any
 
-T = TypeVar("T")
-
-PLAN_FILE = "plan.toml"
+PLANS = Path(__file__).parent / "plans"
 FIXED, ACROSS, MIXED = "fixed", "across", "mixed"
 """The designs: one rig at many placements; rigs of other hardware; one detector for many."""
-CAMERAS, AFTER_SEARCH = "cameras", "after_search"
+CAMERAS, AFTER_SEARCH, FRAMES = "cameras", "after_search", "frames"
 """The designs of the other studies, and their folders."""
+SECOND, GOOD, EQUAL_M, LAYOUTS, SEARCHES = "second", "good", "equal-m", "layouts", "searches"
+"""The folder of the second plan, and its parts. Its file has those that had code first."""
+LAYOUT_SEEDS, SEARCH_SEEDS, SEARCHED_SEEDS = (1, 2, 3), (1, 2, 3), (1, 2)
+"""Of the mixed detector; of the searches, and of the detectors after them."""
+SHUTTLE = "shuttle"
 SPLITS = ("train", "validation", "test")
 PLAIN, TOWN = "plain", "town"
 """Worlds: flat ground with distractors; hills, houses and parked rows besides."""
@@ -25,136 +31,58 @@ GRID, POINTS = "grid", "points"
 """Detectors: counts of points in a grid of voxels; learned features of the points of a pillar."""
 
 
-@dataclass(frozen=True, slots=True)
-class PlacementRule:
-    """How the place of a sensor is drawn; the fields are those of the table in the file."""
+class Plan(Mapping[str, Any]):
+    """A plan, or a table of one: its keys are attributes, its tables plans. It does not change."""
 
-    roof_share: float
-    roof_height_m: tuple[float, float]
-    side_height_m: tuple[float, float]
-    side_gap_m: float
-    tilt_deg: float
-    apart_m: float
-    round_directions: int
-    round_distance_m: float
-    round_heights_m: tuple[float, ...]
+    def __init__(self, table: Mapping[str, Any]) -> None:
+        for key, value in table.items():
+            is_table = isinstance(value, Mapping) and not isinstance(value, Plan)
+            self.__dict__[key] = Plan(value) if is_table else _frozen(value)
 
+    def __getattr__(self, key: str) -> Any:
+        raise AttributeError(f"the plan has no {key}")
 
-@dataclass(frozen=True, slots=True)
-class SceneRule:
-    """How many scenes there are, by split, and what is in them besides the prior's objects."""
+    def __getitem__(self, key: str) -> Any:
+        return self.__dict__[key]
 
-    counts: Mapping[str, int]
-    shifts: Mapping[str, float]
-    distractors: float
-    range_noise_m: float
-    dropped: float
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.__dict__)
 
+    def __len__(self) -> int:
+        return len(self.__dict__)
 
-@dataclass(frozen=True, slots=True)
-class DetectionRegion:
-    """The rectangle round the vehicle in which objects are to be found [m]."""
+    def __hash__(self) -> int:
+        return hash(tuple(self.__dict__.items()))
 
-    x_m: float
-    y_m: float
-    cell_m: float
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        """Cells along x and y."""
-        return round(2.0 * self.x_m / self.cell_m), round(2.0 * self.y_m / self.cell_m)
+    def but(self, **changes: Any) -> Plan:
+        """Return the plan with other values of some keys; tables are changed key by key."""
+        new = {
+            key: self[key].but(**value)
+            if isinstance(self.get(key), Plan) and isinstance(value, Mapping)
+            else value
+            for key, value in changes.items()
+        }
+        return Plan({**self, **new})
 
 
-@dataclass(frozen=True, slots=True)
-class TrainingRule:
-    """How a detector is trained, and when its training ends."""
-
-    seeds: tuple[int, ...]
-    batch: int
-    rate: float
-    average: float
-    min_epochs: int
-    max_epochs: int
-    window: int
-    improvement: float
-    mirrored: bool = True
+def _frozen(value: Any) -> Any:
+    if isinstance(value, list):
+        return tuple(map(_frozen, value))
+    return Plan(value) if isinstance(value, dict) else value
 
 
-@dataclass(frozen=True, slots=True)
-class PrecisionRule:
-    """Distances at which a detection is right, and rings by which AP is reported, too [m]."""
-
-    distances_m: tuple[float, ...]
-    rings_m: tuple[float, ...]
-
-    @property
-    def rings(self) -> dict[str, tuple[float, float]]:
-        """Inner and outer distance [m] of each ring by its name in the results."""
-        return {f"{a:g} to {b:g} m": (a, b) for a, b in pairwise(self.rings_m)}
+def shape_of(region: Plan) -> tuple[int, int]:
+    """Return how many cells a region has along x and y."""
+    return round(2.0 * region.x_m / region.cell_m), round(2.0 * region.y_m / region.cell_m)
 
 
-@dataclass(frozen=True, slots=True)
-class StatisticsRule:
-    """The primary score, and how correlations are tested."""
-
-    primary: str
-    alpha: float
-    permutations: int
-    resamples: int
-    useful_rho: float
-    tie_ap: float
-    scenes: int
+def rings_of(plan: Plan) -> dict[str, tuple[float, float]]:
+    """Return inner and outer distance [m] of each ring by its name in the results."""
+    return {f"{a:g} to {b:g} m": (a, b) for a, b in pairwise(plan.precision.rings_m)}
 
 
-@dataclass(frozen=True, slots=True)
-class RealismStep:
-    """Runs in another world or with another detector."""
-
-    world: str
-    detector: str
-    seeds: tuple[int, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class StudyPlan:
-    """The whole plan; `digest` is the SHA-256 of the file's content, which results keep."""
-
-    digest: str
-    seed: int
-    vehicles: tuple[str, ...]
-    placements: PlacementRule
-    hardware: Mapping[int, str]
-    """Name in the catalogue by channel count."""
-    fixed: Mapping[str, int]
-    """LiDARs, channels, and how many placements see all round or do not, on each vehicle."""
-    across: tuple[tuple[int, int, int], ...]
-    """LiDARs, channels, placements."""
-    mixed: Mapping[str, int]
-    scenes: SceneRule
-    region: DetectionRegion
-    training: TrainingRule
-    precision: PrecisionRule
-    statistics: StatisticsRule
-    step_fixed: int
-    step_across: tuple[str, ...]
-    """How many placements of the fixed design the steps have; all across of these vehicles."""
-    steps: tuple[RealismStep, ...]
-
-
-@cache
-def full_plan() -> StudyPlan:
-    """Return the plan of the study."""
-    return plan_of(_text_of(__package__))
-
-
-def text_and_digest(package: str) -> tuple[str, str]:
-    """Return the text of the plan of a study that shares this one, and the digest of both files."""
-    text = _text_of(package)
-    return text, _digest(_text_of(__package__) + text)
-
-
-def _text_of(package: str) -> str:
-    return resources.files(package).joinpath(PLAN_FILE).read_text(encoding="utf-8")
+def _text(name: str) -> str:
+    return (PLANS / f"{name}.toml").read_text(encoding="utf-8")
 
 
 def _digest(text: str) -> str:
@@ -162,61 +90,150 @@ def _digest(text: str) -> str:
 
 
 @cache
-def quick_plan() -> StudyPlan:
-    """Return a plan that only shows that everything runs: three placements, few scenes."""
-    plan = full_plan()
-    return replace(
-        plan,
-        digest=f"quick-{plan.digest}",
-        vehicles=plan.vehicles[:1],
-        fixed={**plan.fixed, "all_round": 1, "blind": 1},
-        across=((1, 16, 1),),
-        mixed={"trained": 2, "fresh": 0, "scenes": 8, "test_scenes": 4},
-        scenes=replace(plan.scenes, counts={"train": 16, "validation": 4, "test": 8}),
-        training=replace(plan.training, seeds=(1,), min_epochs=2, max_epochs=2),
-        statistics=replace(plan.statistics, permutations=99, resamples=50, scenes=8),
-        steps=(),
-    )
-
-
-def quickly(study: StudyPlan) -> StudyPlan:
-    """Return the plan of another study with the scenes and trainings of `quick_plan`."""
-    quick = quick_plan()
-    return replace(
-        study,
-        digest=f"quick-{study.digest}",
-        scenes=quick.scenes,
-        mixed=quick.mixed,
-        training=replace(quick.training, mirrored=study.training.mirrored),
-        statistics=replace(study.statistics, permutations=99, resamples=50, scenes=8),
-    )
-
-
-def plan_of(text: str) -> StudyPlan:
-    """Return the plan of a file's text; a key that is missing or unknown is an exception."""
-    data = tomllib.loads(text)
-    scenes, steps = data["scenes"], data["steps"]
-    counts = {split: scenes.pop(split) for split in SPLITS}
-    return StudyPlan(
-        digest=_digest(text),
-        seed=data["seed"],
+def full_plan() -> Plan:
+    """Return the plan of the study of LiDARs; `digest` is of its file, which results keep."""
+    data = tomllib.loads(_text("lidars"))
+    return Plan(data).but(
+        digest=_digest(_text("lidars")),
         vehicles=tuple(data["vehicles"]["names"]),
-        placements=rule_of(PlacementRule, data["placements"]),
-        hardware={int(k): v for k, v in data["hardware"].items()},
-        fixed=data["fixed"],
-        across=tuple(map(tuple, data["across"]["hardware"])),
-        mixed=data["mixed"],
-        scenes=SceneRule(counts, **scenes),
-        region=rule_of(DetectionRegion, data["region"]),
-        training=rule_of(TrainingRule, data["training"]),
-        precision=rule_of(PrecisionRule, data["precision"]),
-        statistics=rule_of(StatisticsRule, data["statistics"]),
-        step_fixed=steps["fixed"],
-        step_across=tuple(steps["across"]),
-        steps=tuple(rule_of(RealismStep, row) for row in steps["runs"]),
+        training={"mirrored": True},
     )
 
 
-def rule_of(rule: type[T], table: Mapping[str, Any], **more: Any) -> T:
-    """Return a rule from the table of a plan whose keys are the rule's fields."""
-    return rule(**{k: tuple(v) if isinstance(v, list) else v for k, v in table.items()}, **more)
+def _other(name: str) -> tuple[Plan, str]:
+    """Return the own plan of another study, and the digest of both files."""
+    return Plan(tomllib.loads(_text(name))), _digest(_text("lidars") + _text(name))
+
+
+@cache
+def full_camera_plan() -> Plan:
+    """Return the plan of cameras, on the first vehicle; `cameras` is its own file."""
+    own, digest = _other(CAMERAS)
+    return full_plan().but(
+        digest=digest,
+        vehicles=(own.rig.vehicle,),
+        region=own.region,
+        training={**own.training, "mirrored": False},
+        statistics=own.statistics,
+        cameras=own,
+    )
+
+
+@cache
+def full_after_search_plan() -> Plan:
+    """Return the plan of detectors before and after a search; `searches` is its own file.
+
+    `searches.rigs` has the start of each rig; `evaluations` of 0: as many as the method takes.
+    """
+    own, digest = _other(AFTER_SEARCH)
+    rigs = {name: own[name] for name in own if isinstance(own[name], Plan) and name != "search"}
+    first = full_plan()
+    return first.but(
+        digest=digest,
+        vehicles=(*first.vehicles, SHUTTLE),  # those before keep their scenes
+        training={"seeds": own.seeds},
+        searches={**own.search, "seeds": (own.search.seed,), "evaluations": 0, "rigs": rigs},
+    )
+
+
+@cache
+def full_frames_plan() -> Plan:
+    """Return the plan of detectors with one frame and with five; `frames` is its own file."""
+    own, digest = _other(FRAMES)
+    return full_plan().but(
+        digest=digest,
+        scenes={**own.scenes, **own.counts},
+        mixed={"scenes": own.counts.train},
+        region=own.region,
+        training=own.training,
+        frames=own,
+    )
+
+
+@cache
+def full_second_plan() -> Plan:
+    """Return the second plan; `second` is its own file."""
+    own, digest = _other(SECOND)
+    searches = {**full_after_search_plan().searches, "seeds": SEARCH_SEEDS, "rigs": {}, "count": 6}
+    seeds = {"layout_seeds": LAYOUT_SEEDS, "searched_seeds": SEARCHED_SEEDS}
+    return full_plan().but(digest=digest, second=own, searches=searches, **seeds)
+
+
+QUICK_SCENES = {"train": 16, "validation": 4, "test": 8}
+QUICK = {
+    "scenes": QUICK_SCENES,
+    "mixed": {"trained": 2, "fresh": 0, "scenes": 8, "test_scenes": 4},
+    "training": {"seeds": (1,), "min_epochs": 2, "max_epochs": 2},
+    "statistics": {"permutations": 99, "resamples": 50, "scenes": 8},
+}
+QUICK_SEARCHES = {"samples": 4096, "evaluations": 6}
+"""What a plan has that only shows that everything runs."""
+
+
+def quickly(plan: Plan, **changes: Any) -> Plan:
+    """Return a plan with few scenes and short trainings, and with other changes."""
+    return plan.but(digest=f"quick-{plan.digest}", **QUICK).but(**changes)
+
+
+@cache
+def quick_plan() -> Plan:
+    """Return a quick plan of LiDARs: three placements."""
+    plan = full_plan()
+    return quickly(
+        plan,
+        vehicles=plan.vehicles[:1],
+        fixed={"all_round": 1, "blind": 1},
+        across={"hardware": ((1, 16, 1),)},
+        steps={"runs": ()},
+    )
+
+
+@cache
+def quick_camera_plan() -> Plan:
+    """Return a quick plan of cameras: two placements, few pixels."""
+    rig = full_camera_plan().cameras.rig
+    pixels = {key: rig[key] // 2 for key in ("width_px", "height_px")}
+    scenes = {"train": 8, "validation": 4, "test": 4}
+    own = {"rig": {**pixels, "all_round": 1, "blind": 1}, "scenes": scenes}
+    return quickly(full_camera_plan(), cameras=own)
+
+
+@cache
+def quick_after_search_plan() -> Plan:
+    """Return a quick plan of searches: one rig."""
+    plan = full_after_search_plan()
+    rigs = dict(list(plan.searches.rigs.items())[1:])
+    return Plan({**quickly(plan), "searches": {**plan.searches, **QUICK_SEARCHES, "rigs": rigs}})
+
+
+@cache
+def quick_frames_plan() -> Plan:
+    """Return a quick plan of frames: four placements."""
+    plan = full_frames_plan()
+    seeds = {"seeds": plan.training.seeds}
+    return quickly(plan, vehicles=plan.vehicles[:1], training=seeds, frames={"each": 4})
+
+
+@cache
+def quick_second_plan() -> Plan:
+    """Return a quick second plan: few placements."""
+    plan = full_second_plan()
+    few = {"each": 1, "seeds": (1,)}
+    own = {"good": {**few, "selected": 1}, "equal_m": {**few, "rows": plan.second.equal_m.rows[:1]}}
+    seeds = {"layout_seeds": LAYOUT_SEEDS[:1], "searched_seeds": SEARCHED_SEEDS[:1]}
+    searches = {**QUICK_SEARCHES, "seeds": SEARCH_SEEDS[:2], "count": 1}
+    return quickly(plan, second=own, searches=searches, **seeds)
+
+
+OWN = "."
+"""The folder of the study of LiDARs, from that of all."""
+FULL_AND_QUICK = {
+    OWN: (full_plan, quick_plan),
+    CAMERAS: (full_camera_plan, quick_camera_plan),
+    AFTER_SEARCH: (full_after_search_plan, quick_after_search_plan),
+}
+
+
+def plans_of(quick: bool) -> dict[str, Plan]:
+    """Return the plans of the studies that share a page, by folder."""
+    return {name: plans[quick]() for name, plans in FULL_AND_QUICK.items()}

@@ -5,18 +5,22 @@ from __future__ import annotations
 import argparse
 import hashlib
 import itertools
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pe_core import InputError
 from pe_core.base import Number, Table, dump_json, write_bytes
 from pe_tools.cli import count_up_to, noted_when_interrupted
 
 from ..results_file import Json, print_progress, read_json
-from .placements import Placement, placements
-from .plan import ACROSS, FIXED, GRID, MIXED, PLAIN, StudyPlan
+from .placements import Placement, arm_placements, frames_placements, good_placements, placements
+from .plan import ACROSS, EQUAL_M, FIXED, GOOD, GRID, LAYOUTS, MIXED, PLAIN, SEARCHES, Plan
+
+if TYPE_CHECKING:
+    from .scenes import Layouts
 
 FIXED_IN_TURN = 2
 """Placements of the fixed design after each one across hardware, within a seed."""
@@ -51,7 +55,7 @@ class Run:
         return self.placement.design if self.placement else MIXED
 
 
-def runs(plan: StudyPlan) -> list[Run]:
+def runs(plan: Plan) -> list[Run]:
     """Return all runs of the plan of LiDARs: the designs seed by seed, then the steps.
 
     So an early stop leaves whole seeds.
@@ -62,15 +66,35 @@ def runs(plan: StudyPlan) -> list[Run]:
     chosen = _step_placements(plan, drawn)
     return main + [
         Run(placement, seed, step.world, step.detector)
-        for step in plan.steps
+        for step in plan.steps.runs
         for seed in step.seeds
         for placement in chosen
     ]
 
 
-def seed_by_seed(plan: StudyPlan, drawn: Sequence[Placement]) -> list[Run]:
+def seed_by_seed(plan: Plan, drawn: Sequence[Placement]) -> list[Run]:
     """Return the runs of placements with the seeds of a plan."""
     return [Run(placement, seed) for seed in plan.training.seeds for placement in drawn]
+
+
+def frames_runs(plan: Plan) -> list[Run]:
+    """Return the runs of frames, seed by seed; each has both arms."""
+    return seed_by_seed(plan, frames_placements(plan))
+
+
+def parts_of(plan: Plan, searched: Sequence[Placement] = ()) -> dict[str, list[Run]]:
+    """Return the runs of each part of the second plan, vehicles by turns, in their order.
+
+    Part 2 comes first, then part 1; those of part 4 are of the placements that were searched.
+    """
+    good = sorted(good_placements(plan), key=lambda p: p.name[-2:])
+    own = plan.second
+    return {
+        EQUAL_M: [Run(p, seed) for seed in own.equal_m.seeds for p in arm_placements(plan)],
+        GOOD: [Run(p, seed) for seed in own.good.seeds for p in good],
+        LAYOUTS: [Run(None, seed, LAYOUTS) for seed in plan.layout_seeds],
+        SEARCHES: [Run(p, seed) for seed in plan.searched_seeds for p in searched],
+    }
 
 
 def _in_turn(drawn: Sequence[Placement], vehicles: Sequence[str]) -> Iterator[Placement]:
@@ -89,18 +113,18 @@ def _by_turns(groups: Sequence[Sequence[Placement]]) -> list[Placement]:
     return [placement for turn in turns for placement in turn if placement is not None]
 
 
-def _step_placements(plan: StudyPlan, drawn: Sequence[Placement]) -> list[Placement]:
+def _step_placements(plan: Plan, drawn: Sequence[Placement]) -> list[Placement]:
     """Return the placements of the steps towards reality."""
     all_round = [p for p in drawn if p.design == FIXED and p.all_round]
-    fixed = [[p for p in all_round if p.vehicle == v][: plan.step_fixed] for v in plan.vehicles]
-    across = [p for p in drawn if p.design == ACROSS and p.vehicle in plan.step_across]
+    fixed = [[p for p in all_round if p.vehicle == v][: plan.steps.fixed] for v in plan.vehicles]
+    across = [p for p in drawn if p.design == ACROSS and p.vehicle in plan.steps.across]
     return [*_by_turns(fixed), *across]
 
 
 class RunFiles:
     """The results of the runs of a plan, in their order, in the folder of its study."""
 
-    def __init__(self, folder: Path, plan: StudyPlan, planned: Sequence[Run]) -> None:
+    def __init__(self, folder: Path, plan: Plan, planned: Sequence[Run]) -> None:
         self.folder, self.plan, self.all = folder, plan, list(planned)
 
     def path(self, run: Run) -> Path:
@@ -145,8 +169,8 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--runs", type=count_up_to(MAX_RUNS), metavar="N", help=about)
 
 
-def do_runs(args: argparse.Namespace, files: RunFiles, result_of: Callable[[Run], Json]) -> None:
-    """Do the missing runs of a plan, at most `args.runs` of them.
+def do_runs(args: argparse.Namespace, files: RunFiles, layouts: Layouts | None = None) -> None:
+    """Do the missing runs of a plan, at most `args.runs` of them; `layouts` as in `result_of`.
 
     Results that are there without `args.resume` are an `InputError`.
     """
@@ -158,10 +182,12 @@ def do_runs(args: argparse.Namespace, files: RunFiles, result_of: Callable[[Run]
     if done and not args.resume:
         found = f"{done} of {total} runs; pass --resume to go on"
         raise InputError(files.folder, "folder", "a folder without results", found)
+    from .training import result_of  # TensorFlow is loaded when a run is missing
+
     note = f"{files.folder} keeps the finished runs; --resume goes on from them"
     with noted_when_interrupted(note):
         for run in missing[: args.runs]:
-            data = result_of(run)
+            data = result_of(files.plan, run, layouts)
             files.write(run, data)
             done = total - len(files.missing())
             print_progress(f"[{done}/{total}] {run.name}  {_brief(data)}")

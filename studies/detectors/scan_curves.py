@@ -6,26 +6,30 @@ placements with odd numbers of the fixed design; the error is judged on those wi
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+import datetime
+import itertools
+import os
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 import pe_core as pe
+from pe_core import InputError
+from pe_core.base import Floats, Ints, decode_text, dumps, read_bytes, require_new, write_bytes
 from pe_core.metric import AP_MAX, AP_MIN, average_precision
 from pe_core.metric.fusion import early_fusion
 from pe_core.sensors import ObjectMeasurementCache
 from pe_core.sensors.lidar import LIDAR
 
+from ..ranks import PlacementSamples, resamples
 from ..results_file import Json
-from .analysis import DesignResults, Results, plain_design
+from .analysis import Results, mean_ap_of, plain_design
 from .placements import Placement, vehicle
-from .plan import FIXED, StudyPlan
-from .rank_tests import PlacementSamples, resamples
+from .plan import FIXED, Plan
 from .scores import scored_objects
-
-Floats = NDArray[np.float64]
 
 A_BOUNDS, B_BOUNDS = (0.001, 1.0), (-4.0, 1.5)
 """Bounds of the fit. A curve at a bound is reported as such by its figures."""
@@ -56,14 +60,14 @@ class BeamCounts:
         """Return the expected AP (P,) of the class at each placement."""
         return np.asarray(self.shares @ average_precision(self.m, curve))
 
-    def subset(self, index: NDArray[np.int64]) -> BeamCounts:
+    def subset(self, index: Ints) -> BeamCounts:
         """Return some of the placements, without numbers of beams that none of them has."""
         shares = self.shares[index]
         kept = shares.any(axis=0)
         return BeamCounts(self.m[kept], shares[:, kept])
 
 
-def beam_counts(plan: StudyPlan, chosen: Sequence[Placement]) -> dict[str, BeamCounts]:
+def beam_counts(plan: Plan, chosen: Sequence[Placement]) -> dict[str, BeamCounts]:
     """Return how many beams end on the objects of the shipped score's scenes, by class."""
     found: dict[str, list[tuple[Floats, Floats]]] = {}
     for name in plan.vehicles:
@@ -95,7 +99,10 @@ def fitted_curve(beams: BeamCounts, ap: Floats, start: pe.ApCurve | None = None)
     and `B_BOUNDS` (Levenberg and Marquardt), until a step is below `SMALLEST`. `ap` is the AP found
     at each placement (P,); `start` takes the place of the grid.
     """
-    start = start or min(_grid(), key=lambda curve: _square(beams, ap, curve))
+    grid = itertools.product(np.geomspace(0.005, 0.4, STARTS), np.linspace(-1.5, 1.0, STARTS))
+    start = start or min(
+        (pe.ApCurve(float(a), float(b)) for a, b in grid), key=lambda c: _square(beams, ap, c)
+    )
     at, damping = np.array([start.a, start.b]), DAMPING
     logs = np.log(np.maximum(beams.m, 1.0))
     error = _square(beams, ap, start)
@@ -118,56 +125,34 @@ def fitted_curve(beams: BeamCounts, ap: Floats, start: pe.ApCurve | None = None)
     return pe.ApCurve(*map(float, at))
 
 
-def _grid() -> Iterator[pe.ApCurve]:
-    for a in np.geomspace(0.005, 0.4, STARTS):
-        for b in np.linspace(-1.5, 1.0, STARTS):
-            yield pe.ApCurve(float(a), float(b))
-
-
 def _square(beams: BeamCounts, ap: Floats, curve: pe.ApCurve) -> float:
     return float(((beams.expected_ap(curve) - ap) ** 2).sum())
 
 
-def scan_curves(plan: StudyPlan, results: Results) -> Json:
+def scan_curves(plan: Plan, results: Results) -> Json:
     """Return the curves of all classes with their errors, as JSON data."""
     whole = plain_design(plan, [FIXED], results)
     chosen = whole.chosen
-    odd, even = (
-        np.array([k for k, p in enumerate(chosen) if _number(p) % 2 == rest], np.int64)
-        for rest in (1, 0)
-    )
+    numbers = np.array([int(p.name.rsplit("-", 1)[1]) for p in chosen], np.int64)
+    odd, even = (np.flatnonzero(numbers % 2 == rest) for rest in (1, 0))
     found: Json = {"done": whole.done, "planned": whole.planned}
     found |= {"fitted": len(odd), "judged": len(even), "classes": {}}
     if min(len(odd), len(even)) < MIN_HALF:
         return found
-    beams = beam_counts(plan, chosen)
-    designs = {
-        name: plain_design(plan, [FIXED], results, lambda found, of=name: found["by_class"][of])  # type: ignore[misc]
-        for name in beams
-    }
-    found["seeds"] = whole.samples.aps.shape[1]
-    classes = {name: _of_class(plan, name, beams[name], designs[name], odd, even) for name in beams}
+    found["seeds"], classes = whole.samples.aps.shape[1], {}
+    for name, beams in beam_counts(plan, chosen).items():
+        samples = plain_design(plan, [FIXED], results, mean_ap_of(name)).samples
+        classes[name] = _of_class(plan, name, beams, samples, odd, even)
     return {**found, "placements": [chosen[k].name for k in even], "classes": classes}
 
 
-def _number(placement: Placement) -> int:
-    """Return the number of a placement in its design and vehicle."""
-    return int(placement.name.rsplit("-", 1)[1])
-
-
 def _of_class(
-    plan: StudyPlan,
-    name: str,
-    beams: BeamCounts,
-    design: DesignResults,
-    odd: NDArray[np.int64],
-    even: NDArray[np.int64],
+    plan: Plan, name: str, beams: BeamCounts, samples: PlacementSamples, odd: Ints, even: Ints
 ) -> Json:
-    samples, shipped = design.samples, LIDAR.object_curves[name]
-    fitted, judged = beams.subset(odd), beams.subset(even)
-    own = _rounded_curve(fitted_curve(fitted, samples.ap[odd]))
-    level = np.full(len(even), samples.ap[odd].mean())
+    shipped, fitted, judged = LIDAR.object_curves[name], beams.subset(odd), beams.subset(even)
     of_odd, of_even = samples.ap[odd], samples.ap[even]
+    exact = fitted_curve(fitted, of_odd)  # errors are those of what a file has
+    own = pe.ApCurve(round(exact.a, 4), round(exact.b, 4))
     before, after = judged.expected_ap(shipped), judged.expected_ap(own)
     return {
         **_written(own),
@@ -176,7 +161,7 @@ def _of_class(
         "rmse": {
             "fitted": [_rmse(fitted.expected_ap(c), of_odd) for c in (shipped, own)],
             "judged": [_rmse(expected, of_even) for expected in (before, after)],
-            "judged_by_mean": _rmse(level, of_even),
+            "judged_by_mean": _rmse(np.full(len(even), of_odd.mean()), of_even),
         },
         "found": _rows(of_even),
         "expected": {"shipped": _rows(before), "scans": _rows(after)},
@@ -184,17 +169,17 @@ def _of_class(
 
 
 def _intervals(
-    plan: StudyPlan,
+    plan: Plan,
     fitted: BeamCounts,
     judged: BeamCounts,
     samples: PlacementSamples,
-    odd: NDArray[np.int64],
-    even: NDArray[np.int64],
+    odd: Ints,
+    even: Ints,
     own: pe.ApCurve,
 ) -> Json:
     """Return intervals of a, b and the error judged: placements and seeds are drawn again."""
     curves, errors = list[tuple[float, float]](), list[float]()
-    rule = replace(plan.statistics, resamples=min(plan.statistics.resamples, MAX_RESAMPLES))
+    rule = plan.statistics.but(resamples=min(plan.statistics.resamples, MAX_RESAMPLES))
     parts = (resamples(samples.subset(half), rule, plan.seed) for half in (odd, even))
     for of_odd, of_even in zip(*parts, strict=True):
         draws = zip(of_odd.index, of_odd.ap, of_even.index, of_even.ap, strict=True)
@@ -215,10 +200,48 @@ def _rows(values: Floats) -> list[float]:
     return [round(float(v), 4) for v in values]
 
 
-def _rounded_curve(curve: pe.ApCurve) -> pe.ApCurve:
-    """Return a curve as a file has it: its errors are those of what is shipped."""
-    return pe.ApCurve(round(curve.a, 4), round(curve.b, 4))
-
-
 def _written(curve: pe.ApCurve) -> Json:
     return {"a": round(curve.a, 4), "b": round(curve.b, 4)}
+
+
+SOURCE = "docs/validity/own: the study's detector at the odd placements of its fixed design"
+HEAD = """\
+# AP curves of LiDARs' objects for `[ap] model = "scans"`: AP = a ln m + b, m the number of beams.
+# Written by `python -m studies.detectors --page-only --curves FILE`; do not edit it.
+
+"""
+
+
+def curves_text(found: Json, date: str) -> str:
+    """Return the file, TOML, from the results of `scan_curves` and the day of the fit."""
+    head = {
+        "source": SOURCE,
+        "date": date,
+        "runs": found["done"],
+        "planned": found["planned"],
+        "complete": found["done"] == found["planned"],
+    }
+    curves = {n: {"a": row["a"], "b": row["b"]} for n, row in found["classes"].items()}
+    return HEAD + dumps({**head, "curves": {LIDAR.name: curves}})
+
+
+def write_curves(path: Path, found: Json) -> None:
+    """Write the file; its date stays where nothing else has changed.
+
+    Too few runs for a fit, or another file at the path, are an `InputError`.
+    """
+    if not found["classes"]:
+        state = f"{found['done']} of {found['planned']}"
+        raise InputError(path, "curves", "enough runs of the fixed design for a fit", state)
+    if os.path.lexists(path):
+        before = decode_text(read_bytes(path))
+        if not before.startswith(HEAD):
+            require_new(path, replace=False)
+        if before == curves_text(found, date_of(before)):
+            return
+    write_bytes(path, curves_text(found, datetime.date.today().isoformat()).encode())
+
+
+def date_of(text: str) -> str:
+    """Return the date of a file of curves."""
+    return str(tomllib.loads(text)["date"])

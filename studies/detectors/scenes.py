@@ -5,21 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 import pe_core as pe
+from pe_core import InputError
+from pe_core.base import Floats, Ints
 from pe_core.prior.classes import ROAD_CLASSES, sampled_positions
 from pe_core.scoring.targets import SampledObjects, TargetRule, sample_objects
 
+from ..road.logs import CLASSES as OF_LOGS
+from ..road.logs import Log, read_logs
 from .placements import vehicle
-from .plan import SPLITS, TOWN, StudyPlan
-from .shapes import DISTRACTORS, placed_mesh
-from .town import Ground, house_triangles, parked_cars
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from .plan import SPLITS, TOWN, Plan
+from .shapes import DISTRACTORS, Ground, house_triangles, parked_cars, placed_mesh
 
 CLASSES = tuple(c.name for c in ROAD_CLASSES)
 SPACE = pe.PerceptionSpace()
@@ -72,7 +72,7 @@ class Scene:
     """Whether the ground is the plane z = 0; else it is among the triangles."""
 
 
-def scene(plan: StudyPlan, vehicle_name: str, split: str, world: str, number: int) -> Scene:
+def scene(plan: Plan, vehicle_name: str, split: str, world: str, number: int) -> Scene:
     """Return a scene of a split by its number."""
     seed = [plan.seed, plan.vehicles.index(vehicle_name), SPLITS.index(split), number]
     rng = np.random.default_rng(seed)
@@ -88,7 +88,7 @@ def scene(plan: StudyPlan, vehicle_name: str, split: str, world: str, number: in
 
 
 def standing(
-    plan: StudyPlan, vehicle_name: str, split: str, number: int, rng: np.random.Generator
+    plan: Plan, vehicle_name: str, split: str, number: int, rng: np.random.Generator
 ) -> tuple[Things, Things]:
     """Return the objects of a scene that are to be found, and its distractors."""
     objects = _prior_objects(plan, vehicle_name, split, number)
@@ -124,7 +124,7 @@ def assembled(
     )
 
 
-def _prior_objects(plan: StudyPlan, vehicle_name: str, split: str, number: int) -> Things:
+def _prior_objects(plan: Plan, vehicle_name: str, split: str, number: int) -> Things:
     drawn = _sampled(plan.digest, vehicle_name, _count(plan, split), plan.scenes.shifts[split])
     boxes = drawn.objects
     which = np.flatnonzero(boxes.scenes == number)
@@ -135,9 +135,9 @@ def _prior_objects(plan: StudyPlan, vehicle_name: str, split: str, number: int) 
     )
 
 
-def _count(plan: StudyPlan, split: str) -> int:
+def _count(plan: Plan, split: str) -> int:
     """Scenes of a split that are drawn together: enough for the mixed detector, too."""
-    count = plan.scenes.counts[split]
+    count = plan.scenes[split]
     return max(count, plan.mixed["scenes"], MIN_SCENES) if split == SPLITS[0] else count
 
 
@@ -148,7 +148,7 @@ def _sampled(digest: str, vehicle_name: str, count: int, shift: float) -> Sample
 
 
 def _distractors(
-    plan: StudyPlan, vehicle_name: str, objects: Things, rng: np.random.Generator
+    plan: Plan, vehicle_name: str, objects: Things, rng: np.random.Generator
 ) -> Things:
     count = int(rng.poisson(plan.scenes.distractors))
     kinds = list(DISTRACTORS)
@@ -187,3 +187,52 @@ def _joined(first: Things, second: Things) -> Things:
         for name in ("feet", "sizes", "yaws")
     )
     return Things([*first.names, *second.names], feet, sizes, yaws)
+
+
+EVERY_FRAMES = 20
+"""A frame every 2 s: logs have 10 Hz."""
+BOLLARD = "bollard"
+
+
+class Layouts:
+    """The scenes of a folder of logs; calling it returns a scene, as `scenes.scene` does."""
+
+    def __init__(self, folder: Path) -> None:
+        self.logs = [log.every(EVERY_FRAMES) for log in read_logs(folder)]
+        self._frames = [
+            (log, int(frame)) for log in self.logs for frame in np.unique(log.objects.scenes)
+        ]
+        self._scenes: dict[tuple[str, int], Scene] = {}
+        if not any(np.isin(log.objects.labels, _labels(CLASSES)).any() for log in self.logs):
+            raise InputError(folder, "category", f"boxes of {', '.join(CLASSES)}", "none")
+
+    def __len__(self) -> int:
+        return len(self._frames)
+
+    def __call__(self, plan: Plan, vehicle_name: str, split: str, world: str, number: int) -> Scene:
+        """Return a scene by its number; plan, split and world do not matter."""
+        key = vehicle_name, number
+        if key not in self._scenes:
+            log, frame = self._frames[number]
+            objects = _things(log, frame, vehicle_name, CLASSES)
+            bollards = _things(log, frame, vehicle_name, (BOLLARD,))
+            self._scenes[key] = assembled(objects, bollards, None, [])
+        return self._scenes[key]
+
+
+def _labels(names: tuple[str, ...]) -> list[int]:
+    return [OF_LOGS.index(name) for name in names]
+
+
+def _things(log: Log, frame: int, vehicle_name: str, names: tuple[str, ...]) -> Things:
+    """Return the boxes of some classes whose circle does not meet that round the vehicle."""
+    boxes = log.objects
+    wanted = (boxes.scenes == frame) & np.isin(boxes.labels, _labels(names))
+    low, high = (corner[:2] for corner in vehicle(vehicle_name).bounds)
+    away = np.hypot(*(boxes.centers[:, :2] - (low + high) / 2.0).T)
+    radii = np.hypot(boxes.sizes[:, 0], boxes.sizes[:, 1]) / 2.0
+    kept = np.flatnonzero(wanted & (away > radii + np.hypot(*(high - low)) / 2.0))
+    feet = boxes.centers[kept] * (1.0, 1.0, 0.0)
+    return Things(
+        [OF_LOGS[k] for k in boxes.labels[kept]], feet, boxes.sizes[kept], boxes.yaws[kept]
+    )

@@ -15,7 +15,7 @@ from pe_core.sensors.lidar import Lidar
 
 from ..results_file import Json, read_json
 from .placements import Placement, vehicle
-from .plan import StudyPlan
+from .plan import Plan
 
 SCORES = "scores.json"
 SPACE = pe.PerceptionSpace()
@@ -53,11 +53,11 @@ COMPARED = (
 
 
 def placement_scores(
-    plan: StudyPlan,
+    plan: Plan,
     needed: Iterable[tuple[Placement, pe.Rig]],
     folder: Path,
     report: Callable[[str], None],
-    scored: Callable[[StudyPlan, str, pe.Rig], Json] | None = None,
+    scored: Callable[[Plan, str, pe.Rig], Json] | None = None,
 ) -> dict[str, Json]:
     """Return the scores of placements by name; those that scores.json does not have are computed.
 
@@ -80,7 +80,7 @@ def placement_scores(
     return scores
 
 
-def _scores(plan: StudyPlan, vehicle_name: str, rig: pe.Rig) -> Json:
+def _scores(plan: Plan, vehicle_name: str, rig: pe.Rig) -> Json:
     road = _voxels(vehicle_name, "road").score(rig)
     return {
         "road": {"entropy": road.entropy, "coverage": road.coverage},
@@ -90,7 +90,7 @@ def _scores(plan: StudyPlan, vehicle_name: str, rig: pe.Rig) -> Json:
     }
 
 
-def _of_objects(plan: StudyPlan, vehicle_name: str, rig: pe.Rig, traffic: bool) -> Json:
+def _of_objects(plan: Plan, vehicle_name: str, rig: pe.Rig, traffic: bool) -> Json:
     score = scored_objects(vehicle_name, traffic, plan.statistics.scenes).score(rig)
     of_objects = score.objects
     assert of_objects is not None

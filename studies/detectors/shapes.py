@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from pe_core.base import Floats
 
 DISTRACTORS = {
     "post": (0.15, 0.15, 2.5),
@@ -24,7 +24,8 @@ DISTRACTORS = {
     "tree": (2.4, 2.4, 4.5),
 }
 """Length, width, height [m] of what is no object to be found."""
-SQUARE = 4
+Solid = tuple[Any, ...]
+"""Arguments of `solid`."""
 
 
 def solid(
@@ -54,79 +55,55 @@ def solid(
     return np.array(triangles)
 
 
-def _wheels(at: float, length: float, height: float) -> list[Floats]:
-    return [
-        solid((x - length, x + length), y, (0.0, height))
-        for x in (-at, at)
-        for y in ((-0.5, -0.38), (0.38, 0.5))
-    ]
+def _wheels(at: float, length: float, height: float) -> list[Solid]:
+    sides = ((-0.5, -0.38), (0.38, 0.5))
+    return [((x - length, x + length), y, (0.0, height)) for x in (-at, at) for y in sides]
 
 
-def _car() -> list[Floats]:
-    body = solid((-0.5, 0.5), (-0.5, 0.5), (0.13, 0.56))
-    return [body, solid((-0.42, 0.24), (-0.47, 0.47), (0.56, 1.0), 0.72), *_wheels(0.31, 0.07, 0.3)]
-
-
-def _truck() -> list[Floats]:
-    cab = solid((0.3, 0.5), (-0.48, 0.48), (0.14, 0.8))
-    return [cab, solid((-0.5, 0.28), (-0.5, 0.5), (0.3, 1.0)), *_wheels(0.34, 0.06, 0.3)]
-
-
-def _pedestrian() -> list[Floats]:
-    legs = [solid((-0.25, 0.25), y, (0.0, 0.48)) for y in ((-0.38, -0.08), (0.08, 0.38))]
-    return [
-        *legs,
-        solid((-0.3, 0.3), (-0.5, 0.5), (0.46, 0.84), 0.8, 6),
-        solid((-0.5, 0.5), (-0.5, -0.34), (0.42, 0.8)),
-        solid((-0.14, 0.18), (-0.14, 0.14), (0.86, 1.0), 0.9, 6),
-    ]
-
-
-def _cyclist() -> list[Floats]:
-    wheels = [solid(x, (-0.05, 0.05), (0.0, 0.38), 0.6) for x in ((-0.5, -0.14), (0.14, 0.5))]
-    return [
-        *wheels,
-        solid((-0.3, 0.3), (-0.04, 0.04), (0.2, 0.5)),
-        solid((-0.12, 0.06), (-0.22, 0.22), (0.25, 0.6)),
-        solid((-0.14, 0.2), (-0.4, 0.4), (0.56, 0.86), 0.85, 6),
-        solid((0.24, 0.3), (-0.5, 0.5), (0.52, 0.6)),
-        solid((0.0, 0.16), (-0.16, 0.16), (0.87, 1.0), 0.9, 6),
-    ]
-
-
-def _cone() -> list[Floats]:
-    plate = solid((-0.5, 0.5), (-0.5, 0.5), (0.0, 0.05))
-    return [plate, solid((-0.4, 0.4), (-0.4, 0.4), (0.05, 1.0), 0.15, 8)]
-
-
-def _tree() -> list[Floats]:
-    trunk = solid((-0.07, 0.07), (-0.07, 0.07), (0.0, 0.5), 1.0, 8)
-    return [trunk, solid((-0.5, 0.5), (-0.5, 0.5), (0.42, 1.0), 0.4, 8)]
-
-
-def _bush() -> list[Floats]:
-    return [solid((-0.5, 0.5), (-0.5, 0.5), (0.0, 1.0), 0.6, 8)]
-
-
-def _block(sides: int) -> list[Floats]:
-    return [solid((-0.5, 0.5), (-0.5, 0.5), (0.0, 1.0), 1.0, sides)]
+WHOLE = (-0.5, 0.5)
+SHAPES: dict[str, list[Solid]] = {
+    "car": [
+        (WHOLE, WHOLE, (0.13, 0.56)),
+        ((-0.42, 0.24), (-0.47, 0.47), (0.56, 1.0), 0.72),
+        *_wheels(0.31, 0.07, 0.3),
+    ],
+    "truck": [
+        ((0.3, 0.5), (-0.48, 0.48), (0.14, 0.8)),
+        ((-0.5, 0.28), WHOLE, (0.3, 1.0)),
+        *_wheels(0.34, 0.06, 0.3),
+    ],
+    "pedestrian": [
+        ((-0.25, 0.25), (-0.38, -0.08), (0.0, 0.48)),
+        ((-0.25, 0.25), (0.08, 0.38), (0.0, 0.48)),
+        ((-0.3, 0.3), WHOLE, (0.46, 0.84), 0.8, 6),
+        (WHOLE, (-0.5, -0.34), (0.42, 0.8)),
+        ((-0.14, 0.18), (-0.14, 0.14), (0.86, 1.0), 0.9, 6),
+    ],
+    "cyclist": [
+        ((-0.5, -0.14), (-0.05, 0.05), (0.0, 0.38), 0.6),
+        ((0.14, 0.5), (-0.05, 0.05), (0.0, 0.38), 0.6),
+        ((-0.3, 0.3), (-0.04, 0.04), (0.2, 0.5)),
+        ((-0.12, 0.06), (-0.22, 0.22), (0.25, 0.6)),
+        ((-0.14, 0.2), (-0.4, 0.4), (0.56, 0.86), 0.85, 6),
+        ((0.24, 0.3), WHOLE, (0.52, 0.6)),
+        ((0.0, 0.16), (-0.16, 0.16), (0.87, 1.0), 0.9, 6),
+    ],
+    "cone": [(WHOLE, WHOLE, (0.0, 0.05)), ((-0.4, 0.4), (-0.4, 0.4), (0.05, 1.0), 0.15, 8)],
+    "tree": [
+        ((-0.07, 0.07), (-0.07, 0.07), (0.0, 0.5), 1.0, 8),
+        (WHOLE, WHOLE, (0.42, 1.0), 0.4, 8),
+    ],
+    "bush": [(WHOLE, WHOLE, (0.0, 1.0), 0.6, 8)],
+    "post": [(WHOLE, WHOLE, (0.0, 1.0), 1.0, 8)],
+    "bollard": [(WHOLE, WHOLE, (0.0, 1.0), 1.0, 8)],
+}
+"""The solids of each class and distractor, as `solid` takes them; others are a block."""
 
 
 @cache
 def unit_mesh(name: str) -> Floats:
     """Return the triangles (F, 3, 3) of a class or a distractor in the unit box."""
-    shaped = {
-        "car": _car,
-        "truck": _truck,
-        "pedestrian": _pedestrian,
-        "cyclist": _cyclist,
-        "cone": _cone,
-        "tree": _tree,
-        "bush": _bush,
-    }
-    if name in shaped:
-        return np.concatenate(shaped[name]())
-    return np.concatenate(_block(8 if name in ("post", "bollard") else SQUARE))
+    return np.concatenate([solid(*each) for each in SHAPES.get(name, [(WHOLE, WHOLE, (0.0, 1.0))])])
 
 
 def placed_mesh(name: str, foot: Floats, size: Floats, yaw: float) -> Floats:
@@ -135,3 +112,78 @@ def placed_mesh(name: str, foot: Floats, size: Floats, yaw: float) -> Floats:
     cos, sin = np.cos(yaw), np.sin(yaw)
     x, y, z = triangles[..., 0], triangles[..., 1], triangles[..., 2]
     return np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1) + foot
+
+
+WAVES = 3
+WAVE_M = (40.0, 120.0)
+WAVE_SLOPE = 0.025
+"""Greatest slope of a wave; three of them rarely add up to more than 5 %."""
+GROUND_M = (64.0, 44.0)
+"""Half length and half width of the ground."""
+CELL_M = 4.0
+HOUSES = 10
+HOUSE_ATTEMPTS = 40
+HOUSE_M = ((8.0, 16.0), (6.0, 10.0), (4.0, 9.0))
+STREET_M = 10.0
+"""Half the width that is free of houses."""
+ROW_M = 5.5
+"""Distance of a row of parked cars from the middle of the street."""
+ROW_LENGTH_M = 25.0
+SPACING_M = (5.6, 7.0)
+PARKED_SHARE = 0.7
+CAR_M = (4.6, 1.9, 1.7)
+
+
+class Ground:
+    """Rolling ground: the sum of a few waves, 0 m under the origin."""
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        lengths = rng.uniform(*WAVE_M, WAVES)
+        turns = rng.uniform(0.0, np.pi, WAVES)
+        self._along = np.stack([np.cos(turns), np.sin(turns)]) * 2.0 * np.pi / lengths
+        self._phases = rng.uniform(0.0, 2.0 * np.pi, WAVES)
+        self._amplitudes = WAVE_SLOPE * lengths / (2.0 * np.pi)
+
+    def height(self, x: Floats, y: Floats) -> Floats:
+        """Return the height at points (...,) [m]."""
+        phases = x[..., None] * self._along[0] + y[..., None] * self._along[1] + self._phases
+        heights = self._amplitudes * (np.sin(phases) - np.sin(self._phases))
+        return np.asarray(heights.sum(axis=-1))
+
+    @property
+    def triangles(self) -> Floats:
+        """Triangles (F, 3, 3) of the ground [m]."""
+        xs, ys = (np.arange(-half, half + CELL_M / 2.0, CELL_M) for half in GROUND_M)
+        x, y = np.meshgrid(xs, ys, indexing="ij")
+        points = np.stack([x, y, self.height(x, y)], axis=-1)
+        a, b, c, d = points[:-1, :-1], points[1:, :-1], points[1:, 1:], points[:-1, 1:]
+        halves = [np.stack(corners, axis=2).reshape(-1, 3, 3) for corners in ((a, b, c), (a, c, d))]
+        return np.concatenate(halves)
+
+
+def parked_cars(rng: np.random.Generator) -> tuple[list[str], Floats, Floats, Floats]:
+    """Return names, feet, sizes and yaws of cars parked in two rows, with gaps."""
+    feet = []
+    for side in (-ROW_M, ROW_M):
+        x = -ROW_LENGTH_M
+        while x < ROW_LENGTH_M:
+            x += rng.uniform(*SPACING_M)
+            if rng.uniform() < PARKED_SHARE:
+                feet.append((x, side + rng.normal(0.0, 0.15), 0.0))
+    sizes = np.array(CAR_M) * rng.uniform(0.92, 1.08, (len(feet), 3))
+    return ["car"] * len(feet), np.array(feet).reshape(-1, 3), sizes, np.zeros(len(feet))
+
+
+def house_triangles(rng: np.random.Generator, occupied: Floats) -> list[Floats]:
+    """Return the meshes of houses beside the street that stand on no object (N, 2)."""
+    houses: list[Floats] = []
+    for _ in range(HOUSE_ATTEMPTS):
+        length, width, height = (rng.uniform(*bounds) for bounds in HOUSE_M)
+        x = rng.uniform(-GROUND_M[0], GROUND_M[0])
+        y = rng.choice([-1.0, 1.0]) * rng.uniform(STREET_M + width / 2.0, GROUND_M[1])
+        offsets = np.abs(occupied - (x, y))
+        inside = (offsets[:, 0] < length / 2.0 + 3.0) & (offsets[:, 1] < width / 2.0 + 3.0)
+        if not inside.any() and len(houses) < HOUSES:
+            box = (x - length / 2.0, x + length / 2.0), (y - width / 2.0, y + width / 2.0)
+            houses.append(solid(*box, (-3.0, height)))
+    return houses

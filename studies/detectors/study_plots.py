@@ -6,23 +6,18 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import matplotlib
-
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from ..plotting import BLUE, GREY, ORANGE, remove_frame, save_plot, styled
-from .analysis import DesignResults, Results, designs_of
-from .cameras.analysis import design_of_cameras
-from .cameras.rendering import Renderer
-from .findings import plot_name
-from .page import OWN, Study
-from .plan import CAMERAS, StudyPlan
+from ..plotting import BLUE, GREY, ORANGE, pyplot, remove_frame, save_plot, styled
+from .analysis import DesignResults, Results, design_of_cameras, designs_of
+from .page import OWN, Study, plot_name
+from .pictures import Renderer
+from .plan import CAMERAS, Plan
 from .scores import COMPARED, EXPECTED_AP, HEIGHT, PRIMARY
+
+plt = pyplot()
 
 SHOWN = (PRIMARY, EXPECTED_AP, HEIGHT)
 LABELS = ("perception entropy [nats]", "expected AP in traffic", "mean height [m]")
@@ -34,24 +29,24 @@ SHOWN_SCENE = ("test", 0)
 
 def draw_all(study: Study, folder: Path, scores: Results) -> None:
     """Draw the plots of the study of LiDARs."""
-    for design in designs_of(study.plans.own, study.runs[OWN]):
+    for design in designs_of(study.plans[OWN], study.runs[OWN]):
         if design.has_figures:
-            ap_against_scores(folder / plot_name(design.name), study.plans.own, design, scores)
-    if classes := study.found["ap_curves"]["classes"]:
+            ap_against_scores(folder / plot_name(design.name), study.plans[OWN], design, scores)
+    if classes := study.found[OWN]["ap_curves"]["classes"]:
         expected_against_found(folder / "ap_curves.png", classes)
 
 
 def draw_cameras(study: Study, folder: Path, scores: Results) -> None:
     """Draw the plots of the study of cameras."""
-    design = design_of_cameras(study.plans.cameras, study.runs[CAMERAS])
-    scene = Renderer(study.plans.cameras, design.chosen[0]).pictures(*SHOWN_SCENE)
+    design = design_of_cameras(study.plans[CAMERAS], study.runs[CAMERAS])
+    scene = Renderer(study.plans[CAMERAS], design.chosen[0]).pictures(*SHOWN_SCENE)
     pictures_of_scene(folder / "pictures.png", scene.pictures)
     if design.has_figures:
-        ap_against_scores(folder / plot_name(CAMERAS), study.plans.cameras.study, design, scores)
+        ap_against_scores(folder / plot_name(CAMERAS), study.plans[CAMERAS], design, scores)
 
 
 @styled
-def ap_against_scores(path: Path, plan: StudyPlan, design: DesignResults, scores: Results) -> None:
+def ap_against_scores(path: Path, plan: Plan, design: DesignResults, scores: Results) -> None:
     """Draw AP against three scores: a dot a placement, a bar from lowest to highest seed."""
     figure, axes = plt.subplots(1, 3, figsize=(9.4, 3.3), sharey=True, layout="constrained")
     chosen = {s.name: s for s in COMPARED}
@@ -66,7 +61,7 @@ def ap_against_scores(path: Path, plan: StudyPlan, design: DesignResults, scores
     save_plot(figure, path)
 
 
-def _panel(panel: Axes, plan: StudyPlan, design: DesignResults, values: np.ndarray) -> None:
+def _panel(panel: Axes, plan: Plan, design: DesignResults, values: np.ndarray) -> None:
     aps, mean = design.samples.aps, design.samples.ap
     for vehicle, color in zip(plan.vehicles, COLORS, strict=False):
         index = np.flatnonzero(design.samples.groups == vehicle)

@@ -73,7 +73,7 @@ def _check_results(folder: Path) -> Answer:
 
 def page(findings: Findings) -> str:
     """Return the page as Markdown."""
-    return render(Path(__file__).parent, page_values(findings))
+    return render(Path(__file__).with_name("page.md.j2"), page_values(findings))
 
 
 def summary(findings: Findings) -> str:

@@ -17,12 +17,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pe_core import ApCurve, Camera, Lidar
+from pe_core.base import Floats
 from pe_core.metric import H_BLIND, entropy_of, precision_of
-
-Floats = NDArray[np.float64]
 
 MAX_SHADOW = math.sqrt(3.0)
 """The largest shadow of a cube, as a multiple of the area of a face."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -55,59 +54,49 @@ TEXTS = {
 }
 
 
+PRINTED = (
+    ("1", "Pandar64", "printed/1_pandar64", "HDL-64E", "printed/1_hdl64e", 0.0),
+    ("2", "60 deg", "printed/2_60deg", "120 deg", "printed/2_120deg", 0.0),
+    ("3 default", "diagonal", "printed/3_default", "front", "swapped/3_default", 0.0),
+    ("3 front", "front", "printed/3_front", "diagonal", "swapped/3_front", 0.0),
+    ("4", "all", "printed/4_cameras", "LiDARs alone", "lidars/4_cameras", STRONG_NATS),
+)
+"""Claims at printed placements: the better and the worse rig with the names of their tasks."""
+
+
 def claims(values: Values, effort: Effort) -> list[Claim]:
     """Return all claims: at the printed placements under every prior, and of our own searches."""
-    printed = [claim for prior in PRIORS for claim in _printed(values, prior)]
-    return [*printed, *_searched(values, effort), _pitch(values, effort)]
+    found, road = list[Claim](), PRIORS[0]
 
-
-def _printed(values: Values, prior: str) -> Iterator[Claim]:
-    def entropy(name: str) -> float:
-        return values[f"{name}/{prior}"]["entropy"]
-
-    pairs = (
-        ("1", "Pandar64", "printed/1_pandar64", "HDL-64E", "printed/1_hdl64e", 0.0),
-        ("2", "60 deg", "printed/2_60deg", "120 deg", "printed/2_120deg", 0.0),
-        ("3 default", "diagonal", "printed/3_default", "front", "swapped/3_default", 0.0),
-        ("3 front", "front", "printed/3_front", "diagonal", "swapped/3_front", 0.0),
-        ("4", "all", "printed/4_cameras", "LiDARs alone", "lidars/4_cameras", STRONG_NATS),
-    )
-    for key, better, low, worse, high, by in pairs:
-        figures = entropy(low), worse, entropy(high), by
-        yield Claim(key, TEXTS[key], "printed", prior, better, *figures)
-
-
-def _searched(values: Values, effort: Effort) -> Iterator[Claim]:
-    """Yield the claims on our own searches, of the rows that were searched."""
-    for key, better, worse in (("1", "1_pandar64", "1_hdl64e"), ("2", "2_60deg", "2_120deg")):
-        for prior in PRIORS:
-            names = [best_search(values, effort, row, prior) for row in (better, worse)]
-            if all(names):
-                low, high = (values[name]["entropy"] for name in names)
-                yield _searched_claim(key, prior, ROW[better].label, low, ROW[worse].label, high)
-    for key, row, better, worse in (
-        ("3 default", "3_default", "diagonal", "front"),
-        ("3 front", "3_front", "front", "diagonal"),
-    ):
-        names = [pilot_name(row, PRIORS[0], start) for start in (better, worse)]
-        if all(name in values for name in names):
+    def add(
+        key: str, where: str, prior: str, rigs: tuple[str, str], names: tuple[str, str], by: float
+    ) -> None:
+        if all(name in values for name in names):  # searches may be missing
             low, high = (values[name]["entropy"] for name in names)
-            yield _searched_claim(key, PRIORS[0], better, low, worse, high)
-    names = [best_search(values, effort, row, PRIORS[0]) for row in ("4_cameras", "3_front")]
-    if all(names):
-        low, high = (values[name]["entropy"] for name in names)
-        yield _searched_claim("4", PRIORS[0], "with cameras", low, "two LiDARs", high, STRONG_NATS)
+            found.append(Claim(key, TEXTS[key], where, prior, rigs[0], low, rigs[1], high, by))
 
+    def best(*rows: str, prior: str = road) -> tuple[str, str]:
+        first, second = (best_search(values, effort, row, prior) for row in rows)
+        return first, second
 
-def _searched_claim(
-    key: str, prior: str, better: str, low: float, worse: str, high: float, by: float = 0.0
-) -> Claim:
-    return Claim(key, TEXTS[key], "searched", prior, better, low, worse, high, by)
-
-
-def _pitch(values: Values, effort: Effort) -> Claim:
-    curve = {d: values[f"pitch/{d:g}"]["entropy"] for d in pitch_differences(effort)}
-    small = {d: h for d, h in curve.items() if 0.0 < abs(d) <= SMALL_DEG}
-    best = min(small, key=lambda d: small[d])
-    figures = f"{best:g} deg", small[best], "0 deg", curve[0.0]
-    return Claim("pitch", TEXTS["pitch"], "printed", PRIORS[0], *figures)
+    for prior in PRIORS:
+        for key, better, low, worse, high, by in PRINTED:
+            names = f"{low}/{prior}", f"{high}/{prior}"
+            add(key, "printed", prior, (better, worse), names, by)
+    for key, rows in (("1", ("1_pandar64", "1_hdl64e")), ("2", ("2_60deg", "2_120deg"))):
+        for prior in PRIORS:
+            labels = ROW[rows[0]].label, ROW[rows[1]].label
+            add(key, "searched", prior, labels, best(*rows, prior=prior), 0.0)
+    for key, row, starts in (
+        ("3 default", "3_default", ("diagonal", "front")),
+        ("3 front", "3_front", ("front", "diagonal")),
+    ):
+        names = pilot_name(row, road, starts[0]), pilot_name(row, road, starts[1])
+        add(key, "searched", road, starts, names, 0.0)
+    rigs = "with cameras", "two LiDARs"
+    add("4", "searched", road, rigs, best("4_cameras", "3_front"), STRONG_NATS)
+    small = [d for d in pitch_differences(effort) if 0.0 < abs(d) <= SMALL_DEG]
+    least = min(small, key=lambda d: values[f"pitch/{d:g}"]["entropy"])
+    names = f"pitch/{least:g}", "pitch/0"
+    add("pitch", "printed", road, (f"{least:g} deg", "0 deg"), names, 0.0)
+    return found

@@ -6,10 +6,10 @@ row start where the best pilot did, so they can run when all its pilots have val
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -55,36 +55,23 @@ MAP_COLUMNS = 20
 
 @dataclass(frozen=True)
 class Effort:
-    """How much is computed.
-
-    Attributes
-    ----------
-    samples : int
-        Voxels that a score evaluates; 0: all.
-    candidates, search_samples, pilot_candidates : int
-        Placements in a round of a search, voxels that each is evaluated on, and the former of a
-        pilot.
-    seeds : tuple of int
-        Seeds of the searches from the best start.
-    rows : tuple of (str, str)
-        The rows that are searched, each with its prior.
-    starts : tuple of str
-        The starts that are searched, of those that a row has.
-    pitch_step_deg : float
-        Step of the pitch figure.
-    all_settings : bool
-        Whether experiment 1 is computed for all settings, or for `QUICK_SETTINGS` only.
-    """
+    """How much is computed."""
 
     samples: int
+    """Voxels that a score evaluates; 0: all."""
     candidates: int
     search_samples: int
     pilot_candidates: int
+    """Placements in a round of a search, voxels that each is evaluated on, the former of pilots."""
     seeds: tuple[int, ...]
+    """Of the searches from the best start."""
     rows: tuple[tuple[str, str], ...]
+    """The rows that are searched, each with its prior."""
     starts: tuple[str, ...]
+    """The starts that are searched, of those that a row has."""
     pitch_step_deg: float
     all_settings: bool
+    """Whether experiment 1 is computed for all settings, or for `QUICK_SETTINGS` only."""
 
     @classmethod
     def from_dict(cls, data: Json) -> Effort:
@@ -147,32 +134,33 @@ def _searches(effort: Effort, values: Values) -> Iterator[Task]:
 
 def scores_and_figures(effort: Effort) -> list[Task]:
     """Return the tasks that need no search."""
-    tasks = []
-    samples: Json = {"samples": effort.samples}
+    tasks, samples = list[Task](), {"samples": effort.samples}
+
+    def add(name: str, function: Callable[..., Json], **arguments: Any) -> None:
+        tasks.append(Task(name, function, arguments))
+
     for prior in PRIORS:
-        common = {"prior": prior, **samples}
+        of_prior: Json = {"prior": prior, **samples}
         for row in ROWS:
-            tasks.append(Task(f"printed/{row.name}/{prior}", score, {"row": row.name, **common}))
-        for name, other in (("3_default", "3_front"), ("3_front", "3_default")):
-            swapped = {"row": name, "rig_of": other, **common}
-            tasks.append(Task(f"swapped/{name}/{prior}", score, swapped))
-        alone = {"row": "4_cameras", "lidars_only": True, **common}
-        tasks.append(Task(f"lidars/4_cameras/{prior}", score, alone))
+            add(f"printed/{row.name}/{prior}", score, row=row.name, **of_prior)
+        for own, other in (("3_default", "3_front"), ("3_front", "3_default")):
+            add(f"swapped/{own}/{prior}", score, row=own, rig_of=other, **of_prior)
+        add(f"lidars/4_cameras/{prior}", score, row="4_cameras", lidars_only=True, **of_prior)
     for difference in pitch_differences(effort):
-        tasks.append(
-            Task(f"pitch/{difference:g}", pitch, {"difference_deg": difference, **samples})
-        )
+        add(f"pitch/{difference:g}", pitch, difference_deg=difference, **samples)
     for setting in (*SETTINGS, EXPECTED_COUNTS):
         for lidar in LIDAR_ROWS if effort.all_settings or setting in QUICK_SETTINGS else ():
-            varied = {"row": lidar, "setting": setting, **samples}
-            tasks.append(Task(f"vary/{setting}/{lidar}", vary, varied))
+            add(f"vary/{setting}/{lidar}", vary, row=lidar, setting=setting, **samples)
     for prior in PRIORS:
         for camera in CAMERA_ROWS:
-            bounded = {"row": camera, "prior": prior}
-            tasks.append(Task(f"bound/{camera}/{prior}", bound, bounded))
-    tasks += [Task(f"bound_curve/{deg}", bound_curve, {"hfov_deg": deg}) for deg in CAMERAS_DEG]
-    tasks += [Task(f"prior/{prior}", prior_map, {"prior": prior}) for prior in PRIORS]
-    return tasks + [Task(f"fit/{table}", fit, {"table": table}) for table in FITS]
+            add(f"bound/{camera}/{prior}", bound, row=camera, prior=prior)
+    for deg in CAMERAS_DEG:
+        add(f"bound_curve/{deg}", bound_curve, hfov_deg=deg)
+    for prior in PRIORS:
+        add(f"prior/{prior}", prior_map, prior=prior)
+    for table in FITS:
+        add(f"fit/{table}", fit, table=table)
+    return tasks
 
 
 def pitch_differences(effort: Effort) -> list[float]:

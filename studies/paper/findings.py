@@ -15,7 +15,7 @@ from typing import Any
 
 from pe_core.metric import H_BLIND, POINTPILLARS
 
-from ..pages import joined, range_text
+from ..pages import range_text
 from ..results_file import Json, values_of
 from .claims import SMALL_DEG, TEXTS
 from .experiments import CAMERA_ROWS, FITS, LIDAR_ROWS, Effort, best_search
@@ -126,23 +126,6 @@ class Findings:
         claims = {prior: self.claim(key, where, prior) for prior in PRIORS}
         return {prior: self.verdict(claim) for prior, claim in claims.items() if claim}
 
-    def orderings(self) -> list[list[str]]:
-        """Return the lines of the table of orderings."""
-        lines = []
-        for key, text in TEXTS.items():
-            cells = [self._cell(self.claim(key, "printed", prior)) for prior in PRIORS]
-            searched = {prior: self._cell(self.claim(key, "searched", prior)) for prior in PRIORS}
-            ours = "; ".join(f"{cell} ({prior})" for prior, cell in searched.items() if cell)
-            lines.append([text, *cells, ours])
-        return lines
-
-    def _cell(self, claim: Json | None) -> str:
-        if claim is None:
-            return ""
-        verdict = self.verdict(claim)
-        shown = verdict if verdict == "holds" else f"**{verdict}**"
-        return f"{shown}: {claim['better_entropy']:.4f}, {claim['worse_entropy']:.4f}"
-
     def under(self, verdicts: int) -> list[str]:
         """Return the orderings, but for the pitch figure, that hold under so many priors."""
         keys = [key for key in TEXTS if key != "pitch"]
@@ -171,39 +154,6 @@ class Findings:
         ends = [[end["roof"][axis] for end in self.positions(row)] for row in LIDAR_ROWS]
         return max(max(values) - min(values) for values in ends)
 
-    # Tables.
-
-    def rows(self) -> list[list[str]]:
-        """Return the lines of Table II with our figures."""
-        lines = []
-        for row in ROWS:
-            ours = [
-                f"{self.entropy(row.name, p):.4f} ({self.coverage(row.name, p):.0%})"
-                for p in PRIORS
-            ]
-            best, entropies = self.best(row.name), [s["entropy"] for s in self.searches(row.name)]
-            mean = ""
-            if len(entropies) > 1:
-                mean = f"{statistics.mean(entropies):.3f} ± {self.deviation(row.name):.3f}"
-            found = f"{best['entropy']:.4f}" if best else ""
-            lines.append([row_label(row.name), f"{row.entropy:.4f}", *ours, found, mean])
-        return lines
-
-    def cameras(self) -> list[list[str]]:
-        """Return the lines of the table of the cameras' bounds."""
-        lines = []
-        for prior in PRIORS:
-            for row in CAMERA_ROWS:
-                bound = self.values[f"bound/{row}/{prior}"]
-                entropies = (
-                    self.entropy_in_view(row, prior),
-                    bound["least"],
-                    bound["least_all_round"],
-                )
-                cells = [f"{self.entropy(row, prior):.4f}", f"{bound['in_view']:.1%}"]
-                lines.append([prior, ROW[row].label, *cells, *(f"{e:.2f}" for e in entropies)])
-        return lines
-
     def varied(self) -> dict[str, list[float]]:
         """Return the entropies of both roof LiDARs by what was changed."""
         names = {s: [f"vary/{s}/{row}" for row in LIDAR_ROWS] for s in (*SETTINGS, EXPECTED_COUNTS)}
@@ -213,21 +163,9 @@ class Findings:
             if all(name in self.values for name in both)
         }
 
-    def varied_ordering(self) -> str:
-        """Return whether the ordering of experiment 1 holds with all settings."""
-        lost = [name for name, (a, b) in self.varied().items() if not a < b]
-        return f"does not hold with {joined(lost)}" if lost else "holds with all of them"
-
-    def fits(self) -> list[list[str]]:
-        """Return the lines of the table of fits of the AP curve."""
-        lines = []
-        for name in FITS:
-            fit = self.values[f"fit/{name}"]
-            used = sum(not why for why in fit["left_out"])
-            curve = [f"{fit[key]:.3f} ± {fit[f'{key}_error']:.3f}" for key in ("a", "b")]
-            counts = [f"{used} of {len(fit['m'])}", f"{fit['rms']:.3f}"]
-            lines.append([name.replace("_", " "), *curve, *counts])
-        return lines
+    def lost_orderings(self) -> list[str]:
+        """Return the settings with which the ordering of experiment 1 does not hold."""
+        return [name for name, (a, b) in self.varied().items() if not a < b]
 
     @cached_property
     def pitch_curve(self) -> list[tuple[float, float]]:
@@ -331,11 +269,6 @@ def statements(f: Findings) -> dict[str, bool]:
     }
 
 
-def row_label(row: str) -> str:
-    """Return a row's number and name."""
-    return f"{ROW[row].experiment} {ROW[row].label}"
-
-
 def printed_positions(row: str) -> dict[str, Position]:
     """Return the sensors' positions that the paper prints for a row [m]."""
     return {s.name: s.pose.position for s in study_of(row).rig}
@@ -382,6 +315,8 @@ def page_values(f: Findings) -> Json:
         "max_height": max_height(CAMERA_ROWS[0]),
         "pictures": [(ROW[row.name].label, row.name) for row in ROWS],
         "search_minutes": range_text([max(s, 1e-3) / 60 for s in seconds], 1),
+        "camera_rows": CAMERA_ROWS,
+        "fits": FITS,
         "minutes": sum(f.seconds.values()) / 60,
         "tasks": (len(seconds), len(f.seconds) - len(seconds)),
     }

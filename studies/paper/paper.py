@@ -163,10 +163,9 @@ def _voxel_side(side: float) -> Variation:
     return varied
 
 
-DEFAULT_SETTING = "as shipped"
 KITTI_POSITIONS = "positions as in KITTI"
 SETTINGS: dict[str, Variation] = {
-    DEFAULT_SETTING: lambda study: study,
+    "as shipped": lambda study: study,
     "objects half as far ahead and behind": _scale_x(0.5),
     "twice as far ahead and behind": _scale_x(2.0),
     "half as far to the sides": _scale_y(0.5),
@@ -179,10 +178,3 @@ SETTINGS: dict[str, Variation] = {
 """The variation of the study, by the name of the setting."""
 EXPECTED_COUNTS = "expected beam counts, no vehicle"
 """A setting that is no variation of the study: it is computed by `analytic.expected_entropy`."""
-SETTING_GROUPS = {
-    "the side of the voxels": tuple(name for name in SETTINGS if name.startswith("voxels")),
-    "the prior's scales": (*(name for name in SETTINGS if "as far" in name), KITTI_POSITIONS),
-    "the vehicle": ("no vehicle",),
-    "expected counts": (EXPECTED_COUNTS,),
-}
-"""The settings, by what they change."""

@@ -6,18 +6,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import matplotlib
-
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
-from numpy.typing import NDArray
 
 import pe_core as pe
+from pe_core.base import Floats
 
 from ..plotting import (
     BLUE,
@@ -26,6 +21,7 @@ from ..plotting import (
     PALETTE,
     SKY,
     VERMILION,
+    pyplot,
     remove_frame,
     save_plot,
     shortened,
@@ -34,7 +30,7 @@ from ..plotting import (
 from .findings import Findings
 from .paper import PRIORS, ROW, ROWS, Row, study_of
 
-Floats = NDArray[np.float64]
+plt = pyplot()
 
 HFOV_COLORS = {30: SKY, 60: BLUE, 120: ORANGE}
 PRINTED_60 = ROW["2_60deg"].entropy
@@ -113,10 +109,8 @@ def pitch(path: Path, by_difference: Mapping[str, Any]) -> None:
     figure, (alone, fused) = plt.subplots(
         2, 1, figsize=(7.5, 5.0), sharex=True, height_ratios=(1, 2), layout="constrained"
     )
-    for name, color, label in (
-        ("lidar_a", GREY, "first, level"),
-        ("lidar_b", ORANGE, "second, pitched"),
-    ):
+    lines = {"lidar_a": (GREY, "first, level"), "lidar_b": (ORANGE, "second, pitched")}
+    for name, (color, label) in lines.items():
         alone.plot(x, [v["alone"][name] for _, v in curve], color=color, label=label)
     alone.set_title("each alone", loc="left")
     alone.legend(frameon=False, ncols=2, loc="lower right", bbox_to_anchor=(1, 1))
@@ -137,14 +131,12 @@ def sensitivity(path: Path, varied: Mapping[str, Any]) -> None:
     settings.sort(key=lambda s: varied[f"{s}/1_hdl64e"]["entropy"])
     figure, axes = plt.subplots(figsize=(8.0, 1.6 + 0.32 * len(settings)), layout="constrained")
     at = np.arange(len(settings))[::-1]
+    ends = []
     for row, color, marker in (("1_pandar64", BLUE, "o"), ("1_hdl64e", VERMILION, "s")):
-        ours = [varied[f"{s}/{row}"]["entropy"] for s in settings]
-        axes.plot(ours, at, marker, color=color, label=ROW[row].label, ls="none")
+        ends.append([varied[f"{s}/{row}"]["entropy"] for s in settings])
+        axes.plot(ends[-1], at, marker, color=color, label=ROW[row].label, ls="none")
         axes.axvline(ROW[row].entropy, color=color, lw=1, ls="--")
-    low, high = (
-        [varied[f"{s}/{row}"]["entropy"] for s in settings] for row in ("1_pandar64", "1_hdl64e")
-    )
-    axes.hlines(at, low, high, color=GREY, lw=1, zorder=0)
+    axes.hlines(at, *ends, color=GREY, lw=1, zorder=0)
     axes.set_yticks(at, settings)
     axes.set_xlabel("perception entropy at the printed placement [nats]; dashed: as printed")
     axes.legend(frameon=False, loc="lower left", bbox_to_anchor=(0, 1), ncols=2)
@@ -161,14 +153,8 @@ def bounds(path: Path, values: Mapping[str, Any]) -> None:
         curve = values[f"bound_curve/{hfov}"]
         axes.plot(curve["distance_m"], curve["entropy"], color=color, label=f"{hfov} deg")
     axes.axhline(PRINTED_60, color="black", lw=1, ls="--")
-    axes.annotate(
-        f"printed for 60 deg: {PRINTED_60}",
-        (80, PRINTED_60),
-        (0, -4),
-        ha="right",
-        va="top",
-        textcoords="offset points",
-    )
+    label, below = f"printed for 60 deg: {PRINTED_60}", {"textcoords": "offset points", "va": "top"}
+    axes.annotate(label, (80, PRINTED_60), (0, -4), ha="right", **below)
     axes.set(xlabel="distance from the camera [m]", xlim=(0, 80))
     axes.set_ylabel("least entropy of a voxel [nats]")
     axes.grid(alpha=0.3)
@@ -188,14 +174,9 @@ def draw_placements(path: Path, row: Row, ends: Sequence[Mapping[str, Any]]) -> 
     low, high = _extent(study, ends)
     length, width, height = high - low
     scale = WIDTH_IN / length
-    figure, axes = plt.subplots(
-        2,
-        1,
-        figsize=(WIDTH_IN + 1.0, (width + height) * scale + 1.6),
-        height_ratios=(width, height),
-        sharex=True,
-        layout="constrained",
-    )
+    size, heights = (WIDTH_IN + 1.0, (width + height) * scale + 1.6), (width, height)
+    layout: dict[str, Any] = {"sharex": True, "layout": "constrained", "height_ratios": heights}
+    figure, axes = plt.subplots(2, 1, figsize=size, **layout)
     for view, axis in zip(axes, VIEWS, strict=True):
         faces, shades = _visible_faces(study.vehicle.triangles, axis)
         view.add_collection(PolyCollection(faces, facecolors=shades, edgecolors="face", lw=0.2))
@@ -208,15 +189,8 @@ def draw_placements(path: Path, row: Row, ends: Sequence[Mapping[str, Any]]) -> 
         remove_frame(view)
     axes[0].set_ylabel("y, left [m]")
     axes[1].set(ylabel="z, up [m]", xlabel="x, forward [m]")
-    axes[0].legend(
-        handles=_key(study),
-        loc="lower left",
-        bbox_to_anchor=(0, 1),
-        ncols=5,
-        frameon=False,
-        columnspacing=1.2,
-        handletextpad=0.3,
-    )
+    place = {"loc": "lower left", "bbox_to_anchor": (0, 1), "ncols": 5, "frameon": False}
+    axes[0].legend(handles=_key(study), columnspacing=1.2, handletextpad=0.3, **place)
     figure.align_ylabels(axes)
     save_plot(figure, path)
 

@@ -11,12 +11,20 @@ from pe_tools import prepare_folder
 from pe_tools.cli import DONE, Answer
 
 from ..command import main, page_parser
-from ..pages import PAGE, check_page, render
+from ..pages import PAGE, check_page, render, rho_text
+from ..ranks import min_significant_rho
 from ..results_file import RESULTS, Json, compute, read_complete
-from .correlations import ValidityResults, correlations, over_papers
-from .findings import page_values, summary
+from .correlations import (
+    MAIN_CLASS,
+    SIGNIFICANCE,
+    TREATMENTS,
+    ValidityResults,
+    correlations,
+    detectors_disagree,
+    over_papers,
+)
 from .plots import draw_all
-from .scores import BASE, variants
+from .scores import BASE, BODY_M, papers, variants
 from .tasks import FULL, QUICK, ValidityEffort, plan
 
 TITLE = "# Do the scores rank placements as detectors do?"
@@ -57,7 +65,39 @@ def read_results(path: Path) -> Json:
 
 def page(results: ValidityResults) -> str:
     """Return the page as Markdown."""
-    return render(Path(__file__).parent, page_values(results))
+    rows = [row for row in results.tests if row["mean"] is not None][: len(results.scores)]
+    disagreements = [
+        f"{paper.classes[cls]} in {paper.short}"
+        for paper in papers()
+        for cls in papers()[0].classes
+        if cls in paper.classes and detectors_disagree(results.correlations_of(paper, cls)[0])
+    ]
+    height = [results.correlation_of(p, MAIN_CLASS, "mean height")["mean"] for p in papers()]
+    values = {
+        "results": results,
+        "papers": papers(),
+        "significant": results.significant(),
+        "significance": SIGNIFICANCE,
+        "opposite": results.opposite_in_papers(),
+        "height": height,
+        "worst": min(rows, key=lambda row: row["mean"]),
+        "best": max(rows, key=lambda row: row["mean"]),
+        "disagreements": disagreements,
+        "least_rho": min_significant_rho(8),
+        "surrogates": [f"{name} ({p.short})" for p in papers() for name in p.surrogates],
+        "body": " x ".join(f"{side:g}" for side in BODY_M),
+        "treatments": TREATMENTS,
+    }
+    return render(Path(__file__).with_name("page.md.j2"), values)
+
+
+def summary(results: ValidityResults) -> str:
+    """Return the test over both papers in a few lines, for people."""
+    return "\n".join(
+        f"{row['score']:34} {' '.join(map(rho_text, row['rho']))}  mean {rho_text(row['mean'])}"
+        f"  p {row['p']:.3f}  after Holm {row['holm']:.3f}"
+        for row in map(results.test, results.scores)
+    )
 
 
 if __name__ == "__main__":

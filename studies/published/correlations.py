@@ -9,10 +9,22 @@ from typing import Any
 
 import numpy as np
 
-from ..ranks import Floats, agreement, exact_p, exact_p_of_mean, holm, spearman, under_chance
+from pe_core.base import Floats
+
+from ..ranks import agreement, exact_p, exact_p_of_mean, holm, spearman, under_chance
 from ..results_file import Json, Values, values_of
-from .published import CLEAN, READINGS, Paper, papers
-from .scores import BASE, CANDIDATES, RankedScore, Rating, ScoreChoice, candidates_of
+from .scores import (
+    BASE,
+    CANDIDATES,
+    CLEAN,
+    READINGS,
+    Paper,
+    RankedScore,
+    Rating,
+    ScoreChoice,
+    candidates_of,
+    papers,
+)
 from .tasks import ValidityEffort
 
 ALL, LEVEL, LAYOUTS = "all", "none rolled", "LiDAR layouts"

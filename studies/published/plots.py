@@ -5,20 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from ..plotting import BLUE, GREY, ORANGE, remove_frame, save_plot, styled
+from ..plotting import BLUE, GREY, ORANGE, pyplot, remove_frame, save_plot, styled
 from ..ranks import min_significant_rho
 from ..results_file import Json
 from .correlations import MAIN_CLASS, ValidityResults
-from .published import CLEAN, Paper, papers
+from .scores import CLEAN, Paper, papers
+
+plt = pyplot()
 
 PAPER_COLORS = (BLUE, ORANGE)
 DOT_OFFSET = 0.13

@@ -1,14 +1,18 @@
-"""The scores that are compared, and what had to be chosen for them, alike for both papers.
+"""Published placements and AP of detectors, and the scores compared with them.
 
-All of it was fixed before the first score was correlated with a result. The first value of each
-choice is the one that the correlations are computed with. The other values, one at a time, only
-show how far the correlations depend on the choice.
+All that had to be chosen was fixed before the first score was correlated with a result. The first
+value of each choice is the one that the correlations are computed with. The other values, one at a
+time, only show how far the correlations depend on the choice.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -18,8 +22,91 @@ from pe_core.metric import POINTPILLARS
 from pe_core.sensors import derived_object_curves
 
 from ..paper.paper import STUDIES
-from ..results_file import Values
-from .published import Paper
+from ..results_file import Values, read_json
+
+TABLE = Path(__file__).parent / "data" / "published_placements.json"
+DEGREES, RADIANS = "degrees", "radians"
+READINGS = (DEGREES, RADIANS)
+"""The units that a printed roll may have."""
+CLEAN = "clean"
+
+
+@dataclass(frozen=True)
+class Paper:
+    """A paper's placements and results, as the table of data has them.
+
+    `read` names the tables that figures were read from, `notes` what is uncertain about them;
+    `classes` has the paper's names of the classes. All LiDARs are equal. AP is by condition,
+    detector, class and placement; `surrogates` are the authors' own scores, higher for better.
+    """
+
+    id: str
+    short: str
+    citation: str
+    repository: str
+    read: str
+    notes: tuple[str, ...]
+    classes: Mapping[str, str]
+    lidar: Mapping[str, float]
+    placements: Mapping[str, list[dict[str, Any]]]
+    ap: Mapping[str, Mapping[str, Mapping[str, Mapping[str, float]]]]
+    surrogates: Mapping[str, Mapping[str, Mapping[str, float]]]
+
+    def rolled(self, placement: str) -> bool:
+        """Return whether a placement has a LiDAR with a printed roll."""
+        return any("roll_printed" in sensor for sensor in self.placements[placement])
+
+    def readings(self, placement: str) -> tuple[str, ...]:
+        """Return the readings that differ for a placement: one if it has no rolls."""
+        return READINGS if self.rolled(placement) else READINGS[:1]
+
+    def rig(self, placement: str, reading: str) -> pe.Rig:
+        """Return a placement's sensors, with its printed rolls in the unit of a reading."""
+        sensors = (self._sensor(row, reading) for row in self.placements[placement])
+        return pe.Rig(list(sensors))
+
+    def height(self, placement: str) -> float:
+        """Return the mean height of the LiDARs [m]."""
+        rows = self.placements[placement]
+        return float(np.mean([row["position"][2] for row in rows if row["kind"] == "lidar"]))
+
+    def _sensor(self, row: Mapping[str, Any], reading: str) -> pe.Sensor:
+        if row["kind"] == "camera":
+            rotation = (0.0, 0.0, row["yaw_deg"])
+            return pe.Sensor(
+                row["name"], _camera(row), pe.Pose.from_degrees(row["position"], rotation)
+            )
+        printed = row.get("roll_printed", 0.0)
+        roll = printed if reading == DEGREES else math.degrees(printed)
+        pose = pe.Pose.from_degrees(row["position"], (roll, 0.0, 0.0))
+        return pe.Sensor(row["name"], self._lidar, pose)
+
+    @property
+    def _lidar(self) -> pe.Lidar:
+        data = self.lidar
+        channels = int(data["channels"])
+        elevations = np.radians(np.linspace(data["low_deg"], data["high_deg"], channels))
+        name = f"{self.short} LiDAR"
+        return pe.Lidar(name, elevations, int(data["azimuth_count"]), data["max_range_m"])
+
+
+def _camera(row: Mapping[str, Any]) -> pe.Camera:
+    (width, height), hfov_deg = row["image"], row["hfov_deg"]
+    return pe.Camera(f"camera of {hfov_deg} deg", width, height, math.radians(hfov_deg))
+
+
+@cache
+def papers() -> tuple[Paper, ...]:
+    """Return the papers of the project's table of published placements."""
+    return tuple(
+        Paper(**{**row, "notes": tuple(row["notes"])}) for row in read_json(TABLE)["papers"]
+    )
+
+
+def paper_of(name: str) -> Paper:
+    """Return a paper by its id."""
+    return next(paper for paper in papers() if paper.id == name)
+
 
 NumberVector = Sequence[float] | np.ndarray
 
@@ -60,16 +147,13 @@ class ScoreChoice:
     @property
     def name(self) -> str:
         """The differences from `BASE`, in words; empty for `BASE` itself."""
-        differences = []
-        if self.body != BASE.body:
-            differences.append(f"body: {self.body}")
-        if self.density != BASE.density:
-            differences.append(f"{self.density:g} times the traffic")
-        if self.curves != BASE.curves:
-            differences.append("the paper's curves for objects")
-        if self.part != BASE.part:
-            differences.append(self.part)
-        return ", ".join(differences)
+        differences = {
+            "body": f"body: {self.body}",
+            "density": f"{self.density:g} times the traffic",
+            "curves": "the paper's curves for objects",
+            "part": self.part,
+        }
+        return ", ".join(w for k, w in differences.items() if getattr(self, k) != getattr(BASE, k))
 
 
 BASE = ScoreChoice()
@@ -79,11 +163,9 @@ BASE = ScoreChoice()
 def variants(all_variants: bool) -> Iterator[ScoreChoice]:
     """Yield `BASE`, and with `all_variants` all choices that differ from it in one value."""
     yield BASE
-    if all_variants:
-        yield from (replace(BASE, body=body) for body in BODIES[1:])
-        yield from (replace(BASE, density=factor) for factor in DENSITIES[1:])
-        yield from (replace(BASE, curves=curves) for curves in CURVES[1:])
-        yield from (replace(BASE, part=part) for part in PARTS[1:])
+    others = {"body": BODIES, "density": DENSITIES, "curves": CURVES, "part": PARTS}
+    for key, values in others.items() if all_variants else ():
+        yield from (replace(BASE, **{key: value}) for value in values[1:])
 
 
 def body_of(name: str) -> pe.Vehicle | None:
@@ -148,93 +230,54 @@ class Rating:
         return self.paper.id, self.placement, self.reading
 
 
-ScoreFunction = Callable[[Rating, Values], float]
-"""Returns the value of a score, higher for better, from the computed values."""
-
-
 @dataclass(frozen=True)
 class RankedScore:
-    """A score that is compared with AP: what it is, and its value, higher for better."""
+    """A score that is compared with AP: where its values are.
+
+    `source` is a prior (of voxels), `OBJECTS`, `HEIGHT` or the name of an authors' own score.
+    """
 
     name: str
-    about: str
-    value: ScoreFunction
+    source: str
+    key: str = ""
+    sign: float = 1.0
+    traffic: str = ALONE
+
+    def value(self, rating: Rating, values: Values) -> float:
+        """Return the score of a placement, higher for better, from the computed values."""
+        paper, choice = rating.paper, rating.choice
+        if self.source == HEIGHT:
+            return paper.height(rating.placement)
+        if self.source in paper.surrogates:
+            return float(paper.surrogates[self.source][rating.cls][rating.placement])
+        if self.source == OBJECTS:
+            whole = values[object_name(*rating.key, self.traffic, choice)]
+        else:
+            whole = values[voxel_name(*rating.key, self.traffic, choice)][self.source]
+        of_class = whole["per_class"].get(rating.cls, whole)  # the uniform prior has no classes
+        return self.sign * float((of_class if choice.part == PARTS[0] else whole)[self.key])
 
 
-def _voxel_score(prior: str, key: str, traffic: str, sign: float) -> ScoreFunction:
-    def value(rating: Rating, values: Values) -> float:
-        score = values[voxel_name(*rating.key, traffic, rating.choice)][prior]
-        of_class = score["per_class"].get(rating.cls, score)  # the uniform prior has no classes
-        part = of_class if rating.choice.part == PARTS[0] else score
-        return sign * float(part[key])
-
-    return value
-
-
-def _object_score(key: str, traffic: str, sign: float) -> ScoreFunction:
-    def value(rating: Rating, values: Values) -> float:
-        score = values[object_name(*rating.key, traffic, rating.choice)]
-        part = score["per_class"][rating.cls] if rating.choice.part == PARTS[0] else score
-        return sign * float(part[key])
-
-    return value
-
-
-def _mean_height(rating: Rating, values: Values) -> float:
-    return rating.paper.height(rating.placement)
-
-
-def _alone_and_in_traffic(
-    name: str, about: str, score: Callable[[str], ScoreFunction]
-) -> list[RankedScore]:
-    return [
-        RankedScore(name, about, score(ALONE)),
-        RankedScore(f"{name}, in traffic", "the same among other road users", score(TRAFFIC)),
-    ]
-
-
-CANDIDATES = (
-    *_alone_and_in_traffic(
-        "perception entropy, road prior",
-        "the paper's score of voxels, over where cars, cyclists and pedestrians are met",
-        lambda traffic: _voxel_score("road", "entropy", traffic, -1.0),
-    ),
-    *_alone_and_in_traffic(
-        "perception entropy, uniform prior",
-        "the paper's score with every voxel counted alike",
-        lambda traffic: _voxel_score("uniform", "entropy", traffic, -1.0),
-    ),
-    *_alone_and_in_traffic(
-        "coverage",
-        "the share of the road prior that any sensor meets",
-        lambda traffic: _voxel_score("road", "coverage", traffic, 1.0),
-    ),
-    *_alone_and_in_traffic(
-        "object entropy",
-        "entropy of whole objects, by the beams and pixels they get",
-        lambda traffic: _object_score("entropy", traffic, -1.0),
-    ),
-    *_alone_and_in_traffic(
-        "expected AP",
-        "mean AP of objects, by the beams and pixels they get",
-        lambda traffic: _object_score("ap", traffic, 1.0),
-    ),
-    RankedScore("mean height", "how high the LiDARs are mounted: no score at all", _mean_height),
+OBJECTS, HEIGHT = "objects", "height"
+OWN = (
+    RankedScore("perception entropy, road prior", "road", "entropy", -1.0),
+    RankedScore("perception entropy, uniform prior", "uniform", "entropy", -1.0),
+    RankedScore("coverage", "road", "coverage"),
+    RankedScore("object entropy", OBJECTS, "entropy", -1.0),
+    RankedScore("expected AP", OBJECTS, "ap"),
 )
-"""The scores of this project, and the simplest alternative."""
-
-
-def _authors_score(name: str) -> ScoreFunction:
-    def value(rating: Rating, values: Values) -> float:
-        return float(rating.paper.surrogates[name][rating.cls][rating.placement])
-
-    return value
+CANDIDATES = (
+    *(
+        score
+        for alone in OWN
+        for score in (alone, replace(alone, name=f"{alone.name}, in traffic", traffic=TRAFFIC))
+    ),
+    RankedScore("mean height", HEIGHT),
+)
+"""The scores of this project, alone and among other road users, and the simplest alternative."""
 
 
 def candidates_of(paper: Paper) -> tuple[RankedScore, ...]:
     """Return the scores that a paper's results are compared with, the authors' own ones last."""
-    authors_scores = (
-        RankedScore(f"{name} ({paper.short})", "the authors' own", _authors_score(name))
-        for name in paper.surrogates
-    )
-    return (*CANDIDATES, *authors_scores)
+    own = (RankedScore(f"{name} ({paper.short})", name) for name in paper.surrogates)
+    return (*CANDIDATES, *own)

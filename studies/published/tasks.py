@@ -13,7 +13,6 @@ import pe_core as pe
 from pe_core.scoring.targets import ObjectEvaluator, SampledObjects, TargetRule, sample_objects
 
 from ..results_file import Json, Task, Values
-from .published import paper_of, papers
 from .scores import (
     ALONE,
     BASE,
@@ -23,6 +22,8 @@ from .scores import (
     box_triangles,
     curves_of,
     object_name,
+    paper_of,
+    papers,
     prior_of,
     variants,
     voxel_name,
@@ -101,13 +102,11 @@ def voxels_in_traffic(
 ) -> Json:
     """Score a placement's voxels among other road users, by prior: the mean over scenes."""
     rig = paper_of(paper).rig(placement, reading)
-    evaluators = {
-        prior: _evaluators_in_traffic(prior, body, density, samples, scenes) for prior in PRIORS
-    }
-    return {
-        prior: _mean([_score_data(evaluator.score(rig)) for evaluator in evaluators[prior]])
-        for prior in PRIORS
-    }
+    found = {}
+    for prior in PRIORS:
+        evaluators = _evaluators_in_traffic(prior, body, density, samples, scenes)
+        found[prior] = _mean([_score_data(evaluator.score(rig)) for evaluator in evaluators])
+    return found
 
 
 def objects(
@@ -130,7 +129,7 @@ def objects(
         "stderr": score.stderr,
         "ap": of_objects.ap,
         "per_class": {
-            name: {"entropy": part.entropy, "stderr": part.stderr, "ap": part.ap}
+            name: {key: getattr(part, key) for key in ("entropy", "stderr", "ap")}
             for name, part in of_objects.per_class.items()
         },
     }

@@ -10,11 +10,9 @@ from numpy.typing import NDArray
 
 import pe_core as pe
 from pe_core import InputError, catalog
+from pe_core.base import Floats, Ints
 from pe_core.scene.objects import Objects
 from pe_tools.exchange import pose_from_quaternion
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 EGO, OTHER = "EGO_VEHICLE", "other"
 CATEGORIES = {

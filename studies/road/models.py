@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 import pe_core as pe
+from pe_core.base import Floats, Ints
 from pe_core.geometry.ray_traversal import TriangleTree
 from pe_core.geometry.raycast import VisibleTriangles
 from pe_core.sensors.boxes import PlacedBoxes
@@ -21,9 +21,6 @@ from pe_core.sensors.lidar.returns import passed, return_probability
 
 from ..detectors.shapes import placed_mesh
 from .logs import CLASSES, OTHER, Log
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 RINGS_M = (0.0, 15.0, 30.0, 60.0, 150.0)
 MIN_BOXES = 50

@@ -3,56 +3,35 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from pe_core.base import dump_json, write_bytes
+from pe_core.base import dump_json
 from pe_tools import prepare_folder
-from pe_tools.cli import DONE, Answer, Parser
+from pe_tools.cli import DONE, Answer
 
-from ..command import main
-from ..pages import PAGE, check_page, render
+from ..command import logs_parser, main
+from ..pages import check_page, render, write_study
 from ..results_file import RESULTS, Json, made_by, print_progress, read_json
 from ..road.__main__ import FOLDER as ROAD
 from ..road.__main__ import predicted
 from ..road.logs import CLASSES, read_lidars, read_logs
 from ..road.models import SOLID, Fitted
-from .moments import (
-    NEAR_S,
-    POINTS,
-    RESAMPLES,
-    SEED,
-    by_class_and_ring,
-    pairs_of,
-    persistence,
-    verdict,
-)
+from .moments import BOOTSTRAP, NEAR_S, POINTS, by_class_and_ring, pairs_of, persistence, verdict
 from .order import TABLE, expected, statements
 
 FOLDER = "docs/validity/tracks"
 TITLE = "# When is an object noticed: predicted and real tracks"
-JUDGED = "5"
-"""Points of the goals."""
+CARS_AND_PEDESTRIANS = "car and pedestrian"
 GOALS = {
-    "1. First sight of cars and pedestrians": ("car and pedestrian", "first_s", -NEAR_S, NEAR_S),
+    "1. First sight of cars and pedestrians": (CARS_AND_PEDESTRIANS, "first_s", -NEAR_S, NEAR_S),
     "2. Confirmed tracks of cars and pedestrians": (
-        "car and pedestrian",
-        "confirmed_s",
-        -NEAR_S,
-        NEAR_S,
+        *(CARS_AND_PEDESTRIANS, "confirmed_s"),
+        *(-NEAR_S, NEAR_S),
     ),
     "3. Nothing is seen that is not there": ("all", "invented", 0.0, 0.1),
 }
-
-
-@dataclass(frozen=True)
-class Effort:
-    """What `made_by` notes besides the versions."""
-
-    resamples: int
-    seed: int
 
 
 def held_against_tracks(args: argparse.Namespace, folder: Path) -> Answer:
@@ -60,16 +39,17 @@ def held_against_tracks(args: argparse.Namespace, folder: Path) -> Answer:
     check_page(folder, TITLE, "tracks")
     folder = prepare_folder(folder)
     found = measured(args) if args.logs else read_json(folder / RESULTS)
-    write_bytes(folder / RESULTS, dump_json(found).encode())
-    write_bytes(folder / PAGE, page_of(found).encode())
-    return dump_json(found) if args.json else "\n".join(" | ".join(r) for r in goals(found)), DONE
+    text = page_of(found)
+    write_study(folder, found, text)
+    goals = next(block for block in text.split("\n\n") if block.startswith("| goal"))
+    return dump_json(found) if args.json else goals, DONE
 
 
 def page_of(found: Json) -> str:
     """Return the page of all figures, with the published ones."""
-    own = {"found": found, "rows": rows(found), "goals": goals(found)}
-    published = {"order": statements(), "expected": expected(), "published": read_json(TABLE)}
-    return render(Path(__file__).parent, own | published)
+    values = {"found": found, "goals": GOALS, "points": POINTS, "verdict": verdict}
+    values |= {"order": statements(), "expected": expected(), "published": read_json(TABLE)}
+    return render(Path(__file__).with_name("page.md.j2"), values)
 
 
 def measured(args: argparse.Namespace) -> Json:
@@ -90,64 +70,9 @@ def measured(args: argparse.Namespace) -> Json:
         }
         found["persistence"][log.name] = {str(n): persistence(log, both[1], n) for n in POINTS}
         found["counts"][log.name] = len(np.unique(log.tracks))
-    found["made"] = made_by(Effort(RESAMPLES, SEED))
+    found["made"] = made_by(BOOTSTRAP)
     return found
 
 
-def goals(found: Json) -> list[list[str]]:
-    """Return a row for each goal and model: verdict and value in each log."""
-    table = []
-    for goal, (cell, figure, low, high) in GOALS.items():
-        for model in ("default", "road"):
-            values = [log[model][JUDGED][cell].get(figure) for log in found["logs"].values()]
-            texts = [f"{_text(v)}: {verdict(v, low, high)}" for v in values]
-            table.append([goal, model, *texts])
-    texts = []
-    for log in found["logs"].values():
-        errors = [log[model][JUDGED]["all"].get("error_s") for model in ("default", "road")]
-        known = [e for e in errors if e is not None]
-        better = (
-            "not decided"
-            if len(known) < 2
-            else "lower"
-            if known[1][0] < known[0][0]
-            else "not lower"
-        )
-        texts.append(f"{_text(errors[0])}, {_text(errors[1])}: {better}")
-    return [*table, ["4. Error of *confirmed*, default and road", "both", *texts]]
-
-
-def rows(found: Json) -> list[list[str]]:
-    """Return rows of cars and pedestrians: each log, number of points and model with figures."""
-    return [
-        [
-            log[:8],
-            n,
-            model,
-            f"{cell['both']} of {cell['tracks']}",
-            *(_text(cell[key]) for key in ("first_s", "confirmed_s", "near", "missed", "invented")),
-            "-" if cell["lost_rho"] is None else f"{cell['lost_rho']:.2f}",
-        ]
-        for log, by_model in found["logs"].items()
-        for n in map(str, POINTS)
-        for model in by_model
-        if "near" in (cell := by_model[model][n].get("car and pedestrian", {}))
-    ]
-
-
-def _text(values: list[float] | None) -> str:
-    if values is None:
-        return "too few"
-    value, low, high = values
-    return f"{value:+.2f} ({low:+.2f} to {high:+.2f})"
-
-
 if __name__ == "__main__":
-    parser = Parser(prog="python -m studies.tracks", description=__doc__)
-    about = "a folder of logs, each in a folder; without it the page is written from results.json"
-    parser.add_argument("logs", metavar="FOLDER", nargs="?", help=about)
-    about = f"folder for page and results.json (default {FOLDER})"
-    parser.add_argument("-o", "--output", metavar="DIR", help=about)
-    parser.add_argument("--json", action="store_true", help="print results.json on stdout")
-    parser.set_defaults(default_folders=(FOLDER,), quick=False)
-    main(parser, held_against_tracks)
+    main(logs_parser("tracks", str(__doc__), FOLDER), held_against_tracks)

@@ -6,15 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from pe_core.base import Flags, Floats, Ints
 
 from ..results_file import Json
 from ..road.logs import CLASSES, Log
 from ..road.models import RINGS_M
-from ..road.statistics import rank_correlation
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from ..road.statistics import HOLDS, OPEN, REFUTED, Bootstrap, rank_correlation, rounded
 
 FRAME_S = 0.1
 POINTS = (1, 5, 20)
@@ -23,18 +21,15 @@ UNSEEN = 5
 """First frames at which a track that counts is not seen."""
 NEAR_S = 0.5
 MIN_TRACKS = 10
-SEED, RESAMPLES = 20261127, 1000
-HOLDS, REFUTED, OPEN = "holds", "refuted", "not decided"
+BOOTSTRAP = Bootstrap(20261127)
 
 
 def tracks_of(log: Log) -> list[Ints]:
     """Return the boxes of each track in their order; a frame without a box ends a track."""
-    scenes, found = log.objects.scenes, []
+    scenes = log.objects.scenes
     order = np.lexsort((scenes, log.tracks))
     new = (np.diff(log.tracks[order]) != 0) | (np.diff(scenes[order]) != 1)
-    for part in np.split(order, np.flatnonzero(new) + 1):
-        found.append(part)
-    return found
+    return np.split(order, np.flatnonzero(new) + 1)
 
 
 def threshold(n: int) -> float:
@@ -51,7 +46,7 @@ class Moments:
     lost_s: float
 
     @classmethod
-    def of(cls, seen: NDArray[np.bool_]) -> Moments:
+    def of(cls, seen: Flags) -> Moments:
         """Return those of the frames at which a track is seen (K,)."""
         frames = np.flatnonzero(seen)
         if not len(frames):
@@ -98,63 +93,52 @@ def interval(
     pairs: Sequence[Pair], figure: Callable[[Sequence[Pair]], float]
 ) -> list[float | None]:
     """Return the value of a figure and its 95 % interval, by bootstrap over the tracks."""
-    rng = np.random.default_rng(SEED)
-    draws = rng.integers(0, len(pairs), (RESAMPLES, len(pairs)))
+    rng = np.random.default_rng(BOOTSTRAP.seed)
+    draws = rng.integers(0, len(pairs), (BOOTSTRAP.resamples, len(pairs)))
     values = [figure([pairs[k] for k in draw]) for draw in draws]
     low, high = np.nanpercentile(values, (2.5, 97.5))
-    return [_rounded(figure(pairs)), _rounded(low), _rounded(high)]
-
-
-def lateness(what: str) -> Callable[[Sequence[Pair]], float]:
-    """Return the figure: median of predicted minus real time [s]."""
-    return lambda pairs: _of(pairs, what, np.median)
-
-
-def error(what: str) -> Callable[[Sequence[Pair]], float]:
-    """Return the figure: median of the absolute difference [s]."""
-    return lambda pairs: _of(pairs, what, lambda late: np.median(np.abs(late)))
-
-
-def near(what: str) -> Callable[[Sequence[Pair]], float]:
-    """Return the figure: share of the tracks within +-0.5 s."""
-    return lambda pairs: _of(pairs, what, lambda late: np.mean(np.abs(late) <= NEAR_S + 1e-9))
-
-
-def _of(pairs: Sequence[Pair], what: str, figure: Callable[[Floats], object]) -> float:
-    late = [w for pair in pairs if (w := pair.late(what)) is not None]
-    return float(figure(np.array(late))) if late else np.nan  # type: ignore[arg-type]
+    return [rounded(figure(pairs)), rounded(low), rounded(high)]
 
 
 def missed(pairs: Sequence[Pair]) -> float:
     """Return the share of tracks that the counted points confirm and the predicted do not."""
-    return _share([p.said.confirmed is None for p in pairs if p.real.confirmed is not None])
+    flags = [p.said.confirmed is None for p in pairs if p.real.confirmed is not None]
+    return float(np.mean(flags)) if flags else np.nan
 
 
 def invented(pairs: Sequence[Pair]) -> float:
     """Return the share of tracks that the predicted points confirm and the counted do not."""
-    return _share([p.said.confirmed is not None and p.real.confirmed is None for p in pairs])
+    return float(
+        np.mean([p.said.confirmed is not None and p.real.confirmed is None for p in pairs])
+    )
 
 
-def _share(flags: Sequence[bool]) -> float:
-    return float(np.mean(flags)) if flags else np.nan
+OF_BOTH: dict[str, tuple[str, Callable[[Floats], float]]] = {
+    "first_s": ("first", lambda late: float(np.median(late))),
+    "confirmed_s": ("confirmed", lambda late: float(np.median(late))),
+    "error_s": ("confirmed", lambda late: float(np.median(np.abs(late)))),
+    "near": ("confirmed", lambda late: float(np.mean(np.abs(late) <= NEAR_S + 1e-9))),
+}
+"""Figures of predicted minus real times [s]: medians, of the absolute ones, share within 0.5 s."""
 
 
 def compared(pairs: Sequence[Pair]) -> Json:
     """Return the figures of some tracks; None with too few of them."""
     both = [p for p in pairs if p.late("confirmed") is not None]
+    head = {"tracks": len(pairs), "both": len(both)}
     if len(both) < MIN_TRACKS:
-        return {"tracks": len(pairs), "both": len(both)}
+        return head
+
+    def of(what: str, figure: Callable[[Floats], float]) -> Callable[[Sequence[Pair]], float]:
+        return lambda some: figure(np.array([p.late(what) for p in some], float))
+
     lost = [np.array([getattr(p, who).lost_s for p in both]) for who in ("real", "said")]
     return {
-        "tracks": len(pairs),
-        "both": len(both),
-        "first_s": interval(both, lateness("first")),
-        "confirmed_s": interval(both, lateness("confirmed")),
-        "error_s": interval(both, error("confirmed")),
-        "near": interval(both, near("confirmed")),
+        **head,
+        **{name: interval(both, of(*figure)) for name, figure in OF_BOTH.items()},
         "missed": interval(pairs, missed),
         "invented": interval(pairs, invented),
-        "lost_rho": _rounded(rank_correlation(*lost)),
+        "lost_rho": rounded(rank_correlation(*lost)),
     }
 
 
@@ -179,11 +163,8 @@ def persistence(log: Log, m: Floats, n: int) -> Mapping[str, Json]:
     ``ratio`` is P(seen | seen before) / P(seen); ``correlation`` (P(seen | seen before) - P) / (1 -
     P), the mean over thirds, by their boxes.
     """
-    before, after = [], []
-    for boxes in tracks_of(log):
-        before.append(boxes[:-1])
-        after.append(boxes[1:])
-    first, then = np.concatenate(before), np.concatenate(after)
+    tracks = tracks_of(log)
+    first, then = (np.concatenate([t[cut] for t in tracks]) for cut in (slice(-1), slice(1, None)))
     seen, labels = log.points >= n, log.objects.labels
     found: dict[str, Json] = {}
     for k, name in enumerate(CLASSES[:-1]):
@@ -199,8 +180,8 @@ def persistence(log: Log, m: Floats, n: int) -> Mapping[str, Json]:
         if rows:
             size, ratio, linked = np.array(rows).T
             found[name] = {
-                "ratio": _rounded(np.average(ratio, weights=size)),
-                "correlation": _rounded(np.average(linked, weights=size)),
+                "ratio": rounded(np.average(ratio, weights=size)),
+                "correlation": rounded(np.average(linked, weights=size)),
                 "boxes": int(size.sum()),
             }
     return found
@@ -214,7 +195,3 @@ def verdict(values: list[float] | None, low: float, high: float) -> str:
     if least >= low and most <= high:
         return HOLDS
     return REFUTED if most < low or least > high else OPEN
-
-
-def _rounded(value: float) -> float | None:  # type: ignore[return]
-    return None if np.isnan(value) else round(float(value), 3)

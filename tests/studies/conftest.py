@@ -20,13 +20,14 @@ def study(name, *arguments):
     out, err = io.StringIO(), io.StringIO()
     streams = contextlib.redirect_stdout(out), contextlib.redirect_stderr(err)
     argv = [name, *map(str, arguments)]
-    imported = sys.modules.pop(f"studies.{name}.__main__", None)  # by a test: Python would warn
+    names = f"studies.{name}", f"studies.{name}.__main__"  # by a test: Python would warn
+    of_tests = {n: m for n in names if not hasattr(m := sys.modules.get(n, sys), "__path__")}
+    of_tests = {n: sys.modules.pop(n) for n, m in of_tests.items() if m is not sys}
     with streams[0], streams[1], warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("default")
         with mock.patch.object(sys, "argv", argv), pytest.raises(SystemExit) as ended:
             runpy.run_module(f"studies.{name}", run_name="__main__")
-    if imported is not None:
-        sys.modules[imported.__name__] = imported
+    sys.modules.update(of_tests)
     said = "".join(f"{each.category.__name__}: {each.message}\n" for each in warned)
     text = err.getvalue() + said
     return SimpleNamespace(returncode=ended.value.code, stdout=out.getvalue(), stderr=text)

@@ -2,7 +2,6 @@
 
 import json
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,19 +9,26 @@ import pytest
 from benchmarks.search_problems import PROBLEMS
 from pe_core import InputError
 from pe_core.study import load_study
-from studies.detectors.after_search.analysis import after_search_analysis
-from studies.detectors.after_search.plan import (
+from studies.detectors.after_search import (
+    PLACEMENTS,
     START,
-    full_after_search_plan,
-    quick_after_search_plan,
+    after_search_analysis,
+    placement_name,
+    searched_placements,
+    study_of,
 )
-from studies.detectors.after_search.searches import PLACEMENTS, searched_placements, study_of
 from studies.detectors.analysis import HOLDS, OPEN, REFUTED
-from studies.detectors.findings import answer_after_search
-from studies.detectors.plan import AFTER_SEARCH, full_plan
-from studies.detectors.rank_tests import student_interval
+from studies.detectors.page import answer_after_search
+from studies.detectors.plan import (
+    AFTER_SEARCH,
+    full_after_search_plan,
+    full_plan,
+    quick_after_search_plan,
+    rings_of,
+)
 from studies.detectors.runs import RunFiles, seed_by_seed
 from studies.paper.paper import STUDIES
+from studies.ranks import student_interval
 from tests.studies.conftest import ROOT, study
 
 PLAN = full_after_search_plan()
@@ -34,25 +40,25 @@ FOLDER_OF_DOCS = ROOT / "docs" / "validity" / "own"
 def results_of(gain, seeds=3, noise=0.003):
     """Results of runs in which each search gains AP; `gain` by rig and objective."""
     found = {}
-    for k, rig in enumerate(PLAN.rigs):
-        for what in (START, *PLAN.objectives):
-            for seed in PLAN.study.training.seeds[:seeds]:
-                more = gain.get((rig.name, what), 0.0)
+    for k, rig in enumerate(PLAN.searches.rigs):
+        for what in (START, *PLAN.searches.objectives):
+            for seed in PLAN.training.seeds[:seeds]:
+                more = gain.get((rig, what), 0.0)
                 ap = 0.5 + 0.1 * k + more + noise * math.sin(7.0 * seed + len(what))
-                rings = {ring: {"car": ap, "cone": ap} for ring in PLAN.study.precision.rings}
-                found[f"{rig.placement_name(what)}-s{seed}"] = {"ap": ap, "by_ring": rings}
+                rings = {ring: {"car": ap, "cone": ap} for ring in rings_of(PLAN)}
+                found[f"{placement_name(rig, what)}-s{seed}"] = {"ap": ap, "by_ring": rings}
     return found
 
 
 def test_the_plan_is_the_one_before_the_first_run():
-    assert PLAN.study.digest == DIGEST != full_plan().digest
-    assert PLAN.study.training.seeds == (1, 2, 3)
+    assert PLAN.digest == DIGEST != full_plan().digest
+    assert PLAN.training.seeds == (1, 2, 3)
 
 
 def test_rigs_are_the_lidars_of_the_studies_that_the_plan_names():
     """Poses and bounds of experiment 4, and of the benchmark's shuttle with its body."""
     paper, bench = load_study(STUDIES / "4_cameras.toml"), PROBLEMS["shuttle of eight"].make()
-    for rig, other in zip(PLAN.rigs, (paper, bench), strict=True):
+    for rig, other in zip(PLAN.searches.rigs, (paper, bench), strict=True):
         ours = study_of(PLAN, rig, "entropy", 1)
         lidars = [s for s in other.rig if s.kind == "lidar"]
         assert [s.pose for s in ours.rig] == [s.pose for s in lidars]
@@ -65,7 +71,10 @@ def test_rigs_are_the_lidars_of_the_studies_that_the_plan_names():
         assert len({each.clear_housings for each in constraints}) == 1
         assert np.allclose(ours.vehicle.bounds, other.vehicle.bounds)
         assert (own.seed, own.method, own.evaluations) == (1, "portfolio", 0)
-    assert len({study_of(PLAN, PLAN.rigs[0], o, 1).search.objective for o in PLAN.objectives}) == 2
+    assert (
+        len({study_of(PLAN, "shuttle", o, 1).search.objective for o in PLAN.searches.objectives})
+        == 2
+    )
 
 
 def test_a_short_search_is_kept_and_its_runs_are_gone_on_with_by_resume_alone(tmp_path):
@@ -75,10 +84,10 @@ def test_a_short_search_is_kept_and_its_runs_are_gone_on_with_by_resume_alone(tm
         "after-shuttle-start"
     ]
     found = searched_placements(plan, tmp_path / AFTER_SEARCH, said.append)
-    assert len(said) == 2 and len(found) == 1 + len(plan.objectives)
+    assert len(said) == 2 and len(found) == 1 + len(plan.searches.objectives)
     again = searched_placements(plan, tmp_path / AFTER_SEARCH, lambda line: pytest.fail(line))
     assert again == found
-    files = RunFiles(tmp_path / AFTER_SEARCH, plan.study, seed_by_seed(plan.study, found))
+    files = RunFiles(tmp_path / AFTER_SEARCH, plan, seed_by_seed(plan, found))
     files.write(files.all[0], {"ap": 0.5})
     run = study("detectors", "--after-search", "--quick", "--output", tmp_path)
     assert run.returncode == 1 and "1 of 3 runs; pass --resume" in run.stderr
@@ -88,7 +97,7 @@ def test_a_short_search_is_kept_and_its_runs_are_gone_on_with_by_resume_alone(tm
     (x, y, z, _, pitch, _), *_ = found[1].poses
     assert abs(x) <= 3.4 and abs(y) <= 1.4 and 0.4 <= z <= 2.9 and abs(pitch) <= 15.0
     with pytest.raises(InputError, match="plan"):
-        changed = replace(plan, study=replace(plan.study, digest="other"))
+        changed = plan.but(digest="other")
         searched_placements(changed, tmp_path / AFTER_SEARCH)
 
 
@@ -98,7 +107,7 @@ def test_student_s_interval_by_hand():
 
 
 def test_a_verdict_needs_all_seeds_of_its_comparison_and_a_sentence_both_rigs():
-    gains = {(rig.name, "entropy"): 0.05 for rig in PLAN.rigs}
+    gains = {(rig, "entropy"): 0.05 for rig in PLAN.searches.rigs}
     gains["shuttle", "expected_ap"] = 0.05
     found = after_search_analysis(PLAN, results_of(gains), {})
     verdicts = {
@@ -125,7 +134,7 @@ def test_a_verdict_needs_all_seeds_of_its_comparison_and_a_sentence_both_rigs():
     partly = after_search_analysis(PLAN, results_of(gains, seeds=2), {})
     assert set(partly["answers"].values()) == {OPEN} and "is open" in answer_after_search(partly)
     assert partly["rigs"]["shuttle"]["after"]["entropy"]["mean"] == pytest.approx(0.05, abs=0.01)
-    worse = results_of({(rig.name, "entropy"): -0.05 for rig in PLAN.rigs})
+    worse = results_of({(rig, "entropy"): -0.05 for rig in PLAN.searches.rigs})
     told = answer_after_search(after_search_analysis(PLAN, worse, {}))
     assert "It was not shown that a detector finds more" in told
 

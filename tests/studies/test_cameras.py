@@ -1,27 +1,30 @@
 """The study of cameras: placements, pictures, where cells of the ground are in them, statements."""
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from studies.detectors.analysis import HOLDS, OPEN
+from studies.detectors import pictures as rendering
+from studies.detectors.analysis import HOLDS, OPEN, camera_analysis
 from studies.detectors.batches import STRIDE
-from studies.detectors.cameras import rendering
-from studies.detectors.cameras.analysis import camera_analysis
-from studies.detectors.cameras.lifting import HEIGHTS_M, Lifting
-from studies.detectors.cameras.placements import camera_placements, in_picture
-from studies.detectors.cameras.plan import full_camera_plan, quick_camera_plan
-from studies.detectors.findings import answer_of_cameras
-from studies.detectors.placements import Placement, listing
-from studies.detectors.plan import CAMERAS
+from studies.detectors.page import answer_of_cameras
+from studies.detectors.pictures import HEIGHTS_M, Lifting
+from studies.detectors.placements import (
+    Placement,
+    camera_model,
+    camera_placements,
+    in_picture,
+    listing,
+)
+from studies.detectors.plan import CAMERAS, full_camera_plan, quick_camera_plan
 from studies.detectors.runs import seed_by_seed
 from studies.detectors.scenes import Scene
 from studies.detectors.shapes import solid
 from tests.studies.conftest import ROOT
 
 PLAN = full_camera_plan()
+MODEL = camera_model(PLAN.cameras.rig)
 FOLDER = ROOT / "docs" / "validity" / "own" / "cameras"
 DIGEST = "ab094c698eca1191"
 """Of the plan that the study began with. A changed plan is another study, with its own results."""
@@ -30,7 +33,7 @@ AHEAD = Placement("one", "sedan", ((1.9, 0.0, 1.5, 0.0, 0.0, 0.0),), False, CAME
 
 
 def test_the_plan_is_the_one_that_the_study_began_with():
-    assert PLAN.study.digest == DIGEST != quick_camera_plan().study.digest
+    assert PLAN.digest == DIGEST != quick_camera_plan().digest
 
 
 def test_the_placements_are_those_that_the_rule_draws_and_look_outwards():
@@ -44,15 +47,14 @@ def test_the_placements_are_those_that_the_rule_draws_and_look_outwards():
         assert (poses[:, :2] * directions).sum() > 1.0  # outwards on the whole [m]
         gaps = np.diff(np.sort(poses[:, 5] % 360.0))
         assert (
-            (gaps > 90.0 - 2.0 * PLAN.yaw_deg - 0.1) & (gaps < 90.0 + 2.0 * PLAN.yaw_deg + 0.1)
+            (gaps > 90.0 - 2.0 * PLAN.cameras.placements.yaw_deg - 0.1)
+            & (gaps < 90.0 + 2.0 * PLAN.cameras.placements.yaw_deg + 0.1)
         ).all()
 
 
 def test_rays_through_pixels_are_where_the_lens_puts_them():
     camera = rendering.FreePixels(PLAN, AHEAD, 0)
-    columns, rows, inside = in_picture(
-        PLAN.model, camera.directions
-    )  # level: axes are the ground's
+    columns, rows, inside = in_picture(MODEL, camera.directions)  # level: axes are the ground's
     at = np.argwhere(camera.free) + 0.5
     assert inside.all()
     assert np.abs(np.stack([columns, rows], axis=1) - at).max() < 1e-6
@@ -69,11 +71,11 @@ def box_ahead(monkeypatch):
 
 def test_a_cube_covers_the_pixels_that_its_face_does(box_ahead):
     scene = rendering.Renderer(PLAN, AHEAD).pictures("test", 0)
-    f, distance = PLAN.model.focal_px, 9.0 - 1.9
+    f, distance = MODEL.focal_px, 9.0 - 1.9
     width, height = 2.0 * f / distance, 2.0 * f / distance
     assert scene.beams[0] == pytest.approx(width * height, rel=0.12)
     picture = scene.pictures[0].astype(float)
-    row = PLAN.model.height // 2
+    row = MODEL.height // 2
     middle, beside = (picture[slice(*c), row].mean(axis=0) for c in ((90, 102), (20, 60)))
     assert np.abs(middle - beside).max() > 15.0
     edges = np.abs(np.diff(picture[:, row + 2].sum(axis=-1)))
@@ -87,7 +89,7 @@ def test_cells_take_their_features_from_where_they_are_in_the_picture():
     lifting = Lifting.of(PLAN, placement)
     cameras = rendering.Renderer(PLAN, placement).cameras
     _, columns, rows, _ = lifting.nearness.shape
-    region, side = PLAN.study.region, STRIDE * PLAN.study.region.cell_m
+    region, side = PLAN.region, STRIDE * PLAN.region.cell_m
     total = len(cameras) * columns * rows
     rng = np.random.default_rng(4)
     cells = rng.choice(np.flatnonzero((lifting.pixels[:, :, 0] < total).all(axis=1)), 60)
@@ -104,7 +106,7 @@ def test_cells_take_their_features_from_where_they_are_in_the_picture():
             block = rays[STRIDE * column : STRIDE * (column + 1), STRIDE * row : STRIDE * (row + 1)]
             offset = np.array(point) - camera.origin
             cosines = block @ (offset / np.linalg.norm(offset))
-            assert np.nanmax(cosines) > np.cos(1.0 / PLAN.model.focal_px)  # within a pixel
+            assert np.nanmax(cosines) > np.cos(1.0 / MODEL.focal_px)  # within a pixel
     assert set(np.unique(lifting.shares)) <= {0.0, 0.5, 1.0}
     assert (lifting.shares[lifting.pixels == total] == 0.0).all()
 
@@ -113,7 +115,7 @@ def made_up(noise=0.0, missing=0, sign=1.0):
     """Results in which AP follows the primary score; the last `missing` runs are not done."""
     names = [p.name for p in camera_placements(PLAN)]
     rng = np.random.default_rng(5)
-    runs = seed_by_seed(PLAN.study, camera_placements(PLAN))
+    runs = seed_by_seed(PLAN, camera_placements(PLAN))
     aps = {r.name: 0.3 + sign * 0.01 * names.index(r.placement.name) for r in runs}
     part = {"entropy": 1.0, "ap": 0.5}
     training = {"epochs": 20, "converged": False}
@@ -136,8 +138,7 @@ def made_up(noise=0.0, missing=0, sign=1.0):
 
 
 def said(done, scores):
-    rule = replace(PLAN.study.statistics, permutations=999, resamples=60)
-    plan = replace(PLAN, study=replace(PLAN.study, statistics=rule))
+    plan = PLAN.but(statistics={"permutations": 999, "resamples": 60})
     found = camera_analysis(plan, done, scores)
     return found["verdict"], found, answer_of_cameras(plan, found)
 
@@ -145,8 +146,8 @@ def said(done, scores):
 def test_a_statement_needs_all_runs():
     verdict, found, text = said(*made_up())
     assert verdict == HOLDS and "finds more" in text
-    assert found["scores"][PLAN.study.statistics.primary]["rho"] == pytest.approx(1.0)
-    assert "holm" not in found["scores"][PLAN.study.statistics.primary]
+    assert found["scores"][PLAN.statistics.primary]["rho"] == pytest.approx(1.0)
+    assert "holm" not in found["scores"][PLAN.statistics.primary]
     verdict, found, text = said(*made_up(missing=1))
     assert verdict == OPEN and "no statement before all runs are done" in text
     assert (found["done"], found["planned"]) == (15, 16)

@@ -7,7 +7,6 @@ import re
 import subprocess
 import sys
 from collections import Counter
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,27 +15,35 @@ from benchmarks.embree import Embree
 from pe_core import InputError
 from pe_core.geometry.ray_traversal import TriangleTree
 from pe_core.geometry.raycast import VisibleTriangles
-from studies.detectors.after_search.plan import full_after_search_plan
-from studies.detectors.after_search.searches import searched_placements
-from studies.detectors.batches import NEITHER, detections, inputs, targets
-from studies.detectors.cameras.placements import camera_placements
-from studies.detectors.cameras.plan import full_camera_plan, quick_camera_plan
+from studies.detectors.after_search import searched_placements
+from studies.detectors.batches import (
+    NEITHER,
+    ClassScene,
+    average_precision,
+    detections,
+    in_ring,
+    inputs,
+    targets,
+)
 from studies.detectors.casting import GROUND_M, MAX_POINTS, Caster, FreeBeams
-from studies.detectors.findings import short_answer
-from studies.detectors.page import OWN, Plans, Study, page
-from studies.detectors.placements import listing, placements
+from studies.detectors.page import Study, page, short_answer
+from studies.detectors.placements import camera_placements, listing, placements
 from studies.detectors.plan import (
     ACROSS,
     AFTER_SEARCH,
     CAMERAS,
     FIXED,
     MIXED,
+    OWN,
     PLAIN,
     TOWN,
+    full_after_search_plan,
+    full_camera_plan,
     full_plan,
+    quick_camera_plan,
     quick_plan,
+    shape_of,
 )
-from studies.detectors.precision import ClassScene, average_precision, in_ring
 from studies.detectors.runs import RunFiles, run_digest, runs, seed_by_seed
 from studies.detectors.scenes import scene
 from tests.limits import HANG_S
@@ -61,15 +68,14 @@ for option in options:
         assert not end.code, (option, end.code)
 """
 TOWN_RUN = """
-from dataclasses import replace
-from studies.detectors.one_run import run_one
+from studies.detectors.training import result_of
 from studies.detectors.placements import placements
 from studies.detectors.plan import POINTS, TOWN, quick_plan
 from studies.detectors.runs import Run
 plan = quick_plan()
 counts = {"train": 4, "validation": 4, "test": 4}
-plan = replace(plan, scenes=replace(plan.scenes, counts=counts))
-print(json.dumps(run_one(plan, Run(placements(plan)[0], 1, TOWN, POINTS))))
+plan = plan.but(scenes=counts)
+print(json.dumps(result_of(plan, Run(placements(plan)[0], 1, TOWN, POINTS))))
 """
 
 
@@ -141,7 +147,7 @@ def test_points_are_in_their_pillars_and_those_of_objects_come_first(caster):
     (features, pillars), (mirrored, others) = (
         inputs([cloud], PLAN.region, [mirror]) for mirror in (NEITHER, (True, False))
     )
-    nx, ny = PLAN.region.shape
+    nx, ny = shape_of(PLAN.region)
     i, j = np.divmod(pillars[0], ny)
     x = (i + 0.5 + features[0, :, 0]) * PLAN.region.cell_m - PLAN.region.x_m
     y = (j + 0.5 + features[0, :, 1]) * PLAN.region.cell_m - PLAN.region.y_m
@@ -188,7 +194,7 @@ def test_files_of_another_plan_are_refused(tmp_path):
     assert files.missing()[0] == second and files.read() == {
         first.name: {"schema": 1, "plan": quick_plan().digest, "run": first.name, "ap": 0.5}
     }
-    other = RunFiles(tmp_path, replace(quick_plan(), digest="other"), files.all)
+    other = RunFiles(tmp_path, quick_plan().but(digest="other"), files.all)
     with pytest.raises(InputError, match="plan"):
         other.read()
     files.write(first, {"ap": 1.5})
@@ -240,18 +246,19 @@ def saved(*folders):
 def test_the_page_is_that_of_the_saved_results():
     cameras, searches = full_camera_plan(), full_after_search_plan()
     done = RunFiles(FOLDER, PLAN, runs(PLAN)).read()
-    with_cameras = seed_by_seed(cameras.study, camera_placements(cameras))
-    camera_runs = RunFiles(FOLDER / CAMERAS, cameras.study, with_cameras).read()
-    after = seed_by_seed(searches.study, searched_placements(searches, FOLDER / AFTER_SEARCH))
-    after_runs = RunFiles(FOLDER / AFTER_SEARCH, searches.study, after).read()
-    found, of_cameras, searched = saved(), saved(CAMERAS), saved(AFTER_SEARCH)
-    for results, runs_done in ((found["runs"], done), (of_cameras, camera_runs)):
+    with_cameras = seed_by_seed(cameras, camera_placements(cameras))
+    camera_runs = RunFiles(FOLDER / CAMERAS, cameras, with_cameras).read()
+    after = seed_by_seed(searches, searched_placements(searches, FOLDER / AFTER_SEARCH))
+    after_runs = RunFiles(FOLDER / AFTER_SEARCH, searches, after).read()
+    found = {name: saved(name) for name in (OWN, CAMERAS, AFTER_SEARCH)}
+    for results, runs_done in ((found[OWN]["runs"], done), (found[CAMERAS], camera_runs)):
         assert results["done"] == len(runs_done)
-    all_runs = {OWN: done, AFTER_SEARCH: after_runs, CAMERAS: camera_runs}
-    whole = Study(Plans(PLAN, cameras, searches), found, of_cameras, searched, all_runs)
+    plans = {OWN: PLAN, CAMERAS: cameras, AFTER_SEARCH: searches}
+    whole = Study(plans, found, {OWN: done, AFTER_SEARCH: after_runs, CAMERAS: camera_runs})
     outside = json.loads((FOLDER / "segmentation.json").read_text("utf-8"))
     assert (FOLDER / "README.md").read_text("utf-8") == page(whole, outside)
-    assert found["answer"] == short_answer(PLAN, found, searched, of_cameras)
+    answer = short_answer(PLAN, found[OWN], found[AFTER_SEARCH], found[CAMERAS])
+    assert found[OWN]["answer"] == answer
 
 
 def test_other_pages_give_the_answer_of_the_study_and_the_readme_in_seventy_words():
@@ -276,7 +283,7 @@ def test_other_pages_give_the_answer_of_the_study_and_the_readme_in_seventy_word
 )
 def test_results_that_are_there_are_gone_on_with_by_resume_alone(tmp_path, folder, option, told):
     run = "fixed-sedan-01-s1" if folder == "." else "cameras-sedan-01-s1"
-    plan = quick_plan() if folder == "." else quick_camera_plan().study
+    plan = quick_plan() if folder == "." else quick_camera_plan()
     path = tmp_path / folder / "runs" / f"{run}.json"
     path.parent.mkdir(parents=True)
     data = {"schema": 1, "plan": plan.digest, "run": run, "ap": 0.5}

@@ -3,7 +3,6 @@
 import importlib.util
 import json
 import shutil
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,41 +10,37 @@ import pytest
 
 import pe_core as pe
 from studies.detectors.analysis import UNDECIDED
-from studies.detectors.batches import LAYERS, voxel_inputs
-from studies.detectors.frames.analysis import (
+from studies.detectors.batches import voxel_inputs
+from studies.detectors.casting import LAYERS, FramesCaster, MovingScenes
+from studies.detectors.frames import (
     ALIKE,
     BETTER,
     MORE,
     WORSE,
     difference_verdict,
+    every_q,
     frame_scorer,
     frames_analysis,
     key_of,
+    page,
 )
-from studies.detectors.frames.moving import FramesCaster, MovingScenes
-from studies.detectors.frames.plan import (
-    frames_placements,
-    frames_runs,
-    full_frames_plan,
-    quick_frames_plan,
-)
-from studies.detectors.placements import vehicle
+from studies.detectors.placements import frames_placements, vehicle
+from studies.detectors.plan import full_frames_plan, quick_frames_plan, shape_of
+from studies.detectors.runs import frames_runs
 from studies.detectors.scenes import CLASSES
 from studies.detectors.scores import SPACE
-from studies.pages import render
 from tests.studies.conftest import study
 from tests.studies.test_detectors import in_a_process
 from tests.thorough import THOROUGH
 
 FOLDER = Path(__file__).parents[2] / "docs/validity/own/frames"
-PAGE = Path(__file__).parents[2] / "studies/detectors/frames"
 DIGEST = "013db2ab2a2f4774"
 """Of the plan as it was before its first run."""
 
 
 def test_the_plan_is_the_one_before_the_first_run():
     plan = full_frames_plan()
-    assert plan.study.digest == DIGEST
+    assert plan.digest == DIGEST
     names = [run.name for run in frames_runs(plan)]
     assert len(set(names)) == 48 and names[0] == "frames-sedan-01-s1"
     assert all(name.endswith("-s1") for name in names[:24])
@@ -54,7 +49,7 @@ def test_the_plan_is_the_one_before_the_first_run():
 def test_bodies_move_at_the_speed_of_their_class_and_the_vehicle_drives_on():
     plan = full_frames_plan()
     scenes = MovingScenes(plan)
-    first, last = (scenes(plan.study, "sedan", "test", "", 5 * 3 + k) for k in (0, 4))
+    first, last = (scenes(plan, "sedan", "test", "", 5 * 3 + k) for k in (0, 4))
     moving = scenes.moving("sedan", "test", 3)
     assert last.centers == pytest.approx(moving.objects.feet[:, :2])
     own = moving.own_speed * np.array([0.4, 0.0])
@@ -63,19 +58,19 @@ def test_bodies_move_at_the_speed_of_their_class_and_the_vehicle_drives_on():
     names = np.array(moving.objects.names)
     assert (speeds[names == "cone"] == 0.0).all() and 1.0 < speeds.max() <= 20.0
     coming = (moving.objects.yaws == 0.0) & (speeds > 0.0)
-    left = moving.objects.feet[coming, 1] > plan.motion.oncoming_y_m
+    left = moving.objects.feet[coming, 1] > plan.frames.motion.oncoming_y_m
     assert ((moving.velocities[coming, 0] < 0.0) == left).all()
 
 
 def test_points_of_what_stands_fall_on_it_in_all_frames():
     """Own motion is taken out: at rest in the world, the wall is where it is in each frame."""
     plan = full_frames_plan()
-    still = replace(plan, motion=replace(plan.motion, moving=dict.fromkeys(plan.motion.moving, 0)))
+    still = plan.but(frames={"motion": {"moving": dict.fromkeys(plan.frames.motion.moving, 0)}})
     caster = FramesCaster(still, frames_placements(plan)[1])
     one, five = caster.voxels("train", 2)
-    nx, ny = plan.study.region.shape
-    both = voxel_inputs([five], plan.study.region, [(False, False)])[0]
-    alone = voxel_inputs([one], plan.study.region, [(False, False)])[0]
+    nx, ny = shape_of(plan.region)
+    both = voxel_inputs([five], plan.region, [(False, False)])[0]
+    alone = voxel_inputs([one], plan.region, [(False, False)])[0]
     assert both.shape == (nx, ny, 2 * LAYERS) and (both[..., :LAYERS] == alone).all()
     assert (five.beams >= one.beams).all() and five.beams.sum() > 3 * one.beams.sum()
     # above the ground, what the last frame saw the earlier ones saw near by
@@ -112,10 +107,8 @@ def made_up_results(plan, score_of):
 
 
 def test_figures_come_when_all_runs_are_there():
-    full = full_frames_plan()
-    rule = replace(full.study.statistics, permutations=199, resamples=200)
-    plan = replace(full, study=replace(full.study, statistics=rule))
-    keys = [key_of(q) for q in (np.inf, plan.q, *plan.other_q)]
+    plan = full_frames_plan().but(statistics={"permutations": 199, "resamples": 200})
+    keys = [key_of(q) for q in every_q(plan)]
     rng = np.random.default_rng(1)
 
     def score_of(k):
@@ -130,14 +123,14 @@ def test_figures_come_when_all_runs_are_there():
     assert found["minus_one"][key_of(1.0)]["verdict"] == BETTER
     assert found["gain"]["verdict"] == MORE
     assert found["converged"] == [48, 0]
-    page = render(PAGE, {"plan": plan, "found": found, "title": "# T"})
-    assert "ranks better than that of one frame" in page and "nan" not in page
+    text = page(plan, found)
+    assert "ranks better than that of one frame" in text and "nan" not in text
 
 
 def test_one_frame_and_infinite_noise_are_the_papers_entropy():
     plan = quick_frames_plan()
     placement = frames_placements(plan)[0]
-    scored = frame_scorer(plan)(plan.study, "sedan", placement.rig())
+    scored = frame_scorer(plan)(plan, "sedan", placement.rig())
     assert scored[key_of(10.0)] < scored[key_of(np.inf)]
     assert scored[key_of(0.1)] < scored[key_of(1.0)] < scored[key_of(10.0)]
     paper = pe.Evaluator(SPACE, pe.Prior.road(), vehicle("sedan")).entropy(placement.rig())

@@ -2,16 +2,18 @@
 
 import itertools
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from studies.detectors.analysis import HOLDS, OPEN, REFUTED, UNDECIDED, analysis, step_title
-from studies.detectors.findings import statements
+from studies.detectors.page import ANSWERS
 from studies.detectors.placements import placements
-from studies.detectors.plan import FIXED, full_plan
-from studies.detectors.rank_tests import (
+from studies.detectors.plan import FIXED, full_plan, rings_of
+from studies.detectors.runs import runs
+from studies.detectors.scores import PRIMARY
+from studies.pages import sentence
+from studies.ranks import (
     PlacementSamples,
     interval,
     ordered_share,
@@ -19,10 +21,8 @@ from studies.detectors.rank_tests import (
     permutation_p,
     rho_within,
 )
-from studies.detectors.runs import runs
-from studies.detectors.scores import PRIMARY
 
-RULE = replace(full_plan().statistics, permutations=9_999, resamples=500)
+RULE = full_plan().statistics.but(permutations=9_999, resamples=500)
 
 
 def samples_of(aps, groups=None):
@@ -119,7 +119,7 @@ def made_up(plan, missing=0):
     for run in runs(plan)[: len(runs(plan)) - missing]:
         tested = {n: {"ap": ap(n), "trained_with": n.startswith("mixed")} for n in chosen}
         found = ap(run.placement.name if run.placement else "fixed-sedan-01")
-        by_ring = {ring: {"car": found, "truck": found} for ring in plan.precision.rings}
+        by_ring = {ring: {"car": found, "truck": found} for ring in rings_of(plan)}
         done[run.name] = (
             {"ap": found, "by_ring": by_ring} if run.placement else {"placements": tested}
         )
@@ -138,7 +138,7 @@ def made_up(plan, missing=0):
 
 
 def test_verdicts_follow_from_whole_designs_alone():
-    plan = replace(full_plan(), statistics=replace(RULE, permutations=499, resamples=60))
+    plan = full_plan().but(statistics=RULE.but(permutations=499, resamples=60))
     whole = analysis(plan, *made_up(plan))
     verdicts = [row["verdict"] for row in whole["statements"]]
     assert verdicts[:3] == [HOLDS, HOLDS, HOLDS] and verdicts[5] == REFUTED
@@ -154,7 +154,7 @@ def test_verdicts_follow_from_whole_designs_alone():
 
 
 def test_a_step_decides_nothing_and_marks_the_statements_whose_sign_it_changes():
-    plan = replace(full_plan(), statistics=replace(RULE, permutations=99, resamples=60))
+    plan = full_plan().but(statistics=RULE.but(permutations=99, resamples=60))
     done, scores = made_up(plan)
     plain = analysis(plan, done, scores)
     for name, result in done.items():
@@ -170,13 +170,14 @@ def test_a_step_decides_nothing_and_marks_the_statements_whose_sign_it_changes()
     assert step["order"]["rho"] == pytest.approx(-1.0) and step["placements"] == 12
     row = step["scores"][PRIMARY]
     assert row["rho"] == pytest.approx(-1.0) and row["plain"]["rho"] == pytest.approx(1.0)
-    assert statements(turned)[0][-1] == f"holds; sign changes: {title}"
+    told = sentence(ANSWERS, "verdict_of", turned["statements"][0])
+    assert told == f"holds; sign changes: {title}"
 
 
 @pytest.mark.parametrize(("sign", "verdict"), [(0.0, UNDECIDED), (-1.0, REFUTED)])
 def test_a_sign_that_is_left_open_refutes_nothing(sign, verdict):
     """The better half has its AP at random, or against the score."""
-    plan = replace(full_plan(), statistics=replace(RULE, permutations=99, resamples=150))
+    plan = full_plan().but(statistics=RULE.but(permutations=99, resamples=150))
     done, scores = made_up(plan)
     best = max(found["ap"] for name, found in done.items() if name.startswith("fixed"))
     rng = np.random.default_rng(11)

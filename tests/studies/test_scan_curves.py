@@ -2,7 +2,6 @@
 
 import json
 import tomllib
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,16 +10,22 @@ import pe_core as engine
 from pe_core.scoring.targets import ObjectEvaluator, TargetRule
 from pe_core.sensors import scan_curves as scan_file
 from pe_core.sensors.perception import FILE
-from studies.detectors.curve_file import curves_text, date_of
 from studies.detectors.placements import placements, vehicle
 from studies.detectors.plan import FIXED, PLAIN, full_plan
 from studies.detectors.runs import runs
-from studies.detectors.scan_curves import BeamCounts, beam_counts, fitted_curve, scan_curves
+from studies.detectors.scan_curves import (
+    BeamCounts,
+    beam_counts,
+    curves_text,
+    date_of,
+    fitted_curve,
+    scan_curves,
+)
 from studies.detectors.scenes import CLASSES
 from tests.studies.conftest import ROOT
 
 PLAN = full_plan()
-FEW = replace(PLAN, statistics=replace(PLAN.statistics, scenes=16, resamples=20))
+FEW = PLAN.but(statistics={"scenes": 16, "resamples": 20})
 TRUE = engine.ApCurve(0.12, 0.1)
 
 

@@ -1,7 +1,6 @@
 """The second plan: new placements, equal m, rows and columns, real layouts, searches."""
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,13 +10,23 @@ import pe_core as pe
 from pe_core import InputError, catalog
 from pe_core.scene.objects import Objects
 from pe_core.sensors.kernels import ObjectView
-from studies.detectors.after_search.plan import START
-from studies.detectors.after_search.searches import placement_of
+from studies.detectors.after_search import START, on_roofs, placement_of, whats_of
 from studies.detectors.analysis import HOLDS, REFUTED, UNDECIDED
-from studies.detectors.placements import placements
-from studies.detectors.plan import FIXED, full_plan
+from studies.detectors.placements import arm_placements, good_placements, placements
+from studies.detectors.plan import (
+    EQUAL_M,
+    FIXED,
+    GOOD,
+    LAYOUTS,
+    SEARCHES,
+    full_plan,
+    full_second_plan,
+    quick_second_plan,
+    rings_of,
+)
+from studies.detectors.runs import parts_of
 from studies.detectors.scan_curves import counts_of
-from studies.detectors.scenes import NOBODY
+from studies.detectors.scenes import NOBODY, Layouts
 from studies.detectors.scores import COVERAGE, PRIMARY
 from studies.detectors.second.analysis import BEYOND, FINDS_MORE, second_analysis
 from studies.detectors.second.law import (
@@ -28,18 +37,6 @@ from studies.detectors.second.law import (
     published_law,
     rows_and_beams,
     weighted,
-)
-from studies.detectors.second.layouts import LAYOUTS, Layouts
-from studies.detectors.second.plan import (
-    EQUAL_M,
-    GOOD,
-    SEARCHES,
-    arm_placements,
-    full_second_plan,
-    good_placements,
-    parts_of,
-    quick_second_plan,
-    second_runs,
 )
 from tests.studies.test_detectors import in_a_process
 from tests.studies.test_road import write_log
@@ -56,8 +53,8 @@ def test_the_good_placements_see_all_round_and_are_new():
     assert len(good) == 96 and all(p.all_round for p in good)
     known = {p.poses for p in placements(full_plan()) if p.design == FIXED}
     assert not known & {p.poses for p in good}
-    assert plan.study.digest == DIGEST
-    names = [run.name for run in second_runs(plan)]
+    assert plan.digest == DIGEST
+    names = [run.name for run in main_runs(plan)]
     assert len(names) == len(set(names)) == 36 + 192
     assert names[0] == "equal-m-16-sedan-01-s1" and names[36] == "good-sedan-01-s1"
 
@@ -72,7 +69,7 @@ def test_arms_have_equal_beams_at_equal_poses():
         by_pose.setdefault(p.poses, []).append(p.rig().sensors[0].model.name)
     assert len(by_pose) == 4
     assert all(n == ["16 x 1800", "32 x 900", "64 x 450"] for n in by_pose.values())
-    assert len(second_runs(quick_second_plan())) == 4
+    assert len(main_runs(quick_second_plan())) == 4
 
 
 def test_w_of_made_up_scans_is_found():
@@ -129,14 +126,19 @@ def test_saved_forecast_follows_from_its_errors():
     assert found["across"]["mean"] == of_mean_ap(found["across"]["classes"], full_plan())
 
 
+def main_runs(plan):
+    parts = parts_of(plan)
+    return parts[EQUAL_M] + parts[GOOD]
+
+
 def parts(plan):
     """Return the runs of each part, as if each search had ended where it starts."""
-    searches = plan.searches
+    roofs = on_roofs(plan)
     found = [
-        placement_of(rig, what, rig.poses, seed)
-        for rig in searches.rigs
-        for what in searches.whats
-        for seed in (searches.search_seeds if what != START else [None])
+        placement_of(roofs, name, what, rig.poses, seed)
+        for name, rig in roofs.searches.rigs.items()
+        for what in whats_of(roofs)
+        for seed in (roofs.searches.seeds if what != START else [None])
     ]
     return parts_of(plan, found)
 
@@ -149,7 +151,7 @@ def made_up(plan, gain, noise=0.002, far=0.1):
     rng = np.random.default_rng(5)
     quality = {p.name: rng.normal() for p in good_placements(plan)}
     results = {}
-    for run in second_runs(plan):
+    for run in main_runs(plan):
         rows = len(run.placement.lidar.elevations) if run.placement.lidar else 16
         ap = 0.7 + gain * np.log2(rows / 16) + 0.02 * quality.get(run.placement.name, 0.0)
         results[run.name] = {"ap": ap + noise * rng.normal()}
@@ -157,7 +159,7 @@ def made_up(plan, gain, noise=0.002, far=0.1):
         ap = {name: 0.5 + 0.02 * q + noise * rng.normal() for name, q in quality.items()}
         found = {name: {"ap": v, "trained_with": False} for name, v in ap.items()}
         results[run.name] = {"placements": found}
-    near, *others = plan.study.precision.rings
+    near, *others = rings_of(plan)
     for run in parts(plan)[SEARCHES]:
         ap = 0.6 + far * ("expected-ap" in run.name) + noise * rng.normal()
         rings = {near: {"car": 0.6}} | {ring: {"car": ap} for ring in others}
@@ -175,8 +177,7 @@ def made_up(plan, gain, noise=0.002, far=0.1):
 
 
 def quickly(plan):
-    rule = replace(plan.study.statistics, permutations=999, resamples=300)
-    return replace(plan, study=replace(plan.study, statistics=rule))
+    return plan.but(statistics={"permutations": 999, "resamples": 300})
 
 
 def test_verdicts_of_made_up_runs():
@@ -214,7 +215,7 @@ def rows_of_a_log():
 
 def test_real_layouts_are_every_twentieth_frame_with_feet_on_the_ground(tmp_path):
     write_log(tmp_path / "one", rows_of_a_log())
-    layouts, plan = Layouts(tmp_path), full_second_plan().study
+    layouts, plan = Layouts(tmp_path), full_second_plan()
     assert len(layouts) == 3
     scenes = [layouts(plan, "sedan", "test", LAYOUTS, k) for k in range(3)]
     assert [s.labels.tolist() for s in scenes] == [[0], [0, 1], [0]], "one car meets the vehicle"

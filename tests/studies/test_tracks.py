@@ -10,19 +10,10 @@ from pe_core.metric.entropy import BLIND_PRECISION
 from pe_core.scene.objects import Objects
 from studies.pages import PAGE
 from studies.road.logs import CLASSES, Log
+from studies.road.statistics import HOLDS, OPEN, REFUTED
 from studies.tracks import __main__ as study
 from studies.tracks import order
-from studies.tracks.moments import (
-    HOLDS,
-    OPEN,
-    REFUTED,
-    Moments,
-    compared,
-    pairs_of,
-    persistence,
-    tracks_of,
-    verdict,
-)
+from studies.tracks.moments import Moments, compared, pairs_of, persistence, tracks_of, verdict
 
 FOLDER = Path(__file__).parents[2] / "docs/validity/tracks"
 

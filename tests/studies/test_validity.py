@@ -9,8 +9,7 @@ import pytest
 from studies.published import correlations, scores
 from studies.published.__main__ import page, read_results
 from studies.published.correlations import ValidityResults, comparisons
-from studies.published.published import CLEAN, DEGREES, RADIANS, paper_of, papers
-from studies.published.scores import box_triangles
+from studies.published.scores import CLEAN, DEGREES, RADIANS, box_triangles, paper_of, papers
 from studies.published.tasks import QUICK, plan
 from tests.studies.conftest import ROOT, study
 

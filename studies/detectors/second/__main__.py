@@ -10,51 +10,34 @@ from pe_tools import prepare_folder
 from pe_tools.cli import DONE, Answer
 
 from ...command import main, page_parser
+from ...ranks import MIN_GROUP
 from ...results_file import RESULTS, Json, print_progress
-from ..after_search.searches import searched_placements
-from ..rank_tests import MIN_GROUP
-from ..runs import Run, RunFiles, add_run_options, do_runs
+from ..after_search import on_roofs, searched_placements
+from ..placements import good_placements
+from ..plan import EQUAL_M, GOOD, LAYOUTS, SEARCHES, SECOND, full_second_plan, quick_second_plan
+from ..runs import RunFiles, add_run_options, do_runs, parts_of
+from ..scenes import Layouts
 from ..scores import placement_scores
 from .analysis import second_analysis
-from .layouts import LAYOUTS, Layouts
-from .plan import (
-    EQUAL_M,
-    GOOD,
-    SEARCHES,
-    SECOND,
-    full_second_plan,
-    good_placements,
-    parts_of,
-    quick_second_plan,
-)
 
 
 def validate_second(args: argparse.Namespace, folder: Path) -> Answer:
     """Do the runs that are asked for; return how many are done."""
     plan = quick_second_plan() if args.quick else full_second_plan()
-    folder, good = prepare_folder(folder), good_placements(plan)
+    folder = prepare_folder(folder)
     report = print_progress if args.searches and not args.page_only else None
-    searched = searched_placements(plan.searches, folder, report)
-    parts = parts_of(plan, searched)
+    parts = parts_of(plan, searched_placements(on_roofs(plan), folder, report))
     layouts = Layouts(Path(args.layouts)) if args.layouts else None
-
-    def result_of(run: Run) -> Json:
-        from ..one_run import run_layouts, run_one  # TensorFlow is loaded when a run is missing
-
-        if layouts is not None:
-            return run_layouts(plan.study, run, good, len(layouts), layouts)
-        return run_one(plan.searches.study if args.searches else plan.study, run)
-
     wanted = parts[EQUAL_M] + parts[GOOD]
     if layouts or args.searches:
         wanted = parts[LAYOUTS if layouts else SEARCHES]
-    do_runs(args, RunFiles(folder, plan.study, wanted), result_of)
-    results = RunFiles(folder, plan.study, [run for runs in parts.values() for run in runs]).read()
+    do_runs(args, RunFiles(folder, on_roofs(plan) if args.searches else plan, wanted), layouts)
+    results = RunFiles(folder, plan, [run for runs in parts.values() for run in runs]).read()
     scores = dict[str, Json]()
-    ranked = [parts[name] for name in (GOOD, LAYOUTS) if plan.good["each"] >= MIN_GROUP]
+    ranked = [parts[name] for name in (GOOD, LAYOUTS) if plan.second.good.each >= MIN_GROUP]
     if any(all(run.name in results for run in part) for part in ranked):
-        rigs = [(placement, placement.rig()) for placement in good]
-        scores = placement_scores(plan.study, rigs, folder, print_progress)
+        rigs = [(placement, placement.rig()) for placement in good_placements(plan)]
+        scores = placement_scores(plan, rigs, folder, print_progress)
     found = second_analysis(plan, parts, results, scores)
     write_bytes(folder / RESULTS, dump_json(found).encode())
     return dump_json(found) if args.json else _summary(found), DONE

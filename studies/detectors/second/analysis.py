@@ -5,31 +5,24 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...ranks import holm
+from pe_core.base import Floats
+
+from ...ranks import PlacementSamples, holm, student_interval
 from ...results_file import Json
-from ..analysis import HOLDS, REFUTED, UNDECIDED, Results, mean_ap_in, of_mixed, of_runs
-from ..rank_tests import (
-    PlacementSamples,
-    bca_interval,
-    partial_rho,
-    permutation_p,
-    permutation_p_beyond,
-    rho_within,
-    student_interval,
-)
-from ..runs import Run
+from ..after_search import on_roofs, placement_name
+from ..analysis import HOLDS, REFUTED, UNDECIDED, Results, mean_ap_in, of_mixed, of_runs, rank_of
+from ..placements import arm_lidar, good_placements
+from ..plan import EQUAL_M, GOOD, LAYOUTS, SEARCHES, Plan, rings_of
+from ..runs import Run, parts_of
 from ..scores import COVERAGE, EXPECTED_AP, PRIMARY
-from .layouts import LAYOUTS
-from .plan import EQUAL_M, GOOD, SEARCHES, SecondPlan, arm_lidar, good_placements, layout_runs
 
 BEYOND = "perception entropy beyond coverage"
 FINDS_MORE = {-1: "entropy finds more", 1: "expected AP finds more"}
 
 
 def second_analysis(
-    plan: SecondPlan, parts: Mapping[str, Sequence[Run]], results: Results, scores: Results
+    plan: Plan, parts: Mapping[str, Sequence[Run]], results: Results, scores: Results
 ) -> Json:
     """Return the runs done and planned, and of each part that is done its figures and verdicts.
 
@@ -40,14 +33,13 @@ def second_analysis(
         EQUAL_M: lambda: _arms(plan, parts[EQUAL_M], results),
         GOOD: lambda: _good(plan, parts[GOOD], results, scores),
         LAYOUTS: lambda: _layouts(plan, results, scores),
-        SEARCHES: lambda: _searches(plan, results),
+        SEARCHES: lambda: _searches(on_roofs(plan), results),
     }
     done = {name: sum(run.name in results for run in parts[name]) for name in parts}
-    rig_runs = len(plan.searches.study.training.seeds) * (
-        1 + len(plan.searches.objectives) * len(plan.searches.search_seeds)
-    )
+    rule = plan.searches
+    rig_runs = len(plan.searched_seeds) * (1 + len(rule.objectives) * len(rule.seeds))
     planned = {name: len(parts[name]) for name in parts}
-    planned[SEARCHES] = len(plan.searches.rigs) * rig_runs
+    planned[SEARCHES] = rule.count * rig_runs
     found: Json = {"parts": {name: [done[name], planned[name]] for name in parts}}
     for name, conclusion in conclusions.items():
         known = done[name] == planned[name] and (scores or name in (EQUAL_M, SEARCHES))
@@ -62,11 +54,11 @@ def tie_verdict(low: float, high: float, tie: float) -> str:
     return REFUTED if low > tie or high < -tie else UNDECIDED
 
 
-def _arms(plan: SecondPlan, runs: Sequence[Run], results: Results) -> Json:
+def _arms(plan: Plan, runs: Sequence[Run], results: Results) -> Json:
     """Return AP by rows, and the differences from the first arm with their intervals."""
-    rows, aps = plan.equal_m["rows"], {}
+    rows, aps = plan.second.equal_m.rows, {}
     for count in rows:
-        lidar = arm_lidar(plan, count)
+        lidar = arm_lidar(plan.second.equal_m, count)
         own = [run for run in runs if run.placement and run.placement.lidar is lidar]
         aps[count] = of_runs(EQUAL_M, own, results).samples.ap
     found: Json = {"ap": {str(n): ap.round(4).tolist() for n, ap in aps.items()}, "minus_first": {}}
@@ -76,12 +68,12 @@ def _arms(plan: SecondPlan, runs: Sequence[Run], results: Results) -> Json:
         found["minus_first"][str(count)] = {
             "mean": round(float(less.mean()), 4),
             "interval": [round(low, 4), round(high, 4)],
-            "tie": tie_verdict(low, high, plan.equal_m["tie_ap"]),
+            "tie": tie_verdict(low, high, plan.second.equal_m.tie_ap),
         }
     return found
 
 
-def _good(plan: SecondPlan, runs: Sequence[Run], results: Results, scores: Results) -> Json:
+def _good(plan: Plan, runs: Sequence[Run], results: Results, scores: Results) -> Json:
     """Return rho of each figure with the AP of the last seed, in the half chosen by the first."""
     whole = of_runs(GOOD, runs, results)
     index, half = whole.samples.better_half()
@@ -92,9 +84,9 @@ def _good(plan: SecondPlan, runs: Sequence[Run], results: Results, scores: Resul
     }
 
 
-def _layouts(plan: SecondPlan, results: Results, scores: Results) -> Json:
+def _layouts(plan: Plan, results: Results, scores: Results) -> Json:
     """Return rho of each figure with the AP in real layouts, over all placements."""
-    whole = of_mixed(LAYOUTS, layout_runs(plan), good_placements(plan), results)
+    whole = of_mixed(LAYOUTS, parts_of(plan)[LAYOUTS], good_placements(plan), results)
     ap = whole.samples.ap
     return {
         "ap": [round(float(v), 4) for v in (ap.min(), np.median(ap), ap.max())],
@@ -103,44 +95,33 @@ def _layouts(plan: SecondPlan, results: Results, scores: Results) -> Json:
     }
 
 
-def _figures(
-    plan: SecondPlan, value: Mapping[str, NDArray[np.float64]], samples: PlacementSamples
-) -> Json:
+def _figures(plan: Plan, value: Mapping[str, Floats], samples: PlacementSamples) -> Json:
     """Return rho, interval, p and verdict of each figure, values (P,) by score."""
-    rule, seed = plan.study.statistics, plan.study.seed
-    found, coverage, p_values = dict[str, Json](), value[COVERAGE], {}
-    for name in (PRIMARY, EXPECTED_AP, COVERAGE):
-        rho = float(rho_within(value[name], samples.ap, samples.members))
-        interval, _ = bca_interval(value[name], samples, rule, seed)
-        p_values[name] = permutation_p(value[name], samples, rule, seed)
-        found[name] = {"rho": rho, "interval": interval}
-    rho = float(partial_rho(value[PRIMARY], samples.ap, coverage, samples.members))
-    interval, _ = bca_interval(value[PRIMARY], samples, rule, seed, coverage)
-    p_values[BEYOND] = permutation_p_beyond(value[PRIMARY], coverage, samples, rule, seed)
-    found[BEYOND] = {"rho": rho, "interval": interval}
-    for (name, p), corrected in zip(p_values.items(), holm(list(p_values.values())), strict=True):
-        found[name] |= {"p": p, "p_holm": corrected}
-        found[name]["verdict"] = rank_verdict(found[name], rule.alpha, plan.good["useful_rho"])
+    found = {n: rank_of(plan, samples, value[n]) for n in (PRIMARY, EXPECTED_AP, COVERAGE)}
+    found[BEYOND] = rank_of(plan, samples, value[PRIMARY], value[COVERAGE])
+    for row, p in zip(found.values(), holm([r["p"] for r in found.values()]), strict=True):
+        row["p_holm"] = p
+        row["verdict"] = rank_verdict(row, plan.statistics.alpha, plan.second.good.useful_rho)
     return found
 
 
-def _searches(plan: SecondPlan, results: Results) -> Json:
+def _searches(plan: Plan, results: Results) -> Json:
     """Return by ring the AP after searches by expected AP minus that after those by entropy."""
-    searches, found = plan.searches, dict[str, Json]()
-    entropy, expected_ap = searches.objectives
-    for ring in plan.study.precision.rings:
+    found = dict[str, Json]()
+    entropy, expected_ap = plan.searches.objectives
+    for ring in rings_of(plan):
         by_rig = {}
-        for rig in searches.rigs:
+        for rig in plan.searches.rigs:
             after = {
                 objective: [
-                    mean_ap_in(ring)(results[f"{rig.placement_name(objective, seed)}-s{own}"])
-                    for seed in searches.search_seeds
-                    for own in searches.study.training.seeds
+                    mean_ap_in(ring)(results[f"{placement_name(rig, objective, seed)}-s{own}"])
+                    for seed in plan.searches.seeds
+                    for own in plan.training.seeds
                 ]
-                for objective in searches.objectives
+                for objective in plan.searches.objectives
             }
             less = float(np.mean(after[expected_ap]) - np.mean(after[entropy]))
-            by_rig[rig.name] = round(less, 4)
+            by_rig[rig] = round(less, 4)
         found[ring] = _over_rigs(list(by_rig.values())) | {"by_rig": by_rig}
     return {"minus_entropy": found}
 

@@ -12,10 +12,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 import pe_core as pe
-from pe_core.base import dump_json, write_bytes
+from pe_core.base import Floats, Ints, dump_json, write_bytes
 from pe_core.sensors.kernels import ObjectView
 from pe_core.sensors.lidar.definition import first_of_scene
 from pe_core.sensors.lidar.kernel_objects import LidarObjects
@@ -24,15 +23,12 @@ from pe_tools.cli import DONE, Answer, Parser
 
 from ...command import main
 from ...results_file import Json, print_progress
-from ..analysis import HOLDS, REFUTED, UNDECIDED, ApOf, of_runs, plain_design
+from ..analysis import HOLDS, REFUTED, UNDECIDED, mean_ap_of, of_runs, plain_design
 from ..placements import Placement, vehicle
-from ..plan import ACROSS, FIXED, StudyPlan, full_plan
-from ..runs import RunFiles, runs
+from ..plan import ACROSS, EQUAL_M, FIXED, SECOND, Plan, full_plan, full_second_plan
+from ..runs import RunFiles, parts_of, runs
 from ..scan_curves import BeamCounts, counts_of, fitted_curve
 from ..scores import scored_objects
-from .plan import EQUAL_M, SECOND, SecondPlan, full_second_plan, second_runs
-
-Floats = NDArray[np.float64]
 
 OWN = "docs/validity/own"
 PUBLISHED = {
@@ -117,7 +113,7 @@ def weighted(rows: Floats, beams: Floats, w: float) -> Floats:
 
 
 def weighted_counts(
-    plan: StudyPlan, chosen: Sequence[Placement], ws: Sequence[float]
+    plan: Plan, chosen: Sequence[Placement], ws: Sequence[float]
 ) -> list[dict[str, BeamCounts]]:
     """Return for each w the m_w on the objects of the shipped score's scenes, by class."""
     found: list[dict[str, list[tuple[Floats, Floats]]]] = [{} for _ in ws]
@@ -134,7 +130,7 @@ def weighted_counts(
     return [{name: counts_of(rows) for name, rows in own.items()} for own in found]
 
 
-def forecast(plan: StudyPlan, folder: Path, w: float) -> Json:
+def forecast(plan: Plan, folder: Path, w: float) -> Json:
     """Return the RMSE of the AP of *across*, forecast by curves that are fitted to *fixed*."""
     results = RunFiles(folder, plan, runs(plan)).read()
     whole = plain_design(plan, [FIXED, ACROSS], results)
@@ -151,24 +147,24 @@ def forecast(plan: StudyPlan, folder: Path, w: float) -> Json:
     return {**data, "mean": of_mean_ap(data["classes"], plan)}
 
 
-def arms(plan: SecondPlan, folder: Path, w: float) -> Json | None:
+def arms(plan: Plan, folder: Path, w: float) -> Json | None:
     """Return the forecast of the arms of part 2 from those with the fewest rows; None while open.
 
     m_w is better when its RMSE of AP by class is lower for each of the other arms, and refuted when
     it is higher for each.
     """
-    wanted = [run for run in second_runs(plan) if run.design == EQUAL_M]
-    results = RunFiles(folder, plan.study, wanted).read()
+    wanted = parts_of(plan)[EQUAL_M]
+    results = RunFiles(folder, plan, wanted).read()
     if len(results) < len(wanted):
         return None
     chosen = of_runs(EQUAL_M, wanted, results).chosen
-    by_w = weighted_counts(plan.study, chosen, (PAPER_W, w))
+    by_w = weighted_counts(plan, chosen, (PAPER_W, w))
     aps = {name: of_runs(EQUAL_M, wanted, results, mean_ap_of(name)).samples.ap for name in by_w[0]}
     return judged_arms(plan, chosen, by_w, aps)
 
 
 def judged_arms(
-    plan: SecondPlan,
+    plan: Plan,
     chosen: Sequence[Placement],
     by_w: Sequence[Mapping[str, BeamCounts]],
     aps: Mapping[str, Floats],
@@ -177,7 +173,7 @@ def judged_arms(
 
     `by_w` has the counts with both, `aps` (P,) the AP found, by class.
     """
-    first, *others = plan.equal_m["rows"]
+    first, *others = plan.second.equal_m.rows
     arm = np.array([0 if p.lidar is None else len(p.lidar.elevations) for p in chosen])
     found: Json = {"rows": {}}
     for rows in others:
@@ -192,16 +188,8 @@ def judged_arms(
     return found
 
 
-def mean_ap_of(name: str) -> ApOf:
-    """Return what takes the AP of a class from what a run has found."""
-    return lambda found: float(found["by_class"][name])
-
-
 def by_class(
-    by_w: Sequence[Mapping[str, BeamCounts]],
-    aps: Mapping[str, Floats],
-    fitted: NDArray[np.int64],
-    judged: NDArray[np.int64],
+    by_w: Sequence[Mapping[str, BeamCounts]], aps: Mapping[str, Floats], fitted: Ints, judged: Ints
 ) -> Json:
     """Return by class the curves that are fitted to some placements, and the errors at others."""
     found: Json = {}
@@ -219,7 +207,7 @@ def by_class(
     return found
 
 
-def of_mean_ap(classes: Json, plan: StudyPlan) -> Json:
+def of_mean_ap(classes: Json, plan: Plan) -> Json:
     """Return the RMSE of mean AP by paper and m_w, and their difference with its interval.
 
     Percentiles of bootstraps over the placements, 95 %.

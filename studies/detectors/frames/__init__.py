@@ -1,4 +1,0 @@
-"""``python -m studies.detectors.frames``: a detector with one frame and with several, in motion.
-
-`plan` has what was fixed beforehand, `moving` the scenes, `analysis` the verdicts.
-"""

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from ..plotting import BLUE, GREY, ORANGE, pyplot, remove_frame, save_plot, styled
 from .analysis import DesignResults, Results, design_of_cameras, designs_of
-from .page import OWN, Study, plot_name
+from .page import Study, plot_name
 from .pictures import Renderer
-from .plan import CAMERAS, Plan
+from .plan import CAMERAS, OWN, Plan
 from .scores import COMPARED, EXPECTED_AP, HEIGHT, PRIMARY
 
 plt = pyplot()

@@ -163,7 +163,12 @@ BASE = ScoreChoice()
 def variants(all_variants: bool) -> Iterator[ScoreChoice]:
     """Yield `BASE`, and with `all_variants` all choices that differ from it in one value."""
     yield BASE
-    others = {"body": BODIES, "density": DENSITIES, "curves": CURVES, "part": PARTS}
+    others: dict[str, tuple[Any, ...]] = {
+        "body": BODIES,
+        "density": DENSITIES,
+        "curves": CURVES,
+        "part": PARTS,
+    }
     for key, values in others.items() if all_variants else ():
         yield from (replace(BASE, **{key: value}) for value in values[1:])
 

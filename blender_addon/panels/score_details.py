@@ -64,8 +64,9 @@ def draw_offers(
     for number, each in enumerate(found.found):
         text, lines = each.sentence, layout.column()
         draw_sentence(lines, context, text[:1].upper() + text[1:], "GHOST_ENABLED")
-        done = "Add It" if each.added else "Move It"
-        lines.operator("pe.take_suggestion", text=done, icon="CHECKMARK").number = number
+        lines.operator(
+            "pe.take_suggestion", text="Add It" if each.added else "Move It", icon="CHECKMARK"
+        ).number = number
 
 
 PART_SHARE, NARROW_PART_SHARE = 0.5, 0.3

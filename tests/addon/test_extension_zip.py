@@ -17,6 +17,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SEDAN = ROOT / "blend_assets" / "sedan.blend"
 
 INSTALL_AND_SCORE = """
+import os
 import pathlib
 import sys
 import bpy
@@ -35,6 +36,8 @@ assert bpy.ops.pe.score() == {"FINISHED"}
 bpy.ops.pe.export_study(filepath=study)
 print("scored", settings.result_json)
 bpy.ops.preferences.addon_disable(module="bl_ext.user_default.perception_entropy")
+sys.stdout.flush()
+os._exit(0)  # bpy's own threads may wait for each other for ever while Python ends
 """
 
 

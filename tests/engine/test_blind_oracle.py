@@ -158,7 +158,7 @@ class BlindMap:
         body = body_rectangle(vehicle)
         cells = GroundCells.of(SPACE, blind_ground.STEP_M, widened(body, WITHIN_M))
         look = blind_ground.BlindSearch.of(cells, height, vehicle, {})
-        self.blind, _ = look.blind(rig, False)
+        self.blind = look.blind(rig)
         own = look.own[look.margin : -look.margin, look.margin : -look.margin]
         self.near_own = dilated(own, squares_touching(blind_ground.PARTLY_VISIBLE))
         self.own, self.cells = own, cells

@@ -18,8 +18,8 @@ PAGES = {
 }
 """Pages that stand beside the code, and where the site has them."""
 FILES = {
-    "studies/detectors/plan.toml": "validity/own/plan.toml",
-    "studies/detectors/cameras/plan.toml": "validity/own/cameras/plan.toml",
+    f"studies/detectors/plans/{plan}.toml": f"validity/own/plans/{plan}.toml"
+    for plan in ("lidars", "cameras", "after_search", "second", "frames")
 }
 """Other files outside of docs/ that pages link to, and where the site has them."""
 _LINK = re.compile(r"\[([^][]*)\]\(([^)\s#]+)(#[^)\s]*)?\)")

@@ -46,7 +46,7 @@ SHOWN = {
 """The projects, and the requirement whose plan is on the page, before and after."""
 PICTURE_PX = (960, 480)
 DECIDED, FIGURES, RESULT = "decided.toml", "figures.json", "review.html"
-BLIND_HEIGHT_M, CLASS = 0.5, "pedestrian"
+CLASS = "pedestrian"
 MARK = re.compile(r"(<!--=([\w., ]+)-->)(.*?)(<!--/-->)", re.DOTALL)
 Values = dict[str, str]
 

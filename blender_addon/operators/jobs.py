@@ -5,7 +5,7 @@ the best so far; Esc once more discards all changes.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, NamedTuple
 
 import bpy
@@ -72,6 +72,8 @@ class JobRow:
     options: frozenset[str] = UNDO
     of_scene: bool = True
     """Whether the result belongs to the scene, and is discarded with it."""
+    asked: dict[str, Any] = field(default_factory=dict)
+    """What another operator asked for last (`begin`)."""
 
     def declare(self) -> "JobRow":
         """Make the operator of the row."""
@@ -219,8 +221,9 @@ def of_study(make: Make) -> Callable[[bpy.types.Context], Task]:
     return read
 
 
-def begin(job: JobRow) -> OperatorResult:
-    """Start a job from another operator, which raises what it reports."""
+def begin(job: JobRow, **asked: Any) -> OperatorResult:
+    """Start a job from another operator, which raises what it reports; `job.asked` is set."""
+    job.asked.update(asked)
     try:
         return getattr(bpy.ops.pe, job.name)("INVOKE_DEFAULT")
     except RuntimeError as error:

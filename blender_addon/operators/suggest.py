@@ -17,8 +17,6 @@ from .where import put
 NOTHING = "Nothing to mend: what is 0.5 m tall is seen there"
 MET = "Nothing to mend: the requirement is met"
 NONE_FOUND = "No move of one sensor, and no added one that was tried, is enough"
-_wanted: dict[str, str | tuple[float, ...]] = {}
-"""What *What Would Mend It?* was asked for last."""
 
 
 @operator(
@@ -37,12 +35,11 @@ def suggest(
     _context: bpy.types.Context, requirement: str, point: tuple[float, ...]
 ) -> OperatorResult:
     """Find the smallest move of a sensor, and one more sensor, that would make it visible there"""
-    _wanted["of"] = requirement or tuple(point)
-    return begin(SUGGESTIONS)
+    return begin(SUGGESTIONS, of=requirement or tuple(point))
 
 
 def _task(_scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> Task:
-    of = _wanted["of"]
+    of = SUGGESTIONS.asked["of"]
     given: dict[str, Any] = {"names": (of,)} if isinstance(of, str) else {"spot": of[:2]}
 
     def finish(scene: bpy.types.Scene, found: dict[str, list[Any]]) -> str:

@@ -21,8 +21,6 @@ NEAR_M = 0.4
 """A click takes the nearest place, if it is no farther away than this."""
 _listed: list[tuple[str, str, str]] = []
 """What the menu lists: Blender reads the texts after the function that made them returned."""
-_wanted: dict[str, Any] = {}
-"""The properties with which *Where?* was asked last."""
 
 
 def _surfaces(_self: Any, _context: object) -> list[tuple[str, str, str]]:
@@ -69,17 +67,18 @@ def _lacks(context: bpy.types.Context) -> str | None:
 )
 def where(_context: bpy.types.Context, operator: Any) -> OperatorResult:
     """Score one more sensor all over the body: colours show where it is worth most"""
-    _wanted.update({name: getattr(operator, name) for name in ("model", "figure", "on", "places")})
-    return begin(PLACES)
+    asked = {name: getattr(operator, name) for name in ("model", "figure", "on", "places")}
+    return begin(PLACES, **asked)
 
 
 def _task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> Task:
-    model, name = catalog.load(_wanted["model"]), _wanted["on"]
+    asked = PLACES.asked
+    model, name = catalog.load(asked["model"]), asked["on"]
     sensor = pe.Sensor(kinds.kind_of(model).label, model)
     mount = "" if name == WHOLE else name
     study = bridge.with_mount(study, scene, bpy.context.evaluated_depsgraph_get(), mount)
-    options: dict[str, Any] = {"mount": mount, "count": _wanted["places"] or None}
-    job = jobs.WhereJob(study, sensor, _wanted["figure"], **options)
+    options: dict[str, Any] = {"mount": mount, "count": asked["places"] or None}
+    job = jobs.WhereJob(study, sensor, asked["figure"], **options)
     seen = 0
 
     def progressed(scene: bpy.types.Scene, job: jobs.WhereJob) -> None:

@@ -186,10 +186,9 @@ def _measured(rig: Rig, objects: Objects, vehicle: Vehicle | None, count: int) -
 
     A pattern that takes several frames has an exposure a frame (`scan.exposed`).
     """
-    rows, by_exposure = np.arange(len(objects)), []
-    for k in range(max(sensor.scan.exposures for sensor in rig)):
-        exposure = Rig([exposed(sensor, k) for sensor in rig])
-        by_exposure.append(ObjectMeasurementCache(objects, vehicle, True).measure(exposure))
+    rows, cache = np.arange(len(objects)), ObjectMeasurementCache(objects, vehicle, True)
+    most = max(sensor.scan.exposures for sensor in rig)
+    by_exposure = [cache.measure(Rig([exposed(s, k) for s in rig])) for k in range(most)]
     return {
         s.name: np.stack([m[s.name] for m in by_exposure])[rows % count % s.scan.exposures, rows]
         for s in rig

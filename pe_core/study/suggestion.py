@@ -29,7 +29,7 @@ from ..scoring.sight import Sight
 from ..scoring.sight.blind_ground import BLIND_TO_M
 from ..search import MountingPlaces, Parametrization
 from ..search.build_figures import sheet_of
-from ..search.domains import METRE, RADIAN, SHARE
+from ..search.domains import ANGLE_DECIMALS_DEG, METRE, POSITION_DECIMALS, RADIAN, SHARE
 from ..search.key_figures import blind_area
 from ..search.methods.method import sampled_candidate
 from ..search.parametrization import Candidate
@@ -48,8 +48,6 @@ HELP_PLACES = 40
 """Places within its range that are tried for each sensor, after those steps."""
 ADD_PLACES, ADD_COMPARED = 80, 4
 """Places of one more sensor of each model, and of those that are enough so many are scored."""
-POSITION_DECIMALS, ANGLE_DECIMALS = 5, 4
-"""Poses are rounded to these [m, deg]: what a suggestion says is what was checked."""
 SAMPLES = 2048
 """Voxels on which entropies are compared: their difference is that of one sample."""
 SPOT_M = 0.25
@@ -90,7 +88,7 @@ class Suggestion:
         for name in self.moved:
             pose = self.rig[name].pose
             x, y, z = (_figure(v, POSITION_DECIMALS) for v in pose.position)
-            roll, pitch, yaw = (_figure(v, ANGLE_DECIMALS) for v in pose.rotation_deg)
+            roll, pitch, yaw = (_figure(v, ANGLE_DECIMALS_DEG) for v in pose.rotation_deg)
             where.append(f"{name} at ({x}, {y}, {z}) m, roll {roll}, pitch {pitch}, yaw {yaw}")
         return "; ".join(where)
 

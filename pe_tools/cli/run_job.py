@@ -102,8 +102,9 @@ def _carried_out(
         if found is None:
             note = "no score was complete, so nothing was written"
             raise Interrupted(received.signum or signal.SIGINT, note)
-        status, data = DONE, _data_of(found, host)
-        if output is not None:
+        if output is None:
+            status, data = DONE, _data_of(found, host)
+        else:
             status, data = keep(found, output, host, more, args.command_line)
         text = front_summary(found) if isinstance(found, jobs.TradeOff) else summary(found)
         return dump_json(data) if args.json else text, status or received.status(DONE)

@@ -11,9 +11,6 @@ from blender_addon.panels import main
 from blender_addon.translation_context import CONTEXT
 from tests.addon import layouts, scenes
 
-SIDEBAR_PX, POINTS = 252.0, 11.0
-"""Width of a sidebar as Blender opens it, and size of its text, at a scale of 1."""
-
 
 def test_the_panel_is_in_the_language_of_the_interface(addon, monkeypatch):
     """Labels are translated; a text without a translation is English."""

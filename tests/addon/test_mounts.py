@@ -9,8 +9,8 @@ from blender_addon import bridge
 from tests.addon import scenes
 
 CAN = "Velodyne VLP-16 Puck"
-BASE_M, CENTER_M = 0.04, 0.0377
-"""Base plate, and how high the origin of the can is above its own base."""
+BASE_M = 0.04
+"""Of the base plate."""
 TOP_M = 1.5
 """Of the car's cabin."""
 

@@ -24,7 +24,6 @@ QUADS = np.array(
 FACES = np.array([face for a, b, c, d in QUADS.tolist() for face in ((a, b, c), (a, c, d))])
 BOX = POINTS[FACES]
 SQUARE = np.array([[(0, 0, 0), (1, 0, 0), (1, 1, 0)], [(0, 0, 0), (1, 1, 0), (0, 1, 0)]], float)
-TRIANGLE = SQUARE[:1]
 ZEROS = np.zeros(12, np.int32)  # the part of each triangle
 NAN, INF = POINTS.copy(), POINTS.copy()
 NAN[0, 1], INF[0, 1] = np.nan, np.inf

@@ -2,8 +2,6 @@
 
 import numpy as np
 
-FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-
 
 def is_watertight(corners):
     """Whether every edge of triangles (F, 3, 3) has two, that run along it in opposite directions.
@@ -21,11 +19,3 @@ def volume(corners):
     """Volume inside triangles (F, 3, 3); negative where they are inside out."""
     a, b, c = np.asarray(corners, float).transpose(1, 0, 2)
     return float((a * np.cross(b, c)).sum() / 6.0)
-
-
-def read_stl(data):
-    """Normals and corners (F, 3, 3) of a binary STL file."""
-    count = int.from_bytes(data[80:84], "little")
-    rows = np.frombuffer(data[84:], FACET)
-    assert len(rows) == count
-    return rows["normal"], rows["corners"]

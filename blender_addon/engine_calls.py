@@ -95,10 +95,8 @@ _held: text.RecentCache[tuple[pe.RigEvaluator, float | None]] = text.RecentCache
 
 
 def gain(number: int, study: pe.Study, name: str, pose: pe.Pose) -> Gain:
-    """Score one sensor of a study at a pose, together with the others.
-
-    These are measured once for each `number`, which identifies the study.
-    """
+    """Score one sensor of a study at a pose, together with the others. These are measured once for
+    each `number`, which identifies the study."""
     others = [each for each in study.rig if each.name != name]
 
     def make() -> tuple[pe.RigEvaluator, float | None]:

@@ -41,10 +41,8 @@ GOP = 12
 
 
 def write_film(scene: bpy.types.Scene, study: pe.Study, story: motion.Story, path: Path) -> None:
-    """Render a story as a film, and write the file once it is complete; its scene is left.
-
-    Render Animation renders that scene again. `InputError` where the suffix is none of `FORMATS`.
-    """
+    """Render a story as a film, and write the file once it is complete; its scene is left. Render
+    Animation renders that scene again. `InputError` where the suffix is none of `FORMATS`."""
     if path.suffix not in FORMATS:
         raise pe.InputError("film", "file", f"a name that ends in {' or '.join(FORMATS)}", path)
     film = film_scene(scene, study, story)

@@ -100,10 +100,8 @@ def arrow(x: float, z: float, length: float) -> Surface:
 
 
 def loft(rings: Sequence[Ring]) -> Surface:
-    """Return the surface through rings of as many points each, closed at both ends.
-
-    Rings run counter-clockwise, seen from where the next one is.
-    """
+    """Return the surface through rings of as many points each, closed at both ends. Rings run
+    counter-clockwise, seen from where the next one is."""
     count = len(rings[0].points)
     points = np.concatenate([ring.points for ring in rings])
     faces: list[tuple[int, ...]] = [tuple(range(count))[::-1]]
@@ -144,9 +142,7 @@ def measured_housing(model: str) -> bpy.types.Mesh | None:
 
 def housing_mesh(model: str) -> bpy.types.Mesh:
     """Return the mesh of a model's housing, of a typical one where no size of it is known.
-
-    `InputError` when there is no such model.
-    """
+    `InputError` when there is no such model."""
     for mesh in bpy.data.meshes:
         if mesh.get(KEY) == model and mesh.library is None:
             return mesh
@@ -156,10 +152,8 @@ def housing_mesh(model: str) -> bpy.types.Mesh:
 
 
 def model_surface(model: str) -> Surface:
-    """Return the surface of a model's housing in the sensor frame.
-
-    Where no size of the model is known, that of its kind's typical housing.
-    """
+    """Return the surface of a model's housing in the sensor frame. Where no size of the model is
+    known, that of its kind's typical housing."""
     sensor = catalog.load(model)
     row = row_of(sensor.kind)
     housing = catalog.housing(model) or row.typical_housing(sensor)

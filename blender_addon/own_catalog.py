@@ -12,10 +12,8 @@ _names: list[str] = []
 
 
 def load(filepath: str) -> None:
-    """Load a file's sensors into the catalogue, in place of those of the file before.
-
-    TOML: a table for each sensor, by its name, as in the catalogue. Without a path: none.
-    """
+    """Load a file's sensors into the catalogue, in place of those of the file before. TOML: a table
+    for each sensor, by its name, as in the catalogue. Without a path: none."""
     global problem
     while _names:
         catalog.remove(_names.pop())

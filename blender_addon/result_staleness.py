@@ -16,9 +16,7 @@ from . import bridge, sensor_cache, signals, vehicle_cache
 
 class LastDrawn(NamedTuple):
     """What a scene was when it was last shown as drawn; None: not since its file was opened.
-
-    `states` are the fingerprints, by frame, of the states that were shown since.
-    """
+    `states` are the fingerprints, by frame, of the states that were shown since."""
 
     fingerprint: bridge.Fingerprint | None
     states: dict[int, str]

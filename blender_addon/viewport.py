@@ -90,9 +90,7 @@ def draw_text(
     text: str, x: float, y: float, size_px: float, color: Rgba, *, left_of_x: float = 0.0
 ) -> float:
     """Draw a line of text on a baseline, in the interface's language; return its width [px].
-
-    `left_of_x` is the share of the text that lies left of `x`: 0 begins there, 1 ends there.
-    """
+    `left_of_x` is the share of the text that lies left of `x`: 0 begins there, 1 ends there."""
     width, _ = text_size(text, size_px)
     blf.color(FONT, *color)
     blf.position(FONT, round(x - left_of_x * width), round(y), 0.0)
@@ -210,10 +208,8 @@ def sidebar_left(context: bpy.types.Context) -> float:
 
 
 def above_hud(context: bpy.types.Context, *, over_strip: bool = True) -> float:
-    """Return where a plate begins, from below: clear of the panel of the last operation.
-
-    A row is always left for that panel, so that the plate does not jump with every move.
-    """
+    """Return where a plate begins, from below: clear of the panel of the last operation. A row is
+    always left for that panel, so that the plate does not jump with every move."""
     bottom = HUD_ROW * ui_scale()
     for other in context.area.regions:
         if other.type == "HUD" and other.height > 1:
@@ -243,10 +239,8 @@ def plate_boxes(region: int) -> tuple[PlateBox, ...]:
 
 
 def free_bottom(region: int, sides: tuple[float, float], bottom: float, gap: float) -> float:
-    """Return where a plate between two sides may begin so that it covers no other one [px].
-
-    Without other plates it would begin at `bottom`; `gap` is left free between plates.
-    """
+    """Return where a plate between two sides may begin so that it covers no other one [px]. Without
+    other plates it would begin at `bottom`; `gap` is left free between plates."""
     left, right = sides
     boxes = plate_boxes(region)
     tops = [box[3] + gap for box in boxes if box[0] - gap < right and left < box[2] + gap]

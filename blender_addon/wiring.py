@@ -120,11 +120,8 @@ LISTENERS: tuple[tuple[signals.Signal, tuple[signals.Listener, ...]], ...] = (
 
 
 def _handler(event: str) -> Function:
-    """Return the handler of an event.
-
-    As with handlers of Blender's own, an error in one function does not keep the others from being
-    called.
-    """
+    """Return the handler of an event. As with handlers of Blender's own, an error in one function
+    does not keep the others from being called."""
 
     def handle(*args: object) -> None:
         for function in EVENTS[event]:

@@ -73,10 +73,8 @@ def as_drawn(scene: Scene) -> Iterator[None]:
 
 
 def conditions_of(settings: PropertyGroup) -> pe.Conditions:
-    """Return the conditions of a scene that are switched on.
-
-    `InputError` when a row is wrong, names repeat, or all weights are 0.
-    """
+    """Return the conditions of a scene that are switched on. `InputError` when a row is wrong,
+    names repeat, or all weights are 0."""
     states = [_state_of(row) for row in settings.states if row.enabled]
     weathers = [_weather_of(row) for row in settings.weathers if row.enabled]
     return pe.Conditions(states, weathers)
@@ -199,10 +197,8 @@ def _points_of(vehicle: pe.Vehicle, part: str) -> np.ndarray | None:
 
 
 def rigid_motion(before: np.ndarray, after: np.ndarray) -> Rigid | None:
-    """Return the rigid motion of points (N, 3) [m]; None where they bend by more than `BENT_M`.
-
-    The rotation with the least squares: Kabsch, Acta Crystallographica A32 (1976) 922.
-    """
+    """Return the rigid motion of points (N, 3) [m]; None where they bend by more than `BENT_M`. The
+    rotation with the least squares: Kabsch, Acta Crystallographica A32 (1976) 922."""
     if float(np.abs(after - before).max()) <= STILL_M:
         return STILL
     first, last = before.mean(axis=0), after.mean(axis=0)

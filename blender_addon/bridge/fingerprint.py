@@ -45,11 +45,8 @@ class Fingerprint:
 def fingerprint(
     scene: Scene, shape: str = "", sensors: Sequence[Object] | None = None
 ) -> Fingerprint:
-    """Return the fingerprint of a scene.
-
-    `shape` is a cache key of the vehicle's geometry; `sensors` are the scene's sensors by name, if
-    the caller has already read them.
-    """
+    """Return the fingerprint of a scene. `shape` is a cache key of the vehicle's geometry;
+    `sensors` are the scene's sensors by name, if the caller has already read them."""
     settings, layer = scene.perception_entropy, view_layer_of(scene)
     objects = sensor_objects(scene) if sensors is None else sensors
     states = {obj.name: _sensor_state(obj, obj.visible_get(view_layer=layer)) for obj in objects}

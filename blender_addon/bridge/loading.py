@@ -94,10 +94,8 @@ def record_of_study(study: pe.Study) -> SceneRecord:
 def differences(
     study: pe.Study, held: pe.Study, renamed: Mapping[str, str] = MappingProxyType({})
 ) -> list[str]:
-    """Return the keys in which two studies differ; names of other files are left out.
-
-    `renamed` has the names that sensors of the first study have in the second.
-    """
+    """Return the keys in which two studies differ; names of other files are left out. `renamed` has
+    the names that sensors of the first study have in the second."""
     one, other = _comparable(study, renamed), _comparable(held)
     keys = sorted(key for key in {*one, *other} if one.get(key) != other.get(key))
     if not same_body(study.vehicle, held.vehicle):
@@ -198,9 +196,7 @@ def _write_vehicle(scene: Scene, vehicle: pe.Vehicle) -> None:
 
 def _write_settings(settings: PropertyGroup, record: SceneRecord) -> None:
     """Write the settings of a record to a scene: space, AP curves, score, search and limits.
-
-    Vehicle, sensors, prior, mounts and constraints are written by others.
-    """
+    Vehicle, sensors, prior, mounts and constraints are written by others."""
     own, tolerance = record.search, record.search.tolerance
     instances = (record.space, record.targets, record.model, own, own.schedule, record.selection)
     for instance in instances:

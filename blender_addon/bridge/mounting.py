@@ -28,10 +28,8 @@ PAINTED = 0.5
 def mounts_of(
     scene: Scene, depsgraph: Depsgraph, records: Sequence[SensorRecord]
 ) -> dict[str, search.AnyMount]:
-    """Return the scene's mounts that visible sensors are on, by name.
-
-    `InputError` when a mount that a sensor is on has no faces or slots, or does not exist.
-    """
+    """Return the scene's mounts that visible sensors are on, by name. `InputError` when a mount
+    that a sensor is on has no faces or slots, or does not exist."""
     rows, on = {row.name: row for row in scene.perception_entropy.mounts}, mounted(records)
     for name, mount in on.items():
         if mount not in rows:
@@ -49,10 +47,8 @@ def mounting_of(
     mounts: Mapping[str, search.AnyMount],
     constraints: pe.Constraints,
 ) -> pe.Mounting:
-    """Return where a search may put the visible sensors of some records.
-
-    `InputError` when a sensor is in two groups, or a mount is missing.
-    """
+    """Return where a search may put the visible sensors of some records. `InputError` when a sensor
+    is in two groups, or a mount is missing."""
     try:
         return pe.Mounting(
             mounts, mounted(records), pairs_of(records), groups_of(records), constraints
@@ -62,10 +58,7 @@ def mounting_of(
 
 
 def mount_of_row(scene: Scene, depsgraph: Depsgraph, row: MountSettings) -> search.AnyMount:
-    """Return one mount of a scene.
-
-    `InputError` when it has no faces, or no slots.
-    """
+    """Return one mount of a scene. `InputError` when it has no faces, or no slots."""
     if row.kind == ON_SLOTS:
         return pe.SlotMount(_slots(row, depsgraph))
     own = values_of(row, pe.SurfaceMount)
@@ -111,10 +104,8 @@ def pairs_of(records: Sequence[SensorRecord]) -> tuple[tuple[str, str], ...]:
 
 
 def groups_of(records: Sequence[SensorRecord]) -> tuple[tuple[str, ...], ...]:
-    """Return groups of visible sensors that are on one rack.
-
-    The first by name leads; one that is on a mount comes before the others.
-    """
+    """Return groups of visible sensors that are on one rack. The first by name leads; one that is
+    on a mount comes before the others."""
     racks: dict[str, list[SensorRecord]] = {}
     for record in records:
         if record.visible and record.rack:
@@ -134,10 +125,8 @@ def followers_of(pairs: Sequence[Sequence[str]], groups: Sequence[Sequence[str]]
 
 
 def constraints_of(scene: Scene) -> pe.Constraints:
-    """Return the constraints of a scene's search.
-
-    `InputError` when a limit or a no-go area is impossible.
-    """
+    """Return the constraints of a scene's search. `InputError` when a limit or a no-go area is
+    impossible."""
     values = values_of(scene.perception_entropy, pe.Constraints)
     try:
         return pe.Constraints(**values, no_go=no_go_of(scene))
@@ -183,11 +172,8 @@ def of_scene(error: pe.InputError) -> pe.InputError:
 
 
 def painted_area(vehicle: Collection, depsgraph: Depsgraph, mount: PropertyGroup) -> np.ndarray:
-    """Return a mount's faces (F, 3, 3) [m], with modifiers, parents and instances applied.
-
-    They equal triangles of the engine's vehicle to the bit. The array is empty if no face is
-    painted.
-    """
+    """Return a mount's faces (F, 3, 3) [m], with modifiers, parents and instances applied. They
+    equal triangles of the engine's vehicle to the bit. The array is empty if no face is painted."""
     areas = []
     for obj, ground_from_object in drawn_meshes(vehicle, depsgraph):
         if mount.group not in obj.vertex_groups:

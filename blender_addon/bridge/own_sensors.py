@@ -24,10 +24,8 @@ LINE_KEYS = ("fx", "fy", "cx", "cy", "fov_deg", "min_range_m", "max_range_m", "d
 
 
 def sync_own_sensors() -> None:
-    """Update the catalogue so that it holds exactly the own sensors of the open file.
-
-    A row with impossible figures or a name that is taken shows its error and is left out.
-    """
+    """Update the catalogue so that it holds exactly the own sensors of the open file. A row with
+    impossible figures or a name that is taken shows its error and is left out."""
     wanted: dict[str, dict[str, Any]] = {}
     for scene in bpy.data.scenes:
         for row in scene.perception_entropy.own_sensors:
@@ -75,10 +73,8 @@ def _lidar_table(row: PropertyGroup) -> dict[str, Any]:
 
 
 def add_own_sensor(scene: Scene, name: str, table: Mapping[str, Any]) -> str:
-    """Add an own sensor with the values of a catalogue table; return its name.
-
-    The channels of a LiDAR become evenly spread.
-    """
+    """Add an own sensor with the values of a catalogue table; return its name. The channels of a
+    LiDAR become evenly spread."""
     row = scene.perception_entropy.own_sensors.add()
     row.kind = table["kind"]
     _, to_figures = CONVERSIONS.get(table["kind"], OTHER)
@@ -139,11 +135,8 @@ def _add(name: str, table: dict[str, Any]) -> str:
 
 
 def read_line(text: str, refused_as: str) -> dict[str, Any]:
-    """Return the keys of a line of text.
-
-    A line that cannot be parsed becomes the value of the key `refused_as`, so that the engine
-    reports it as an error.
-    """
+    """Return the keys of a line of text. A line that cannot be parsed becomes the value of the key
+    `refused_as`, so that the engine reports it as an error."""
     try:
         return dict(tomllib.loads(f"line = {{ {text} }}")["line"])
     except tomllib.TOMLDecodeError:

@@ -15,11 +15,8 @@ MODELS = {ROAD: pe.Prior.road, HIGHWAY: pe.Prior.highway, UNIFORM: pe.Prior.unif
 
 
 def prior_from_scene(scene: Scene) -> pe.Prior:
-    """Return the scene's prior, focus weights included.
-
-    `InputError` when boxes cannot be read, or a focus is no possible one; the line names the file,
-    or the focus by its place in the list.
-    """
+    """Return the scene's prior, focus weights included. `InputError` when boxes cannot be read, or
+    a focus is no possible one; the line names the file, or the focus by its place in the list."""
     settings = scene.perception_entropy
     from_boxes = settings.prior == FROM_BOXES
     prior = _prior_from_boxes(settings.boxes) if from_boxes else MODELS[settings.prior]()
@@ -47,10 +44,8 @@ def focus_regions(scene: Scene) -> tuple[FocusRegion, ...]:
 
 
 def write_prior(settings: PropertyGroup, prior: pe.Prior) -> None:
-    """Write a prior's model and its focus weights to a scene.
-
-    A prior of labelled boxes and a focus on a class that is not in the menu are left out.
-    """
+    """Write a prior's model and its focus weights to a scene. A prior of labelled boxes and a focus
+    on a class that is not in the menu are left out."""
     with contextlib.suppress(TypeError):  # the menu does not have the model
         settings.prior = prior.model
     settings.focus.clear()

@@ -24,10 +24,8 @@ VerdictSummary = requirements.VerdictSummary
 
 
 def requirements_of(settings: PropertyGroup) -> tuple[Requirement, ...]:
-    """Return the requirements of a scene that are switched on.
-
-    `InputError` when a row's table is wrong, or two rows have one name.
-    """
+    """Return the requirements of a scene that are switched on. `InputError` when a row's table is
+    wrong, or two rows have one name."""
     found = [
         _read(row.name, _loaded(row.name, row.table))
         for row in settings.requirements
@@ -47,10 +45,8 @@ def _loaded(name: str, text_of_row: str) -> TableData:
 
 
 def full_table(row: PropertyGroup) -> TableData:
-    """Return a row's table with the keys of its preset; empty where the table is wrong.
-
-    It is cached, and not to be changed.
-    """
+    """Return a row's table with the keys of its preset; empty where the table is wrong. It is
+    cached, and not to be changed."""
     try:
         return _full_table(row.name, row.table)[0]
     except pe.InputError:
@@ -59,10 +55,8 @@ def full_table(row: PropertyGroup) -> TableData:
 
 @lru_cache(maxsize=256)
 def _full_table(name: str, table: str) -> tuple[TableData, str]:
-    """Return the table of a row of that name, and what its verdict is called after.
-
-    Panels ask for it again for each field.
-    """
+    """Return the table of a row of that name, and what its verdict is called after. Panels ask for
+    it again for each field."""
     requirement = _read(name, _loaded(name, table))
     return studies.requirement_file.full_table(requirement), requirement.after
 

@@ -125,11 +125,8 @@ def result_of(text: str) -> Result:
 
 
 def store_outcome(scene: Scene, outcome: jobs.Outcome, signature: str) -> None:
-    """Store an outcome in the scene, as result.json holds it.
-
-    `signature` is the scene's signature at the time when it was read: the scene may have changed
-    since.
-    """
+    """Store an outcome in the scene, as result.json holds it. `signature` is the scene's signature
+    at the time when it was read: the scene may have changed since."""
     settings = scene.perception_entropy
     data = jobs.result_dict(outcome, blender_version())
     data["after"] = scored_data(outcome.after, outcome.figures and outcome.figures[1])

@@ -28,10 +28,8 @@ def sensor_objects(scene: Scene) -> list[Object]:
 
 
 def rig_from_objects(objects: Sequence[Object], depsgraph: Depsgraph) -> pe.Rig:
-    """Return the visible sensors among some objects as a rig.
-
-    `InputError` when there is none, or one of them is no possible sensor.
-    """
+    """Return the visible sensors among some objects as a rig. `InputError` when there is none, or
+    one of them is no possible sensor."""
     visible = [obj for obj in objects if obj.visible_get(view_layer=depsgraph.view_layer)]
     if not visible:
         found = f"{len(objects)} hidden" if objects else "none"
@@ -44,10 +42,8 @@ def rig_from_objects(objects: Sequence[Object], depsgraph: Depsgraph) -> pe.Rig:
 
 
 def sensor_from_object(obj: Object, depsgraph: Depsgraph) -> pe.Sensor:
-    """Return one object's model, placement, fusion group and AP curve as a sensor.
-
-    `InputError` when it is no possible sensor; the line names the object.
-    """
+    """Return one object's model, placement, fusion group and AP curve as a sensor. `InputError`
+    when it is no possible sensor; the line names the object."""
     settings = obj.perception_entropy
     try:
         returns = depsgraph.scene.perception_entropy.returns
@@ -87,11 +83,8 @@ def possible_sensors(objects: Sequence[Object], depsgraph: Depsgraph) -> list[pe
 
 
 def pose_of(obj: Object, depsgraph: Depsgraph) -> pe.Pose:
-    """Return the pose of a sensor in the ground frame, rounded as placements are.
-
-    Rounding removes the error of single precision, so that a study file and the scene hold the
-    same numbers.
-    """
+    """Return the pose of a sensor in the ground frame, rounded as placements are. Rounding removes
+    the error of single precision, so that a study file and the scene hold the same numbers."""
     ground_from_sensor = np.array(obj.evaluated_get(depsgraph).matrix_world, dtype=float)
     held = last_written_pose(obj, ground_from_sensor)
     return pose_of_matrix(ground_from_sensor) if held is None else held
@@ -263,10 +256,8 @@ def _ground_from_parent(obj: Object) -> np.ndarray:
 
 
 def curve_of(settings: PropertyGroup) -> pe.ApCurve | None:
-    """Return a sensor's own AP curve; None where it uses that of its kind.
-
-    `InputError` when the numbers are no curve.
-    """
+    """Return a sensor's own AP curve; None where it uses that of its kind. `InputError` when the
+    numbers are no curve."""
     if not settings.own_curve:
         return None
     return pe.ApCurve(**values_of(settings, pe.ApCurve, prefix="curve_"))

@@ -31,10 +31,8 @@ def scene_advice(scene: Scene) -> tuple[advice.Advice, ...]:
 def missing_data(
     scene: Scene, sensors: Sequence[Object] | None = None
 ) -> tuple[advice.Advice, ...]:
-    """Return warnings about data of lost libraries and about drivers that did not run.
-
-    `sensors` are the scene's sensors, if the caller has already read them.
-    """
+    """Return warnings about data of lost libraries and about drivers that did not run. `sensors`
+    are the scene's sensors, if the caller has already read them."""
     mounted = sensor_objects(scene) if sensors is None else sensors
     blocks = list(_scored_data(scene, mounted))
     return (*_lost_data(blocks), *_failed_drivers(blocks, set(mounted)))

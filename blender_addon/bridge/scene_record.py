@@ -100,10 +100,8 @@ def study_from_scene(
 
 
 def study_as_drawn(scene: Scene) -> pe.Study:
-    """Return the study of a scene as its vehicle is drawn, with its states read again.
-
-    `InputError` as `study_from_scene`, and where a part of a state bends.
-    """
+    """Return the study of a scene as its vehicle is drawn, with its states read again. `InputError`
+    as `study_from_scene`, and where a part of a state bends."""
     with as_drawn(scene):
         read_states(scene)
         layer = view_layer_of(scene)
@@ -130,11 +128,8 @@ def record_of_scene(
     source: str = "scene",
     vehicle: pe.Vehicle | None = None,
 ) -> SceneRecord:
-    """Return a scene's vehicle, mounts and settings with these sensors.
-
-    `InputError` when no study can be read from the scene, or a mount that a sensor is on is
-    incomplete.
-    """
+    """Return a scene's vehicle, mounts and settings with these sensors. `InputError` when no study
+    can be read from the scene, or a mount that a sensor is on is incomplete."""
     check_scene(scene)
     settings = scene.perception_entropy
     is_choice = any(record.options for record in records if record.visible)
@@ -164,9 +159,7 @@ def record_of_scene(
 
 def study_of(record: SceneRecord) -> pe.Study:
     """Return the study that a record describes: of a scene, a variant or an imported file alike.
-
-    `InputError` with one line that says what is wrong.
-    """
+    `InputError` with one line that says what is wrong."""
     rig = rig_of(record.sensors, record.source)
     counted = [sensor for sensor in record.sensors if sensor.visible]
     mounting = mounting_of(counted, record.mounts, record.constraints)
@@ -201,10 +194,8 @@ def _limits(
 
 
 def check_scene(scene: Scene) -> None:
-    """Check that a study can be read from a scene.
-
-    `InputError` when a unit is not a metre, or no vehicle is chosen.
-    """
+    """Check that a study can be read from a scene. `InputError` when a unit is not a metre, or no
+    vehicle is chosen."""
     units = scene.unit_settings
     if units.system == "IMPERIAL":
         raise pe.InputError("scene", "unit system", "metres (Metric)", "Imperial")
@@ -215,10 +206,8 @@ def check_scene(scene: Scene) -> None:
 
 
 def vehicle_of_scene(scene: Scene, depsgraph: Depsgraph) -> pe.Vehicle:
-    """Read the chosen vehicle from the scene and return it; no cache is used.
-
-    `InputError` when none is chosen, or it cannot be scored.
-    """
+    """Read the chosen vehicle from the scene and return it; no cache is used. `InputError` when
+    none is chosen, or it cannot be scored."""
     return vehicle_from_collection(_vehicle_chosen(scene), depsgraph, clearance_of(scene))
 
 
@@ -232,10 +221,8 @@ def _vehicle_chosen(scene: Scene) -> Collection:
 
 
 def selection_of(records: Sequence[SensorRecord], limits: pe.Selection) -> pe.Selection:
-    """Return the choices of visible sensors with the scene's limits on all of them.
-
-    `InputError` when a model is not in the catalogue, is there twice, or has no price.
-    """
+    """Return the choices of visible sensors with the scene's limits on all of them. `InputError`
+    when a model is not in the catalogue, is there twice, or has no price."""
     choices = [_choice(record) for record in records if record.visible and record.options]
     return replace(limits, choices=choices) if choices else pe.Selection()
 

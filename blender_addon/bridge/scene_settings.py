@@ -100,10 +100,8 @@ def property_value(setting: studies.Setting, value: Any) -> Any:
 
 
 def space_of(settings: PropertyGroup) -> pe.PerceptionSpace:
-    """Return the space that a scene's settings describe.
-
-    `InputError` when a bound is not below the other, or the voxels do not fit.
-    """
+    """Return the space that a scene's settings describe. `InputError` when a bound is not below the
+    other, or the voxels do not fit."""
     try:
         return pe.PerceptionSpace(**values_of(settings, pe.PerceptionSpace))
     except pe.InputError as error:
@@ -126,10 +124,8 @@ def clearance_of(scene: Scene) -> float:
 
 
 def targets_of(settings: PropertyGroup) -> pe.TargetRule:
-    """Return whether voxels or objects are scored; traffic concerns objects alone.
-
-    So do scenes, unless a search goes by the expected AP of objects.
-    """
+    """Return whether voxels or objects are scored; traffic concerns objects alone. So do scenes,
+    unless a search goes by the expected AP of objects."""
     if settings.targets != OBJECTS:
         by_ap = settings.objective == EXPECTED_AP
         return pe.TargetRule(scenes=settings.scenes) if by_ap else pe.TargetRule()
@@ -137,10 +133,8 @@ def targets_of(settings: PropertyGroup) -> pe.TargetRule:
 
 
 def search_of(settings: PropertyGroup, *, is_choice: bool) -> pe.Search:
-    """Return the settings of a scene's search, without its sensors and mounts.
-
-    The schedule is the scene's where one is used: by the method, or to screen a choice of sensors.
-    """
+    """Return the settings of a scene's search, without its sensors and mounts. The schedule is the
+    scene's where one is used: by the method, or to screen a choice of sensors."""
     is_scheduled = is_choice or settings.method == search.SCHEDULED_METHOD
     schedule = pe.Schedule(**values_of(settings, pe.Schedule)) if is_scheduled else pe.Schedule()
     values = values_of(settings, pe.Tolerance)

@@ -110,20 +110,16 @@ def same_sensors(records: Iterable[SensorRecord], others: Iterable[SensorRecord]
 
 
 def records_of_scene(scene: Scene) -> tuple[SensorRecord, ...]:
-    """Return all sensors of a scene by name, hidden ones included.
-
-    `InputError` when one of them is scaled or sheared, or has no finite place.
-    """
+    """Return all sensors of a scene by name, hidden ones included. `InputError` when one of them is
+    scaled or sheared, or has no finite place."""
     layer = view_layer_of(scene)
     layer.update()
     return tuple(record_of_object(obj, layer.depsgraph, layer) for obj in sensor_objects(scene))
 
 
 def record_of_object(obj: Object, depsgraph: Depsgraph, layer: ViewLayer) -> SensorRecord:
-    """Return the record of one sensor of a scene.
-
-    `InputError` when it is scaled or sheared, has no finite place, or its AP curve is impossible.
-    """
+    """Return the record of one sensor of a scene. `InputError` when it is scaled or sheared, has no
+    finite place, or its AP curve is impossible."""
     settings, visible = obj.perception_entropy, obj.visible_get(view_layer=layer)
     try:
         pose = pose_of(obj, depsgraph) if visible else _hidden_pose(obj)
@@ -269,11 +265,8 @@ def rig_of(
 
 
 def sensor_of(record: SensorRecord, source: str = "variant") -> pe.Sensor:
-    """Return a record as the engine's sensor.
-
-    `InputError` when the catalogue does not have its model, or the name or the fusion group is
-    impossible.
-    """
+    """Return a record as the engine's sensor. `InputError` when the catalogue does not have its
+    model, or the name or the fusion group is impossible."""
     try:
         model = record.intrinsics or catalog.load(record.model)
         own = record.fusion or None, record.curve, record.color, record.sheet, record.scan

@@ -17,10 +17,8 @@ DIGITS = 4
 
 
 def time_of(settings: PropertyGroup) -> dict[str, Any]:
-    """Return the fields of a study in time that a scene holds, by name.
-
-    `InputError` when a value or a row is wrong, or names repeat.
-    """
+    """Return the fields of a study in time that a scene holds, by name. `InputError` when a value
+    or a row is wrong, or names repeat."""
     by_name = studies.by_name_of_text(settings.time_text, "scene")
     rows = [_table_of(row) for row in settings.stories if row.enabled]
     return {
@@ -69,9 +67,7 @@ def frame_rate(scene: Scene) -> float:
 
 def read_animation(scene: Scene) -> str:
     """Return what the test bodies of a scene do, frame by frame, round the vehicle: a row's table.
-
-    The last frame is time 0. `InputError` when no object is a test body.
-    """
+    The last frame is time 0. `InputError` when no object is a test body."""
     bodies = [each for each in scene.objects if each.perception_entropy.body != NO_BODY]
     if not bodies:
         raise pe.InputError("scene", "test bodies", "an object with one, in Vehicle Part", "none")
@@ -120,9 +116,7 @@ def store_driven(
     settings: PropertyGroup, driven: Sequence[motion.DriveBy], signatures: Mapping[str, str]
 ) -> None:
     """Store in the rows of stories when their tracks are confirmed; other rows have nothing.
-
-    `signatures` are those of the scene that was driven.
-    """
+    `signatures` are those of the scene that was driven."""
     found = {each.story.name: each.summary() for each in driven}
     for row in settings.stories:
         data = found.get(row.name)

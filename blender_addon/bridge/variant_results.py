@@ -26,10 +26,8 @@ def same_score(records: Sequence[SensorRecord], others: Sequence[SensorRecord]) 
 
 
 def store_variant_scores(scene: Scene, outcome: jobs.Outcome, surroundings: str) -> None:
-    """Store the scores of an outcome with every variant of exactly these sensors.
-
-    `surroundings` is the fingerprint of the scene without its sensors when it was scored.
-    """
+    """Store the scores of an outcome with every variant of exactly these sensors. `surroundings` is
+    the fingerprint of the scene without its sensors when it was scored."""
     beside = outcome.figures or (None, None)
     for study, score, figures in (
         (outcome.start, outcome.before, beside[0]),
@@ -58,10 +56,8 @@ def _scored_values(sensor: pe.Sensor) -> tuple[object, ...]:
 
 
 def store_search(scene: Scene, outcome: jobs.Outcome, surroundings: str) -> int:
-    """Store the start and the result of a search as variants; return the key of the result.
-
-    The start becomes the active variant, as the sensors have not been moved yet.
-    """
+    """Store the start and the result of a search as variants; return the key of the result. The
+    start becomes the active variant, as the sensors have not been moved yet."""
     records = records_of_scene(scene)
     start, result = _moved(records, outcome.start.rig), _moved(records, outcome.study.rig)
     before = find_or_add_variant(scene, "Before optimize", start).key

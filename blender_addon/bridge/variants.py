@@ -25,10 +25,8 @@ def active_variant(scene: Scene) -> Variant | None:
 
 
 def variant_named(scene: Scene, name: str) -> Variant:
-    """Return a variant by its name.
-
-    `InputError` when there is no such variant; the message names the existing ones.
-    """
+    """Return a variant by its name. `InputError` when there is no such variant; the message names
+    the existing ones."""
     rows = scene.perception_entropy.variants
     for row in rows:
         if row.name == name:
@@ -54,10 +52,8 @@ def add_variant(scene: Scene, name: str, records: Sequence[SensorRecord]) -> Var
 
 
 def activate_variant(scene: Scene, variant: Variant) -> None:
-    """Apply a variant to the scene, and make it the active one.
-
-    `InputError` when a sensor cannot be placed.
-    """
+    """Apply a variant to the scene, and make it the active one. `InputError` when a sensor cannot
+    be placed."""
     key = variant.key
     records = records_of(variant)
     names = apply_records(scene, records)
@@ -80,10 +76,8 @@ def mark_active(scene: Scene, key: int) -> None:
 
 
 def study_of_variant(scene: Scene, variant: Variant, depsgraph: Depsgraph) -> pe.Study:
-    """Return the study that the scene would have if the variant were applied to it.
-
-    `InputError` with one line that says what is wrong.
-    """
+    """Return the study that the scene would have if the variant were applied to it. `InputError`
+    with one line that says what is wrong."""
     try:
         record = record_of_scene(scene, depsgraph, records_of(variant), source="variant")
         return study_of(record)

@@ -63,10 +63,8 @@ def visible_members(collection: Collection, layer: ViewLayer) -> set[Object]:
 
 
 def layers_of(layer: LayerCollection, collection: Collection) -> list[LayerCollection]:
-    """Return a collection in a view layer and the collections it is in, innermost first.
-
-    Empty where the view layer does not have the collection.
-    """
+    """Return a collection in a view layer and the collections it is in, innermost first. Empty
+    where the view layer does not have the collection."""
     if layer.collection == collection:
         return [layer]
     for child in layer.children:
@@ -189,10 +187,8 @@ def make_body(scene: Scene, vehicle: pe.Vehicle) -> Collection:
 
 
 def mesh_of(name: str, triangles: np.ndarray) -> Mesh:
-    """Return a mesh of triangles (F, 3, 3) [m]; equal corners are merged.
-
-    Blender's points have single precision: the rounding errors are stored in an attribute.
-    """
+    """Return a mesh of triangles (F, 3, 3) [m]; equal corners are merged. Blender's points have
+    single precision: the rounding errors are stored in an attribute."""
     points, corner = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
     faces = corner.reshape(-1, 3)
     mesh = bpy.data.meshes.new(name)

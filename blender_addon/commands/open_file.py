@@ -16,10 +16,8 @@ from ..engine import app, jobs, pe, studies
 
 
 def opened_study(variant: str | None = None) -> pe.Study:
-    """Return the study of the open file, with a variant's sensors if one is named.
-
-    Errors name the file.
-    """
+    """Return the study of the open file, with a variant's sensors if one is named. Errors name the
+    file."""
     scene = opened_scene()
     with from_file():
         if variant is not None:
@@ -39,10 +37,8 @@ def from_file() -> Iterator[None]:
 
 
 def opened_scene() -> bpy.types.Scene:
-    """Return the scene of the open file.
-
-    `InputError` when no file is open, or the scene has neither a vehicle nor sensors.
-    """
+    """Return the scene of the open file. `InputError` when no file is open, or the scene has
+    neither a vehicle nor sensors."""
     path, scene = bpy.data.filepath, bpy.context.scene
     if not path:
         expected = "an existing .blend file before --command"
@@ -86,10 +82,8 @@ def save_copy(path: Path) -> None:
 
 
 def check_complete(path: Path) -> None:
-    """Raise `InputError` where a compressed .blend file is incomplete.
-
-    On a full disk Blender leaves half a file, or none, without an error.
-    """
+    """Raise `InputError` where a compressed .blend file is incomplete. On a full disk Blender
+    leaves half a file, or none, without an error."""
     data = path.read_bytes() if path.is_file() else b""
     end = BLEND_END if data.startswith(BLEND_BEGIN) else b""
     if not data or not data.endswith(end):

@@ -23,9 +23,7 @@ def built_lines(scene: bpy.types.Scene) -> list[str]:
 
 def told_figures(scene: bpy.types.Scene, *, live: bool) -> list[advice.KeyFigures]:
     """Return the key figures that the panel shows: of the live score, or of the stored result.
-
-    Those before it come first: of a search's start, or of what *Live* is compared with.
-    """
+    Those before it come first: of a search's start, or of what *Live* is compared with."""
     if live:
         return background_figures.figures_of(scene)
     result = scene.perception_entropy.result

@@ -31,10 +31,8 @@ def request(scene: bpy.types.Scene, score: ScoreRequest, baseline: Baseline | No
 
 
 def figures_of(scene: bpy.types.Scene) -> list[advice.KeyFigures]:
-    """Return the figures to show of the live score, after those of what it is compared with.
-
-    Those that were shown last while its own are not known; none where no figures are wanted.
-    """
+    """Return the figures to show of the live score, after those of what it is compared with. Those
+    that were shown last while its own are not known; none where no figures are wanted."""
     state = live_state(scene.name)
     score, problem = state.exact, state.figures
     if problem is None or score is None:

@@ -48,10 +48,8 @@ class ReadoutText(NamedTuple):
 
 
 def readout_of(score: LiveScore | None, shown: ShownScore) -> ReadoutText:
-    """Return the text of the score that is shown: a live or a stored one.
-
-    Changes are those of the live score, from sample to sample; of a stored search, its own.
-    """
+    """Return the text of the score that is shown: a live or a stored one. Changes are those of the
+    live score, from sample to sample; of a stored search, its own."""
     change, sense, against = "", SAME, ""
     lines: tuple[ReadoutLine, ...] = ((TextPiece(f"Coverage {shown.coverage:.1%}"),),)
     if score is not None:

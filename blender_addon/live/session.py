@@ -93,10 +93,8 @@ def request_score(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, mov
 
 
 def read_request(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> ScoreRequest:
-    """Read what the score needs of a scene; the vehicle only if it has changed.
-
-    `InputError` when something in the scene is wrong: one line.
-    """
+    """Read what the score needs of a scene; the vehicle only if it has changed. `InputError` when
+    something in the scene is wrong: one line."""
     bridge.check_scene(scene)
     rig = bridge.rig_from_objects(sensor_cache.sensors(scene), depsgraph)
     state, prior_key = live_state(scene.name), bridge.prior_key(scene)
@@ -214,10 +212,8 @@ def note_move(state: LiveState, operator: int, now: pe.Rig | None) -> None:
 
 
 def baseline_of(scene: bpy.types.Scene, request: ScoreRequest, moving: bool) -> Baseline | None:
-    """Return what a scene is compared with, as its settings choose; None where nothing is yet.
-
-    A variant is read again whenever the scene is idle; while sensors move it stays what it was.
-    """
+    """Return what a scene is compared with, as its settings choose; None where nothing is yet. A
+    variant is read again whenever the scene is idle; while sensors move it stays what it was."""
     state, choice = live_state(scene.name), scene.perception_entropy.live.against
     chosen = state.chosen
     if chosen is not None and moving and chosen[0][:2] == (choice, request.problem.key):

@@ -39,10 +39,8 @@ class FinishedScore:
 
 @dataclass(frozen=True)
 class LiveScore:
-    """The score of a rig by request `number` of its scene.
-
-    `exact`: the scene is idle. `problem` identifies vehicle, prior, space and settings.
-    """
+    """The score of a rig by request `number` of its scene. `exact`: the scene is idle. `problem`
+    identifies vehicle, prior, space and settings."""
 
     summary: pe.Score
     baseline: Baseline | None
@@ -58,10 +56,8 @@ class LiveScore:
 
 
 class LastRead(NamedTuple):
-    """What a scene was when it was read last.
-
-    `changes` and `vehicle_version` count changes; `prior` and `problem` identify prior and problem.
-    """
+    """What a scene was when it was read last. `changes` and `vehicle_version` count changes;
+    `prior` and `problem` identify prior and problem."""
 
     changes: int
     vehicle_version: int

@@ -211,10 +211,8 @@ def pending_variants(scene: bpy.types.Scene) -> list[bpy.types.PropertyGroup]:
 
 
 def comparison_of(scene: bpy.types.Scene) -> tuple[list[str], tuple[advice.ComparedRow, ...]]:
-    """Return the names of the scored variants, the active one first, and the table's rows.
-
-    Of key figures there are rows if every variant has figures of the present settings.
-    """
+    """Return the names of the scored variants, the active one first, and the table's rows. Of key
+    figures there are rows if every variant has figures of the present settings."""
     rows = compared_variants(scene)
     scores = {row.name: bridge.score_of(row) for row in rows}
     of = bridge.figures_signature(scene, result_staleness.fingerprint(scene))

@@ -141,9 +141,7 @@ def operator(
 @dataclass(frozen=True, slots=True)
 class RowList:
     """A list of the scene's settings: properties of its rows and of the selected row's index.
-
-    `noun` is what a row is.
-    """
+    `noun` is what a row is."""
 
     rows: str
     index: str
@@ -159,11 +157,8 @@ class RowList:
         move: str = "",
         removed: Callable[[bpy.types.Scene, str], None] | None = None,
     ) -> None:
-        """Declare operators on the selected row, by their tooltips.
-
-        `copied` are the properties that a copy takes over; `removed` mends what refers to a row of
-        that name.
-        """
+        """Declare operators on the selected row, by their tooltips. `copied` are the properties
+        that a copy takes over; `removed` mends what refers to a row of that name."""
         noun = self.noun.replace(" ", "_")
 
         def remove_selected(context: bpy.types.Context) -> str:
@@ -260,20 +255,16 @@ def report_answer(operator: bpy.types.Operator, answer: Answer) -> OperatorResul
 def report(
     operator: bpy.types.Operator, level: Literal["INFO", "WARNING", "ERROR"], text: str
 ) -> None:
-    """Report one line in the interface's language.
-
-    Characters that would break or reverse the line are escaped.
-    """
+    """Report one line in the interface's language. Characters that would break or reverse the line
+    are escaped."""
     text = language.shown(text[:MAX_LETTERS])
     printable = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
     operator.report({level}, printable)
 
 
 def chosen_sensor(context: bpy.types.Context, name: str) -> bpy.types.Object:
-    """Return the sensor of that name; the active one when the name is empty.
-
-    `InputError` when there is no such sensor.
-    """
+    """Return the sensor of that name; the active one when the name is empty. `InputError` when
+    there is no such sensor."""
     obj = context.scene.objects.get(name) if name else context.active_object
     if obj is None or not obj.perception_entropy.is_sensor:
         raise pe.InputError("scene", "active object", "a sensor", obj.name if obj else "none")
@@ -281,10 +272,7 @@ def chosen_sensor(context: bpy.types.Context, name: str) -> bpy.types.Object:
 
 
 def chosen_file(filepath: str) -> Path:
-    """Return the chosen file.
-
-    `InputError` when no file was chosen, or its name cannot be one.
-    """
+    """Return the chosen file. `InputError` when no file was chosen, or its name cannot be one."""
     path = text.named_path("export", "file", bpy.path.abspath(filepath))
     if not path.name:
         raise pe.InputError("export", "file", "the name of a file", repr(filepath))

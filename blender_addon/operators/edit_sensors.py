@@ -90,10 +90,8 @@ def unlink_mirror(context: bpy.types.Context, name: str) -> None:
 
 
 def mirrored_copy(context: bpy.types.Context, obj: bpy.types.Object) -> bpy.types.Object:
-    """Return a copy of a sensor on the other side.
-
-    `InputError` when it is its own mirror image, or when its image is not on the vehicle.
-    """
+    """Return a copy of a sensor on the other side. `InputError` when it is its own mirror image, or
+    when its image is not on the vehicle."""
     depsgraph = context.evaluated_depsgraph_get()
     sensor = bridge.sensor_from_object(obj, depsgraph)
     pose, image = sensor.pose, bridge.mirrored_pose(sensor.pose)

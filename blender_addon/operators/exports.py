@@ -67,11 +67,8 @@ def _unless_running(_context: bpy.types.Context) -> str | None:
 
 
 def dialog(suffix: str, name: Callable[[Any], str] | None = None) -> dict[str, Any]:
-    """Return what operators have that ask for a file to write.
-
-    `suffix` is that of the file's name; without, the name says which format. `name` returns the
-    first name.
-    """
+    """Return what operators have that ask for a file to write. `suffix` is that of the file's name;
+    without, the name says which format. `name` returns the first name."""
 
     def invoke(self: Any, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         self.asked_in_window = not bpy.app.background

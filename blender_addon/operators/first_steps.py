@@ -28,9 +28,7 @@ def use_selected(context: bpy.types.Context) -> str:
 
 def selected_parts(selected: Sequence[bpy.types.Object]) -> list[bpy.types.Object]:
     """Return the selected objects that may be parts of a vehicle, and such objects below them.
-
-    `InputError` when there is none.
-    """
+    `InputError` when there is none."""
     family = [member for obj in selected for member in (obj, *obj.children_recursive)]
     parts = [obj for obj in dict.fromkeys(family) if may_be_part(obj)]
     if not parts:

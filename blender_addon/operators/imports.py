@@ -87,10 +87,8 @@ def replace_sensors(
     lines: Sequence[str],
     origin: str,
 ) -> Told:
-    """Replace the sensors of the scene, as a variant; return what to report.
-
-    `InputError` when they cannot be put into the scene.
-    """
+    """Replace the sensors of the scene, as a variant; return what to report. `InputError` when they
+    cannot be put into the scene."""
     before = bridge.records_of_scene(scene)
     records = tuple(
         replace(

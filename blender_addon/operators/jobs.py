@@ -201,9 +201,7 @@ Make = Callable[[bpy.types.Scene, pe.Study, bridge.Fingerprint], Task]
 
 def of_study(make: Make) -> Callable[[bpy.types.Context], Task]:
     """Return what reads the scene as drawn, its states, and its fingerprint at the same time.
-
-    `make` gets scene, study and fingerprint.
-    """
+    `make` gets scene, study and fingerprint."""
 
     def read(context: bpy.types.Context) -> Task:
         scene = context.scene
@@ -233,10 +231,8 @@ def begin(job: JobRow, **asked: Any) -> OperatorResult:
 def cached_score(
     scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint
 ) -> pe.Score | None:
-    """Return the score of a study as it was read from a scene, if it was made in this session.
-
-    None for a prior of labelled boxes: their file may have changed since.
-    """
+    """Return the score of a study as it was read from a scene, if it was made in this session. None
+    for a prior of labelled boxes: their file may have changed since."""
     finished = live_state(scene.name).finished
     if finished is None or finished.signature != taken.text or study.prior.boxes is not None:
         return None
@@ -290,10 +286,8 @@ def optimize_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerp
 def store_search(
     scene: bpy.types.Scene, outcome: jobs.Outcome, taken: bridge.Fingerprint
 ) -> list[str]:
-    """Keep the best rig as a variant, then move the sensors; return names of removed ones.
-
-    Undo restores the poses only: the variant has an undo step of its own before it.
-    """
+    """Keep the best rig as a variant, then move the sensors; return names of removed ones. Undo
+    restores the poses only: the variant has an undo step of its own before it."""
     settings = scene.perception_entropy
     result_key = bridge.store_search(scene, outcome, taken.surroundings)
     if bpy.ops.ed.undo_push.poll():  # a script without a window has no undo

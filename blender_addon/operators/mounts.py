@@ -119,10 +119,8 @@ def _corners(obj: bpy.types.Object) -> np.ndarray:
 def put_on_mount(
     scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, obj: bpy.types.Object, name: str
 ) -> None:
-    """Put a sensor on a mount, at the nearest point to where it is.
-
-    `InputError` when the mount has no faces or slots, or its pose is fixed.
-    """
+    """Put a sensor on a mount, at the nearest point to where it is. `InputError` when the mount has
+    no faces or slots, or its pose is fixed."""
     row = scene.perception_entropy.mounts[name]
     mount = bridge.mount_of_row(scene, depsgraph, row)
     vehicle = bridge.vehicle_of_scene(scene, depsgraph)

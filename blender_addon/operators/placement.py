@@ -49,10 +49,8 @@ _numbers = count()
 
 
 class HeldSensor:
-    """One sensor that is held under the mouse, until it is placed or cancelled.
-
-    Its lines and faces are drawn in all 3D views, its text in the view under the mouse.
-    """
+    """One sensor that is held under the mouse, until it is placed or cancelled. Its lines and faces
+    are drawn in all 3D views, its text in the view under the mouse."""
 
     def __init__(self, context: bpy.types.Context, model: Any, stance: Stance) -> None:
         self.model, self.kind = model, kinds.kind_of(model)
@@ -244,10 +242,8 @@ def end() -> None:
 
 
 def sensor_shape(name: str, model: Any) -> tuple[graphics.Primitives, graphics.Primitives]:
-    """Return lines and faces of a sensor in its own frame, computed once for all moves.
-
-    They are computed high above the ground, because lines end at the ground, and moved back down.
-    """
+    """Return lines and faces of a sensor in its own frame, computed once for all moves. They are
+    computed high above the ground, because lines end at the ground, and moved back down."""
     sensor = pe.Sensor(name, model, pe.Pose((0.0, 0.0, ALOFT_M)))
     drawing = graphics.drawing_of(sensor.kind)
     lines = [

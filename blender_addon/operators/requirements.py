@@ -91,10 +91,8 @@ def _add(scene: bpy.types.Scene, made: requirements.Requirement, wanted: str) ->
 
 
 def shown_verdicts(scene: bpy.types.Scene) -> dict[str, ShownVerdict]:
-    """Return the verdicts of the requirements that are switched on, by name.
-
-    Those of the 3D view are of the sensors as they stand; without them, the stored ones.
-    """
+    """Return the verdicts of the requirements that are switched on, by name. Those of the 3D view
+    are of the sensors as they stand; without them, the stored ones."""
     settings = scene.perception_entropy
     live: dict[str, requirements.Verdict] = {}
     unplaced: dict[str, str] = {}

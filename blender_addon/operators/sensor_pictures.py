@@ -48,10 +48,8 @@ class InsetCamera:
         projection: Matrix,
         around: Callable[[], None],
     ) -> None:
-        """Have a viewport draw its scene from a camera; not while that viewport is drawn.
-
-        `around` draws what is added to the scene, with the camera's matrices.
-        """
+        """Have a viewport draw its scene from a camera; not while that viewport is drawn. `around`
+        draws what is added to the scene, with the camera's matrices."""
         if size != self.size:
             self.free()
             self._offscreen, self.size = gpu.types.GPUOffScreen(*size), size

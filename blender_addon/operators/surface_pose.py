@@ -75,10 +75,8 @@ class ViewUnderMouse(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Stance:
-    """How a sensor is put on a surface: its distance from it [m], and its direction.
-
-    `yaw_deg` (positive is left) and `pitch_deg` (positive is nose down) turn it from there.
-    """
+    """How a sensor is put on a surface: its distance from it [m], and its direction. `yaw_deg`
+    (positive is left) and `pitch_deg` (positive is nose down) turn it from there."""
 
     stand_off_m: float
     along_normal: bool = False

@@ -34,10 +34,8 @@ def place_dropped() -> None:
 
 
 def is_dropped(obj: bpy.types.Object) -> bool:
-    """Whether a sensor was dropped from the asset browser and is not turned yet.
-
-    Blender removes the mark of an asset from what is dropped, not from what is appended otherwise.
-    """
+    """Whether a sensor was dropped from the asset browser and is not turned yet. Blender removes
+    the mark of an asset from what is dropped, not from what is appended otherwise."""
     is_local = obj.library is None and obj.asset_data is None
     return is_local and obj.perception_entropy.stands_when_dropped
 

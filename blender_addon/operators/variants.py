@@ -36,10 +36,8 @@ def of_variant(
     options: frozenset[str] = UNDO,
     of_sensors: bool = False,
 ) -> Callable[[VariantFunction], type[bpy.types.Operator]]:
-    """Return what makes an operator of a function of the scene and the chosen variant's row.
-
-    One that is `of_sensors` reads or places the scene's sensors: as drawn, in whatever state.
-    """
+    """Return what makes an operator of a function of the scene and the chosen variant's row. One
+    that is `of_sensors` reads or places the scene's sensors: as drawn, in whatever state."""
 
     def make(function: VariantFunction) -> type[bpy.types.Operator]:
         def act(context: bpy.types.Context, key: int) -> str | None:
@@ -179,9 +177,7 @@ def stand_as_variant(
     before: tuple[bridge.SensorRecord, ...],
 ) -> str:
     """Store the present sensors, and apply other sensors as a new variant; return its name.
-
-    `InputError` when they cannot stand here; there is no such variant then.
-    """
+    `InputError` when they cannot stand here; there is no such variant then."""
     keep_unsaved(scene, before)
     rows = scene.perception_entropy.variants
     row = bridge.add_variant(scene, _free(scene, title), records)

@@ -128,10 +128,8 @@ def ghost_sensors(
     name: str = "",
     title: str = GHOST_TITLE,
 ) -> graphics.LayerShape:
-    """Return another variant's sensors, and lines to the present sensors of the same names.
-
-    `name` is the other variant's, for the legend.
-    """
+    """Return another variant's sensors, and lines to the present sensors of the same names. `name`
+    is the other variant's, for the legend."""
     here = {sensor.name: sensor for sensor in present}
     lines = [_ghost_outline(sensor) for sensor in others]
     color, labels = graphics.with_alpha(PALE, LINK_ALPHA), []

@@ -126,10 +126,8 @@ def blind_ground(
     height: float,
     palette: graphics.Palette = graphics.VIEWPORT,
 ) -> graphics.LayerShape:
-    """Return outline, hatching and measures, on the ground.
-
-    `body` are the vehicle's bounds; without one there is nothing to measure from.
-    """
+    """Return outline, hatching and measures, on the ground. `body` are the vehicle's bounds;
+    without one there is nothing to measure from."""
     color = palette.blind
     hatching = hatch(found.outlines, HATCH_M)
     thin = graphics.Primitives.of(

@@ -70,9 +70,7 @@ class _Tiles:
     @classmethod
     def of(cls, points: Floats, normals: Floats, weight: Floats) -> "_Tiles":
         """Sort hits (N, 3) into squares perpendicular to the axis nearest to the surface's normal.
-
-        `weight` (N,) is the number of beams that each hit represents.
-        """
+        `weight` (N,) is the number of beams that each hit represents."""
         axis = np.abs(normals).argmax(axis=1)
         side = np.where(np.arange(3) == axis[:, None], DEPTH_M, TILE_M)
         place = np.column_stack([2 * axis, np.floor(points / side + ASIDE)]).astype(np.int64)

@@ -32,10 +32,8 @@ CornerPair = tuple[Floats, Floats]
 def draw_labels(
     context: bpy.types.Context, labels: Sequence[graphics.Tag], taken: Sequence[PlateBox] = ()
 ) -> None:
-    """Draw labels above their positions, without those that would cover a label or a plate.
-
-    `taken` are boxes that are covered beside the plates.
-    """
+    """Draw labels above their positions, without those that would cover a label or a plate. `taken`
+    are boxes that are covered beside the plates."""
     scale = viewport.ui_scale()
     taken = [*taken, *viewport.plate_boxes(context.region.as_pointer())]
     pad = PADDING * scale
@@ -58,9 +56,7 @@ def draw_legends(
     context: bpy.types.Context, legends: Sequence[graphics.ColorKey], vehicle: CornerPair | None
 ) -> list[PlateBox]:
     """Draw legends: in the lower right corner, or where they cover no plate and not the vehicle.
-
-    Return the boxes that are covered: those of the legends, and those of Blender's own.
-    """
+    Return the boxes that are covered: those of the legends, and those of Blender's own."""
     scale, region, space = viewport.ui_scale(), context.region, context.space_data
     if len(space.region_quadviews) and context.region_data != space.region_3d:
         return []  # one of four views, and not the one that can be turned

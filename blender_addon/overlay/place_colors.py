@@ -18,11 +18,8 @@ MARK = (1.0, 1.0, 1.0, 0.95)
 
 
 def place_colors(found: "jobs.PlaceMap", sensors: "Sequence[pe.Sensor]") -> graphics.LayerShape:
-    """Return the surface in colours, bright is good, with the best place named.
-
-    `sensors` are those of the scene: where they are not those that were scored with, the legend
-    says so.
-    """
+    """Return the surface in colours, bright is good, with the best place named. `sensors` are those
+    of the scene: where they are not those that were scored with, the legend says so."""
     row = found.row
     values = np.array([math.nan if e.value is None else e.value for e in found.places])
     points, normals = (

@@ -51,10 +51,8 @@ def mount_regions(
 
 
 def offset_surface(triangles: Floats) -> Floats:
-    """Return triangles (F, 3, 3) twice, a little off the surface on either side (2 F, 3, 3).
-
-    Shared corners are moved together: otherwise gaps would show the surface.
-    """
+    """Return triangles (F, 3, 3) twice, a little off the surface on either side (2 F, 3, 3). Shared
+    corners are moved together: otherwise gaps would show the surface."""
     if not len(triangles):
         return np.empty((0, 3, 3))
     faces = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])

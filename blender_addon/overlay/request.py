@@ -19,10 +19,8 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class SceneSensor:
-    """A sensor of the scene, and its state there.
-
-    `color` is its colour; `drawn` whether its own layers are shown, `counted` whether it is scored.
-    """
+    """A sensor of the scene, and its state there. `color` is its colour; `drawn` whether its own
+    layers are shown, `counted` whether it is scored."""
 
     sensor: pe.Sensor
     color: graphics.Rgb

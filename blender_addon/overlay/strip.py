@@ -18,10 +18,8 @@ _cells: list[Batches] = []
 def draw_strip(
     context: bpy.types.Context, strip: graphics.TimeStrip, seconds: float, note: str
 ) -> PlateBox:
-    """Draw a strip with its cursor after so many seconds; return the box of its plate.
-
-    `note` says why it is not that of the scene; empty: it is.
-    """
+    """Draw a strip with its cursor after so many seconds; return the box of its plate. `note` says
+    why it is not that of the scene; empty: it is."""
     scale = viewport.ui_scale()
     pad, small = PAD * scale, SMALL * scale
     left, bottom = viewport.beside_toolbar(context), viewport.above_hud(context, over_strip=False)

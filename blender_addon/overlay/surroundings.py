@@ -36,10 +36,8 @@ def labels_around(scene: "bpy.types.Scene", eye: pe.Pose) -> tuple[graphics.Tag,
 def draw_around(
     scene: "bpy.types.Scene", eye: pe.Pose, area: DrawRegion, as_linear: bool = False
 ) -> None:
-    """Draw what is around a sensor, with the matrices of its picture.
-
-    `as_linear`: into a texture of linear light.
-    """
+    """Draw what is around a sensor, with the matrices of its picture. `as_linear`: into a texture
+    of linear light."""
     _, ground, bodies = _around(scene, eye, as_linear)
     before = gpu.state.blend_get(), gpu.state.depth_test_get(), gpu.state.depth_mask_get()
     gpu.state.blend_set("ALPHA")

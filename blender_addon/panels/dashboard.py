@@ -20,10 +20,8 @@ LOCKS = {True: "LOCKED", False: "UNLOCKED"}
 
 
 def draw_dashboard(layout: UILayout, context: Context) -> None:
-    """Draw the live score, or the stored one if it is current or Live is off, and its figures.
-
-    Each takes the same rows, those that come late included: what is below stays where it is.
-    """
+    """Draw the live score, or the stored one if it is current or Live is off, and its figures. Each
+    takes the same rows, those that come late included: what is below stays where it is."""
     scene, settings = context.scene, context.scene.perception_entropy
     if not listed_sensors(scene) and not settings.has_result:
         return

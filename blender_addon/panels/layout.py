@@ -100,10 +100,8 @@ def _header_text(count: str, chosen: str) -> DrawHeader:
 def row_list(
     name: str, **members: Any
 ) -> Callable[[Callable[[Context, UILayout, Any, Any], None]], type[bpy.types.UIList]]:
-    """Return what makes a list of a function that draws a row of it.
-
-    The function takes context, layout, the owner of the list and the row's item.
-    """
+    """Return what makes a list of a function that draws a row of it. The function takes context,
+    layout, the owner of the list and the row's item."""
 
     def make(function: Callable[[Context, UILayout, Any, Any], None]) -> type[bpy.types.UIList]:
         def draw_item(  # Blender counts the arguments

@@ -125,10 +125,8 @@ def mixin(name: str, properties: dict[str, Any]) -> Any:
 
 
 class DeclaredRow(NamedTuple):
-    """A field of the panel: its property, the form it has, and when it is drawn.
-
-    `beside` is the word beside the field while it is 0, `when` as of `studies.Panel`.
-    """
+    """A field of the panel: its property, the form it has, and when it is drawn. `beside` is the
+    word beside the field while it is 0, `when` as of `studies.Panel`."""
 
     name: str
     is_pair: bool = False

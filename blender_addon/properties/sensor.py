@@ -33,10 +33,8 @@ FREE_BY_DEFAULT = tuple(axis in search.PAPER_FREE for axis in search.AXES)
 
 
 def shown_pose(obj: Object) -> pe.Pose:
-    """Return the pose of an object in the ground frame, rounded as a score reads it.
-
-    A scaled or mirrored object, which cannot be scored, gets the nearest pose.
-    """
+    """Return the pose of an object in the ground frame, rounded as a score reads it. A scaled or
+    mirrored object, which cannot be scored, gets the nearest pose."""
     ground_from_sensor = np.array(obj.matrix_world, dtype=float)
     try:
         held = bridge.last_written_pose(obj, ground_from_sensor)

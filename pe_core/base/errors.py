@@ -177,10 +177,8 @@ def available_bytes() -> int | None:
 
 
 def require_memory(source: object, field: str, needed: int) -> None:
-    """Refuse work that needs more than the available memory.
-
-    `InputError` with the needed and the available memory.
-    """
+    """Refuse work that needs more than the available memory. `InputError` with the needed and the
+    available memory."""
     available = available_bytes()
     if available is not None and needed > available:
         expected = f"what fits in the {size_text(available)} of memory that are free"

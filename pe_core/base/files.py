@@ -73,11 +73,8 @@ def read_bytes(path: Path, max_bytes: int = TEXT_BYTES) -> bytes:
 
 
 def named_path(source: object, field: str, text: str) -> Path:
-    """Return the path of a file or folder that somebody named, in a name that can be.
-
-    `InputError` when the text is empty, has a NUL, or a name in it has more bytes than file systems
-    take.
-    """
+    """Return the path of a file or folder that somebody named, in a name that can be. `InputError`
+    when the text is empty, has a NUL, or a name in it has more bytes than file systems take."""
     if not text:
         raise InputError(source, field, "the name of a file or folder", "an empty text")
     longest = max(len(part.encode("utf-8", "surrogatepass")) for part in text.split("/"))
@@ -206,10 +203,8 @@ def put_in_place(moves: Mapping[Path, Path]) -> None:
 
 
 def write_synced(path: Path, data: bytes) -> None:
-    """Write a file that is on the disk, not in its cache, when the function returns.
-
-    `OSError` when the disk is full or fails.
-    """
+    """Write a file that is on the disk, not in its cache, when the function returns. `OSError` when
+    the disk is full or fails."""
     number = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | BINARY, 0o666)
     try:
         rest = memoryview(data)
@@ -222,9 +217,7 @@ def write_synced(path: Path, data: bytes) -> None:
 
 def sync_file(path: Path) -> None:
     """Have the disk hold a file's bytes before its name counts; a power failure would empty it.
-
-    `OSError` when the disk is full or fails: some file systems tell only here.
-    """
+    `OSError` when the disk is full or fails: some file systems tell only here."""
     number = os.open(path, os.O_RDWR | BINARY)
     try:
         os.fsync(number)
@@ -234,9 +227,7 @@ def sync_file(path: Path) -> None:
 
 def sync_folder(folder: Path) -> None:
     """Have the disk hold the names of a folder's files. Not all systems can; then nothing is done.
-
-    The files are whole in any case: they were synchronised before they got their names.
-    """
+    The files are whole in any case: they were synchronised before they got their names."""
     with suppress(OSError):  # Windows opens no folders, some file systems synchronise none
         number = os.open(folder, os.O_RDONLY)
         try:
@@ -332,9 +323,7 @@ def numbered_lines(text: str) -> list[tuple[int, str]]:
 
 def csv_text(rows: Iterable[Iterable[object]], *, quote_texts: bool = False) -> str:
     """Return rows as CSV: None is an empty cell, texts that look like formulas are marked.
-
-    `quote_texts`: Whether every text is in quotes, not only those that need them.
-    """
+    `quote_texts`: Whether every text is in quotes, not only those that need them."""
     text = io.StringIO()
     if quote_texts:
         writer = csv.writer(text, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC)

@@ -91,9 +91,7 @@ class Tabular(ShortRepr):
 
     def to_pandas(self) -> Any:
         """Return the table as a `pandas.DataFrame`, a row a part, units in the names of columns.
-
-        `InputError` when pandas is not installed: the extra ``notebook`` brings it.
-        """
+        `InputError` when pandas is not installed: the extra ``notebook`` brings it."""
         return required_package("pandas").DataFrame(self._rows())
 
 

@@ -45,11 +45,8 @@ EXTRAS = {
 
 
 def shipped(name: str) -> Any:
-    """Return what a name of `SHIPPED` leads to.
-
-    The engine asks here for readers of files, which it does not import, and searches for what the
-    catalogue knows of a model.
-    """
+    """Return what a name of `SHIPPED` leads to. The engine asks here for readers of files, which it
+    does not import, and searches for what the catalogue knows of a model."""
     return _shipped_point(name).load()
 
 
@@ -63,9 +60,7 @@ def find_plugin(sort: str, name: str) -> EntryPoint | None:
 
 def find_plugins(sort: str) -> list[EntryPoint]:
     """Return all plugins of a sort: those shipped that are present, then those of other packages.
-
-    Blender's extension leaves some of those shipped out.
-    """
+    Blender's extension leaves some of those shipped out."""
     own = [_shipped_point(name) for name in SHIPPED if name.startswith(f"{sort}.")]
     others = [point for point in entry_points(group=GROUP) if point.name.startswith(f"{sort}.")]
     return [*(point for point in own if _is_present(point)), *others]
@@ -107,29 +102,22 @@ def plugin_name(point: EntryPoint) -> str:
 
 
 def load_plugin(point: EntryPoint) -> Any:
-    """Return the object that an entry point names.
-
-    `ImportError` when a library is missing: the caller knows which extra installs it. `InputError`
-    when the plugin fails while it is loaded.
-    """
+    """Return the object that an entry point names. `ImportError` when a library is missing: the
+    caller knows which extra installs it. `InputError` when the plugin fails while it is loaded."""
     return _guarded(point, "to load", point.load, ImportError)
 
 
 def call_plugin(point: EntryPoint, function: Any, *arguments: Any) -> Any:
-    """Call a plugin's function.
-
-    `InputError` when it is not a function, or raises any exception; its own `InputError` is kept.
-    """
+    """Call a plugin's function. `InputError` when it is not a function, or raises any exception;
+    its own `InputError` is kept."""
     if not callable(function):
         raise InputError(plugin_name(point), "entry point", "a function", type(function).__name__)
     return _guarded(point, "to complete", lambda: function(*arguments), InputError)
 
 
 def required_plugin(sort: str, name: str, source: str, field: str, expected: str) -> Any:
-    """Return a plugin, and what it leads to.
-
-    `InputError` when there is none, or a library is missing: `expected` says what to install.
-    """
+    """Return a plugin, and what it leads to. `InputError` when there is none, or a library is
+    missing: `expected` says what to install."""
     point = find_plugin(sort, name)
     if point is None:
         raise InputError(source, field, expected, "none installed")

@@ -7,10 +7,8 @@ T = TypeVar("T")
 
 
 class RecentCache(Generic[T]):
-    """The values that were used last, by keys that are compared.
-
-    Threads may share it: one that asks while another makes a value makes one, too.
-    """
+    """The values that were used last, by keys that are compared. Threads may share it: one that
+    asks while another makes a value makes one, too."""
 
     def __init__(self, most: int = 1) -> None:
         self._most = most

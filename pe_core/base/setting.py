@@ -247,10 +247,8 @@ def read_settings(
 
 
 def read_declared(table: Table, cls: type[T], *others: Any, default: T | None = None) -> T:
-    """Return a dataclass of settings from its table, which has no further keys.
-
-    `others` are fields before them that are no settings. Errors name the table.
-    """
+    """Return a dataclass of settings from its table, which has no further keys. `others` are fields
+    before them that are no settings. Errors name the table."""
     values = read_settings(table, cls, default=default)
     table.finish()
     with table.naming():

@@ -109,10 +109,8 @@ def _handlers_held(numbers: Iterable[int]) -> Iterator[None]:
 
 @contextmanager
 def pipe_errors() -> Iterator[None]:
-    """Have a pipe without another end raise an error, and not end this process.
-
-    Python asks for that when it starts, but Blender's own does not. In the main thread only.
-    """
+    """Have a pipe without another end raise an error, and not end this process. Python asks for
+    that when it starts, but Blender's own does not. In the main thread only."""
     if not hasattr(signal, "SIGPIPE"):
         yield
         return

@@ -144,11 +144,8 @@ class Table:
 
 
 def load_toml(source: object, field: str, text: str) -> dict[str, Any]:
-    """Return the tables of a TOML text.
-
-    `InputError` when it is not TOML, is nested too deep, or has an integer of thousands of digits
-    or a key of more than `MAX_KEY_PARTS` parts.
-    """
+    """Return the tables of a TOML text. `InputError` when it is not TOML, is nested too deep, or
+    has an integer of thousands of digits or a key of more than `MAX_KEY_PARTS` parts."""
     if found := LONG_KEY.search(text):
         line = text.count("\n", 0, found.start()) + 1
         raise InputError(source, f"line {line}", f"keys of at most {MAX_KEY_PARTS} parts", "more")
@@ -161,10 +158,8 @@ def load_toml(source: object, field: str, text: str) -> dict[str, Any]:
 
 
 def dumps(data: Mapping[str, Any]) -> str:
-    """Return TOML text of nested mappings, lists and scalars; floats round-trip exactly.
-
-    A mapping becomes a table, a list of mappings an array of tables. Values of None are left out.
-    """
+    """Return TOML text of nested mappings, lists and scalars; floats round-trip exactly. A mapping
+    becomes a table, a list of mappings an array of tables. Values of None are left out."""
     return "\n".join(_table(data, "")).lstrip("\n") + "\n"
 
 

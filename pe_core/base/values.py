@@ -197,10 +197,8 @@ def plain(value: Any) -> Any:
 def vector(
     source: object, field: str, values: Any, count: int, rule: Number = FINITE, more: str = ""
 ) -> tuple[float, ...]:
-    """Return `count` numbers that meet one rule, or raise one `InputError` for all of them.
-
-    `more` is appended to what the message expects.
-    """
+    """Return `count` numbers that meet one rule, or raise one `InputError` for all of them. `more`
+    is appended to what the message expects."""
     items, worst = listed(values, count), math.nan
     if items is not None and len(items) == count:
         try:
@@ -222,10 +220,8 @@ def pair(
 
 
 def listed(values: Any, max_count: int | None = None) -> list[Any] | None:
-    """Return the elements of a list, tuple or array; None for anything else, a text included.
-
-    At most ``max_count + 1`` elements are taken: enough to see that there are too many.
-    """
+    """Return the elements of a list, tuple or array; None for anything else, a text included. At
+    most ``max_count + 1`` elements are taken: enough to see that there are too many."""
     if type(values) in (tuple, list):  # the usual case, and fast: a search makes many poses
         return list(values)
     if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Iterable):
@@ -238,9 +234,7 @@ def listed(values: Any, max_count: int | None = None) -> list[Any] | None:
 
 def numbers(values: Any) -> Floats | None:
     """Return a new array of floats, NaN for an element that is not a number; None if not an array.
-
-    As everywhere, True, False and texts are not numbers.
-    """
+    As everywhere, True, False and texts are not numbers."""
     try:
         array = np.asarray(values)
     except ValueError:  # rows of different lengths
@@ -300,9 +294,7 @@ def degrees_in_file(angle: float) -> float:
 
 def as_in_file(angle: float) -> float:
     """Return an angle [rad] as it comes back from a file, at most one unit in the last place off.
-
-    An angle that was converted from degrees is returned unchanged.
-    """
+    An angle that was converted from degrees is returned unchanged."""
     if math.radians(round(math.degrees(angle), DEGREE_DECIMALS)) == angle:
         return angle + 0.0  # no negative zero, which would be written out
     return math.radians(degrees_in_file(angle))

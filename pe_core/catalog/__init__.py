@@ -87,10 +87,8 @@ def names(kind: str | None = None) -> list[str]:
 
 
 def matching(typed: str, kind: str | None = None) -> list[str]:
-    """Return the names equal to the typed text, or else those that contain it; case is ignored.
-
-    A single result is unambiguous: only ``"Hesai QT128C2X"`` contains ``"QT128"``.
-    """
+    """Return the names equal to the typed text, or else those that contain it; case is ignored. A
+    single result is unambiguous: only ``"Hesai QT128C2X"`` contains ``"QT128"``."""
     wanted = typed.strip().casefold()
     containing = [name for name in names(kind) if wanted in name.casefold()] if wanted else []
     exact = [name for name in containing if name.casefold() == wanted]
@@ -112,10 +110,8 @@ def add(name: str, table: Mapping[str, Any], folder: Path | None = None) -> None
 
 
 def add_file(path: Path) -> list[str]:
-    """Add the presets of a file, a table each by its name; return their names.
-
-    `InputError` when the file is no TOML, or a preset cannot be added; then none of them is.
-    """
+    """Add the presets of a file, a table each by its name; return their names. `InputError` when
+    the file is no TOML, or a preset cannot be added; then none of them is."""
     tables, added = load_toml(path, "catalogue", decode_text(read_bytes(path))), []
     try:
         for name, table in tables.items():
@@ -149,10 +145,8 @@ def replace_added(models: Mapping[str, SensorModel]) -> None:
 
 
 def load(name: str) -> SensorModel:
-    """Return the sensor of that name; the same object every time.
-
-    `InputError` when there is no such sensor; the message has similar names.
-    """
+    """Return the sensor of that name; the same object every time. `InputError` when there is no
+    such sensor; the message has similar names."""
     name = A_TEXT.checked("catalogue", "model", name)
     if name not in _loaded:
         require_name("catalogue", "model", name, names())
@@ -170,10 +164,8 @@ def rig_on(known: KnownRig, vehicle: Vehicle | None = None) -> Rig:
 
 
 def housing(name: str) -> Housing | None:
-    """Return the housing of the sensor of that name; None if its size is not known.
-
-    `InputError` when its table in the catalogue is not valid.
-    """
+    """Return the housing of the sensor of that name; None if its size is not known. `InputError`
+    when its table in the catalogue is not valid."""
     entry = entries().get(name)
     table = None if entry is None else entry.table.get("housing")
     return None if table is None else read_housing(name, table)
@@ -181,9 +173,7 @@ def housing(name: str) -> Housing | None:
 
 def data_sheet(name: str) -> DataSheet:
     """Return the figures of the sensor of that name, None where no data sheet has them.
-
-    `InputError` when its table in the catalogue is not valid.
-    """
+    `InputError` when its table in the catalogue is not valid."""
     table = entries()[name].table.get("data_sheet") if name in entries() else None
     return DataSheet() if table is None else read_data_sheet(name, table)
 

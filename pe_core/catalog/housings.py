@@ -37,9 +37,7 @@ def read_housing(name: str, table: Any) -> Housing:
 
 def read_data_sheet(name: str, table: Any) -> DataSheet:
     """Build figures from a table: ``mass`` [kg], ``power`` [W], ``data_rate`` [Mbit/s], ``source``.
-
-    `InputError` when `table` is not a table, a key is unknown, or a value is not valid.
-    """
+    `InputError` when `table` is not a table, a key is unknown, or a value is not valid."""
     if not isinstance(table, Mapping):
         raise InputError(name, "data_sheet", "a table", shown(table))
     require_keys(name, "data_sheet.", table, SHEET_KEYS)

@@ -90,9 +90,7 @@ class Targets:
 
     def met(self, which: Ints, d: tuple[Floats, Floats, Floats]) -> tuple[Ints, Floats]:
         """Return which pairs (P,) of a triangle and a direction intersect, and the distances [m].
-
-        Triangles seen edge-on, or with zero area, are never hit.
-        """
+        Triangles seen edge-on, or with zero area, are never hit."""
         side = _product(self.edges[0], which, d)
         next_side = _product(self.edges[1], which, d)
         low, high = np.minimum(side, next_side), np.maximum(side, next_side)
@@ -140,10 +138,8 @@ class VisibleBoxes:
 
 @dataclass(frozen=True, slots=True)
 class FaceLook:
-    """View of a mesh from a point through one face of the cube.
-
-    `origin` (3,) is the point in the frame of the mesh [m].
-    """
+    """View of a mesh from a point through one face of the cube. `origin` (3,) is the point in the
+    frame of the mesh [m]."""
 
     tree: TriangleTree
     origin: Floats
@@ -184,10 +180,8 @@ class FaceLook:
     def opened(
         self, boxes: VisibleBoxes, level: int, count_rays: CountRays, max_rays: int
     ) -> tuple[list[VisibleBoxes], VisibleBoxes]:
-        """Split the boxes with more than `max_rays` rays, level by level.
-
-        Returns boxes with at most `max_rays`, by level, lowest first; and lowest boxes with more.
-        """
+        """Split the boxes with more than `max_rays` rays, level by level. Returns boxes with at
+        most `max_rays`, by level, lowest first; and lowest boxes with more."""
         small: list[VisibleBoxes] = []
         while True:
             ray_count = count_rays(boxes.u, boxes.v)

@@ -73,9 +73,7 @@ class OcclusionMap:
 @dataclass(frozen=True, slots=True)
 class _EdgePairs:
     """Triangles and the bins they overlap, (P,): depths there, and whether they cover the middle.
-
-    `side` is the visible side of the triangle, 1 or -1; 0 where the triangle is seen edge-on.
-    """
+    `side` is the visible side of the triangle, 1 or -1; 0 where the triangle is seen edge-on."""
 
     bin: Ints
     side: Floats

@@ -20,11 +20,8 @@ PARALLEL = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Hull:
-    """A convex hull in the ground frame: `corners` (N, 3) [m].
-
-    `normals` (K, 3) and `edges` (E, 3) are unit directions of the faces' normals and of the edges,
-    one for each opposite pair.
-    """
+    """A convex hull in the ground frame: `corners` (N, 3) [m]. `normals` (K, 3) and `edges` (E, 3)
+    are unit directions of the faces' normals and of the edges, one for each opposite pair."""
 
     corners: Floats
     normals: Floats
@@ -32,10 +29,8 @@ class Hull:
 
 
 def upright_hull(shape: str, pose: Pose, center: Floats, size: Floats) -> Hull:
-    """Return the convex hull of a box or a cylinder that is upright in a frame.
-
-    `center` (3,) is its middle in the frame, `size` (3,) that along the frame's x, y and z [m].
-    """
+    """Return the convex hull of a box or a cylinder that is upright in a frame. `center` (3,) is
+    its middle in the frame, `size` (3,) that along the frame's x, y and z [m]."""
     outline, normals, edges = _BOX if shape == "box" else _CYLINDER
     rotation = pose.ground_from_sensor
     corners = center + outline * (size / 2.0)

@@ -59,10 +59,8 @@ class BinnedRays:
 
     @classmethod
     def within(cls, look: FaceLook, ends: Ends, d: Floats, ray: Ints) -> "BinnedRays | None":
-        """Return the rays that pass a face within a rectangle; None if there are none.
-
-        `d` (3, B) are the directions of all rays, `ray` the numbers of those that pass the face.
-        """
+        """Return the rays that pass a face within a rectangle; None if there are none. `d` (3, B)
+        are the directions of all rays, `ray` the numbers of those that pass the face."""
         depth, u, v = (w[ray] for w in look.face.split(d))
         u, v = u / depth, v / depth
         (u0, u1), (v0, v1) = ends

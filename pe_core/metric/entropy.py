@@ -76,10 +76,8 @@ def average_precision(m: ArrayLike, curve: ApCurve) -> Floats:
 
 
 def ranged(m: Any, curve: ApCurve, distance: Floats) -> Any:
-    """Return m R^(-c/a), whose a ln m + b is a ln m - c ln R + b; m itself where c is 0.
-
-    `distance` are R [m] of the elements of m.
-    """
+    """Return m R^(-c/a), whose a ln m + b is a ln m - c ln R + b; m itself where c is 0. `distance`
+    are R [m] of the elements of m."""
     return m * np.maximum(distance, NEAREST_M) ** (-curve.c / curve.a) if curve.c else m
 
 

@@ -41,9 +41,7 @@ def updated(prior: Floats | float, added: Iterable[ArrayLike]) -> Floats:
 
 def steady(added: ArrayLike, noise: float) -> Floats:
     """Return what 1 / sigma^2 approaches over many frames that each add the same, without floor.
-
-    ``(mu + sqrt(mu^2 + 4 mu / (q dt))) / 2``: the fixed point of eqs. T1 and T2.
-    """
+    ``(mu + sqrt(mu^2 + 4 mu / (q dt))) / 2``: the fixed point of eqs. T1 and T2."""
     mu = np.asarray(added, dtype=float)
     return np.asarray((mu + np.sqrt(mu * mu + 4.0 * mu / noise)) / 2.0)
 
@@ -109,9 +107,7 @@ class Frames:
 
     def fused(self, kinds: Sequence[object], added: Sequence[ArrayLike], floor: float) -> Floats:
         """Return 1 / sigma^2 after the last frame, when each group adds the same at each frame.
-
-        `added` is what each group adds to the floor: 1 / sigma^2 - f, arrays of one shape.
-        """
+        `added` is what each group adds to the floor: 1 / sigma^2 - f, arrays of one shape."""
         precision, last = np.asarray(floor), None
         for at, groups in self.times([self.rate(kind) for kind in kinds]):
             prior = floor if last is None else predicted(precision, self.q * (at - last), floor)

@@ -177,10 +177,8 @@ def is_whole(m: NDArray) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class VisibleRows:
-    """m (n, rows, nz) of the voxels of n x-planes in some rows (y); it is 0 in all other rows.
-
-    In single precision m is rounded to a few digits when fused; in double precision it is not.
-    """
+    """m (n, rows, nz) of the voxels of n x-planes in some rows (y); it is 0 in all other rows. In
+    single precision m is rounded to a few digits when fused; in double precision it is not."""
 
     rows: slice
     m: NDArray[np.floating]
@@ -345,10 +343,8 @@ class VisibleVoxels(NamedTuple):
 
 
 class LeaveOneOut:
-    """Sums over planes for each sensor S of the fusion groups.
-
-    `groups` are the measurements of the sensors of each fusion group, `totals` (G,) their sums.
-    """
+    """Sums over planes for each sensor S of the fusion groups. `groups` are the measurements of the
+    sensors of each fusion group, `totals` (G,) their sums."""
 
     def __init__(
         self, fused: PlaneFusion, groups: Sequence[Sequence[Group]], totals: Sequence[Group]

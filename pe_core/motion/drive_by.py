@@ -182,10 +182,8 @@ def drive_by(
 
 
 def _measured(rig: Rig, objects: Objects, vehicle: Vehicle | None, count: int) -> dict[str, Floats]:
-    """Return m of objects, actor by actor with a number of frames each, by sensor.
-
-    A pattern that takes several frames has an exposure a frame (`scan.exposed`).
-    """
+    """Return m of objects, actor by actor with a number of frames each, by sensor. A pattern that
+    takes several frames has an exposure a frame (`scan.exposed`)."""
     rows, cache = np.arange(len(objects)), ObjectMeasurementCache(objects, vehicle, True)
     most = max(sensor.scan.exposures for sensor in rig)
     by_exposure = [cache.measure(Rig([exposed(s, k) for s in rig])) for k in range(most)]

@@ -24,10 +24,8 @@ SAME_RATE = 1e-9
 
 
 def exposed(sensor: Sensor, frame: int) -> Sensor:
-    """Return a sensor with the beams of one frame: a LiDAR's pattern may take several.
-
-    `InputError` when it takes more than it has channels.
-    """
+    """Return a sensor with the beams of one frame: a LiDAR's pattern may take several. `InputError`
+    when it takes more than it has channels."""
     count = sensor.scan.exposures
     if sensor.kind != LIDAR.name or count == 1:
         return sensor

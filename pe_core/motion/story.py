@@ -78,10 +78,8 @@ class Actor:
 
 @dataclass(frozen=True, slots=True)
 class Story:
-    """A scene in time: the vehicle's own speed, how it stops, and what moves.
-
-    `InputError` when a number is out of its range, or there is no body to watch.
-    """
+    """A scene in time: the vehicle's own speed, how it stops, and what moves. `InputError` when a
+    number is out of its range, or there is no body to watch."""
 
     name: str
     title: str = ""

@@ -76,10 +76,8 @@ class Confirmation:
         return ap_with_latency(ap, speed, self.box_latency_s, self.box_spread_s, self.box_scatter_m)
 
     def confirmed(self, found: ArrayLike) -> Floats:
-        """Return the probability (..., K) that the track is confirmed by each frame.
-
-        `found` (..., K) is the probability that each frame finds the object. Exact.
-        """
+        """Return the probability (..., K) that the track is confirmed by each frame. `found` (...,
+        K) is the probability that each frame finds the object. Exact."""
         return self._reached(np.asarray(found, dtype=float), for_good=True)
 
     def kept(self, found: ArrayLike) -> Floats:
@@ -87,10 +85,8 @@ class Confirmation:
         return self._reached(np.asarray(found, dtype=float), for_good=False)
 
     def _reached(self, found: Floats, for_good: bool) -> Floats:
-        """Return the probability (..., K) of M of N, now or (for good) by now.
-
-        The state is the outcome of the last N frames, a bit each, the last one lowest.
-        """
+        """Return the probability (..., K) of M of N, now or (for good) by now. The state is the
+        outcome of the last N frames, a bit each, the last one lowest."""
         masks = np.arange(1 << self.window)
         enough = np.array([mask.bit_count() >= self.needed for mask in masks.tolist()])
         after = (masks << 1) & (len(masks) - 1)

@@ -236,10 +236,8 @@ def voxelised(boxes: Boxes, space: PerceptionSpace) -> Voxelised:
 
 
 class _Footprints:
-    """Centres and half sizes of some boxes, and cosine and sine of their yaws.
-
-    The sines are those of `math`, which are the same in all builds of NumPy.
-    """
+    """Centres and half sizes of some boxes, and cosine and sine of their yaws. The sines are those
+    of `math`, which are the same in all builds of NumPy."""
 
     def __init__(self, boxes: Boxes, index: Ints) -> None:
         self.x, self.y, self.z = boxes.x[index], boxes.y[index], boxes.z[index]

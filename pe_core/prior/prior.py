@@ -45,10 +45,8 @@ and 1 cone), KITTI tracking's fewer, of the front camera's view alone (4, 2, 0.2
 
 
 def checked_densities(values: Any, names: Sequence[str]) -> Densities:
-    """Return traffic densities in the order of the classes.
-
-    `InputError` when there is no class of a name, or a number is wrong.
-    """
+    """Return traffic densities in the order of the classes. `InputError` when there is no class of
+    a name, or a number is wrong."""
     pairs = dict(values) if isinstance(values, Mapping | tuple) else None
     if pairs is None:
         raise InputError("prior", "density", "numbers of objects by class", shown(values))
@@ -59,10 +57,8 @@ def checked_densities(values: Any, names: Sequence[str]) -> Densities:
 
 
 def density_of(name: str, given: Densities) -> float:
-    """Return how many objects of a class are in the paper's space at once.
-
-    `InputError` when neither the study nor `DOCUMENTED` has a number for the class.
-    """
+    """Return how many objects of a class are in the paper's space at once. `InputError` when
+    neither the study nor `DOCUMENTED` has a number for the class."""
     densities = DOCUMENTED | dict(given)
     if name not in densities:
         raise InputError("prior", "density", f"a number of {name!r} in the space at once", "none")
@@ -115,9 +111,7 @@ class Focus:
 @dataclass(frozen=True, slots=True)
 class ClassDensity:
     """One class on one space: p(i, j, k) = ground[i, j] * profile[k], focus weights included.
-
-    `ground` (nx, ny) holds the class's share of the whole prior; `profile` (nz,) sums to 1.
-    """
+    `ground` (nx, ny) holds the class's share of the whole prior; `profile` (nz,) sums to 1."""
 
     name: str
     ground: Floats

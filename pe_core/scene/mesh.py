@@ -109,9 +109,7 @@ AS_SAID = MeshAxes(rotation_deg=(0.0, 0.0, 0.0))
 @dataclass(frozen=True, eq=False)
 class BodyShape:
     """Shape of a mesh with named parts, without the floor or room that its file may contain.
-
-    `triangles` (F, 3, 3) [m] have any axes; `parts` (F,) are indices into `part_names`.
-    """
+    `triangles` (F, 3, 3) [m] have any axes; `parts` (F,) are indices into `part_names`."""
 
     triangles: Floats
     parts: NDArray[np.int32]
@@ -262,9 +260,7 @@ def require_vehicle_size(source: str, body: Any) -> None:
 
 def fitting_units(longest: float, second: float) -> list[tuple[str, float]]:
     """Return the units in which a body with these two longest sides has a vehicle's usual size.
-
-    Pairs of name and length in metres; first the unit that makes it most similar to a car.
-    """
+    Pairs of name and length in metres; first the unit that makes it most similar to a car."""
     units = SMALLER_UNITS if longest > USUAL_M[0] else LARGER_UNITS
     fitting = [(n, f) for n, f in units.items() if is_usual(f * longest, f * second)]
     return sorted(fitting, key=lambda unit: abs(math.log(unit[1] * longest / CAR_M)))

@@ -39,11 +39,8 @@ start from the position: nearer triangles may be the surface on which the sensor
 
 
 def checked_covers(covers: Any, names: Sequence[str]) -> Mapping[str, float]:
-    """Return the loss of covers, one way, by part [dB].
-
-    `InputError` when it is no table, a part is unknown (near names are offered), or a loss
-    impossible.
-    """
+    """Return the loss of covers, one way, by part [dB]. `InputError` when it is no table, a part is
+    unknown (near names are offered), or a loss impossible."""
     if not isinstance(covers, Mapping):
         raise InputError("vehicle", "covers", "a table of parts and losses", shown(covers))
     for name in covers:
@@ -327,10 +324,8 @@ def is_enclosed(vehicle: Vehicle, position: Floats, through_glass: bool = False)
 
 
 def is_open(vehicle: Vehicle, position: Floats) -> bool:
-    """Whether a wide shaft from a position (3,) [m] is empty, upwards or to the nearest side.
-
-    A fast test on the bounds of triangles. An open position is not enclosed; others may be.
-    """
+    """Whether a wide shaft from a position (3,) [m] is empty, upwards or to the nearest side. A
+    fast test on the bounds of triangles. An open position is not enclosed; others may be."""
     low, high = vehicle.bounds
     gaps = np.concatenate([position[:2] - low[:2], high[:2] - position[:2]])
     nearest = int(np.argmin(gaps))

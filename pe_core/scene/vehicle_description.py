@@ -165,10 +165,8 @@ def hood_end(shape: BodyShape, axis: int, up: int) -> float | None:
 
 
 def _outline(shape: BodyShape, axis: int, up: int) -> Floats:
-    """Return the top of a body in slices along an axis (BINS,), as a share of its height.
-
-    Empty slices are 0.
-    """
+    """Return the top of a body in slices along an axis (BINS,), as a share of its height. Empty
+    slices are 0."""
     sample = shape.triangles if shape.is_ours is None else shape.triangles[shape.is_ours]
     sample = sample[:: -(-len(sample) // TRIANGLES)]
     low, high = shape.bounds

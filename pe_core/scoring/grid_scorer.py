@@ -89,9 +89,7 @@ def samples_bytes(samples: int, columns: int) -> int:
 
 def require_room_for_samples(samples: int, columns: int) -> None:
     """Refuse a sample that takes more memory than there is; `columns` is the prior's part [bytes].
-
-    The message of the `InputError` says how many voxels would fit.
-    """
+    The message of the `InputError` says how many voxels would fit."""
     there, amount = available_bytes(), samples_bytes(samples, columns)
     if samples and there is not None and amount > there:
         max_samples = max(0, there - columns) // SAMPLE_BYTES
@@ -266,10 +264,8 @@ class GridScorer:
     def _weighed(
         self, parts: Sequence[Sequence[Group]], planes: slice, *, coverage: bool
     ) -> Iterator[tuple[Floats, Floats]]:
-        """Yield prior-weighted entropy, and coverage if needed, of parts of a rig.
-
-        By plane: sums over height (P, 1 or 2, ny, C), and entropies (ny, nz) of the first part.
-        """
+        """Yield prior-weighted entropy, and coverage if needed, of parts of a rig. By plane: sums
+        over height (P, 1 or 2, ny, C), and entropies (ny, nz) of the first part."""
         for i, ground in enumerate(self._grounds[planes]):
             outside = self._outside(planes.start + i)
             weighed = np.empty((len(parts), 1 + coverage, *ground.shape))

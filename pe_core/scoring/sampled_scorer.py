@@ -40,10 +40,8 @@ SENSORS_FUSED = 80
 
 
 class SampledScorer:
-    """Scores rigs on one fixed sample of voxels; unmoved sensors are not measured again.
-
-    It is thread-safe: a lock lets one thread score at a time.
-    """
+    """Scores rigs on one fixed sample of voxels; unmoved sensors are not measured again. It is
+    thread-safe: a lock lets one thread score at a time."""
 
     def __init__(
         self,

@@ -194,10 +194,8 @@ def _draw_column(ground: Floats, space: PerceptionSpace, u: Floats, v: Floats) -
 
 @lru_cache(maxsize=1)
 def _rings(space: PerceptionSpace) -> tuple[Ints, Ints]:
-    """Sort columns by ring (one voxel wide) and azimuth; return rings and column indices (N,).
-
-    It is cached, because a search draws samples of several sizes from one space.
-    """
+    """Sort columns by ring (one voxel wide) and azimuth; return rings and column indices (N,). It
+    is cached, because a search draws samples of several sizes from one space."""
     x, y = np.meshgrid(space.centers(0), space.centers(1), indexing="ij")
     x, y = x.reshape(-1), y.reshape(-1)
     ring = np.floor(np.sqrt(x * x + y * y) / space.interval).astype(np.int64)
@@ -246,9 +244,7 @@ def outside_masses(
     densities: list[ClassDensity], space: PerceptionSpace, tops: Floats | None
 ) -> list[float]:
     """Return each class's mass of the prior outside the vehicle (`tops` None: no vehicle).
-
-    `InputError` when no weight is left outside.
-    """
+    `InputError` when no weight is left outside."""
     if tops is None:
         return [float(d.ground.sum()) for d in densities]
     masses = [float((d.ground * outside_profile(d, space, tops)).sum()) for d in densities]

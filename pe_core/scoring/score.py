@@ -99,10 +99,8 @@ def paired_error(one: Scatter | None, other: Scatter | None, figure: FigureKey) 
 def residuals(
     values: Floats, weights: Floats | None, batch: NDArray[np.int64], batches: int
 ) -> tuple[float, ...]:
-    """Return the residuals by batch (R,) of a mean of values (N,); see `Scatter`.
-
-    `weights` None: equal ones. `batch` (N,) numbers the batch of each value.
-    """
+    """Return the residuals by batch (R,) of a mean of values (N,); see `Scatter`. `weights` None:
+    equal ones. `batch` (N,) numbers the batch of each value."""
     shares = np.ones(len(values)) if weights is None else weights
     mass = float(shares.sum())
     off = shares * (values - float((shares * values).sum()) / mass)

@@ -241,9 +241,7 @@ class BuildFigure:
         self, limit: float | None, start: Placement, moving: Set[str]
     ) -> Iterator[tuple[str, Callable[[Placement], bool]]]:
         """Yield the rules of a limit: their texts, and whether a placement breaks them.
-
-        `InputError` where what the limit needs is not known of the start.
-        """
+        `InputError` where what the limit needs is not known of the start."""
         if limit is None or (self.is_least and (not limit or len(start.rig) < 2)):
             return
         self.required(start, self.limit)

@@ -59,11 +59,8 @@ def rounded(pose: Pose) -> Pose:
 
 @dataclass(frozen=True, slots=True)
 class DesignVariable:
-    """A number that a search varies, from `low` to `high`; both belong to the range.
-
-    Its unit is "m", "rad" or "share": from 0 to 1, a share selects an element of a list and is
-    cyclic.
-    """
+    """A number that a search varies, from `low` to `high`; both belong to the range. Its unit is
+    "m", "rad" or "share": from 0 to 1, a share selects an element of a list and is cyclic."""
 
     low: float
     high: float
@@ -288,10 +285,8 @@ def standoff_point(mount: SurfaceMount, housing: Housing | None) -> Floats:
 def pose_on(
     mount: SurfaceMount, foot: Floats, normal: Floats, rpy: Sequence[float], point: Floats
 ) -> Pose:
-    """Return the pose on a mount at a point (3,) of it with a unit normal (3,), rounded.
-
-    `rpy` are the angles relative to the mount's frame there [rad], `point` is `standoff_point`.
-    """
+    """Return the pose on a mount at a point (3,) of it with a unit normal (3,), rounded. `rpy` are
+    the angles relative to the mount's frame there [rad], `point` is `standoff_point`."""
     rotation = rotate(frame_of(mount.orientation, normal), rotation_matrix(*rpy).T).T
     position = foot + mount.standoff * normal - rotate(rotation, point)
     if mount.orientation != "upright":

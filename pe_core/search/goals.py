@@ -185,10 +185,8 @@ class Start:
             raise InputError("scene", "start", "starts of a search", shown(text)) from None
 
     def placed(self, rig: Rig) -> Rig:
-        """Return a rig at the poses of this start; sensors without a pose stay.
-
-        `InputError` when the rig lacks one of the sensors.
-        """
+        """Return a rig at the poses of this start; sensors without a pose stay. `InputError` when
+        the rig lacks one of the sensors."""
         names = [sensor.name for sensor in rig]
         for name in self.poses:
             require_name("optimize", f"start {self.name!r}", name, names)
@@ -197,11 +195,8 @@ class Start:
 
 @dataclass(frozen=True, slots=True)
 class Goals:
-    """What is asked of a search besides its method, as its fields say.
-
-    It also starts from `starts`; all starts share its budget. What is fixed stays, whatever
-    axes and mounts it has.
-    """
+    """What is asked of a search besides its method, as its fields say. It also starts from
+    `starts`; all starts share its budget. What is fixed stays, whatever axes and mounts it has."""
 
     stop: Stop = field(default_factory=Stop)
     fixed: Sequence[str] = setting(

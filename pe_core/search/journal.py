@@ -60,9 +60,7 @@ class Journal:
 
     def replay(self, rig: Rig, level: int) -> float | None:
         """Return the journaled value of the next placement; None behind the end of the journal.
-
-        `InputError` when the journal has another placement here.
-        """
+        `InputError` when the journal has another placement here."""
         if self._position == len(self._entries):
             return None
         entry, digest = self._entries[self._position], _digest(rig, level)
@@ -95,9 +93,7 @@ class JournaledObjective:
         self, rigs: Sequence[Rig], cutoff: float, executor: Executor | None
     ) -> list[float]:
         """Evaluate several rigs: the first ones may be in the journal, the others are evaluated.
-
-        Workers are sent the objective without the journal.
-        """
+        Workers are sent the objective without the journal."""
         replayed = (self._journal.replay(rig, self._level) for rig in rigs)
         values: list[float] = []
         for value in replayed:

@@ -43,10 +43,8 @@ def blind_area(sight: Sight, rig: Rig) -> float:
 
 
 def reaches(sight: Sight, rig: Rig) -> dict[str, tuple[float, bool]]:
-    """Return by class how far ahead it is found [m], and whether that ends with the space.
-
-    Empty where objects are scored: that score has their reach.
-    """
+    """Return by class how far ahead it is found [m], and whether that ends with the space. Empty
+    where objects are scored: that score has their reach."""
     if sight.targets.are_objects:
         return {}
     return {name: sight.reach_ahead(rig, name) for name in sight.prior.class_names}
@@ -273,9 +271,7 @@ class Wanted:
 @dataclass(frozen=True, slots=True)
 class Reading:
     """A row of the dashboard: a figure, its value, what is wanted, whether a search keeps it.
-
-    `value` is None where it is not known. Of requirements `wanted` is how many were checked.
-    """
+    `value` is None where it is not known. Of requirements `wanted` is how many were checked."""
 
     figure: FigureOfMerit
     value: float | None
@@ -314,10 +310,8 @@ def dashboard(
     wanted: Wanted | None = None,
     keep: Sequence[str] = (),
 ) -> tuple[Reading, ...]:
-    """Return all rows for a rig; `met` tells of each requirement whether it is met.
-
-    Of `keep` a search keeps what is wanted; where nothing is, what its start has.
-    """
+    """Return all rows for a rig; `met` tells of each requirement whether it is met. Of `keep` a
+    search keeps what is wanted; where nothing is, what its start has."""
     rows = []
     for key, row in KEY_FIGURES.items():
         value = entropy if key == ENTROPY else row.value(figures)

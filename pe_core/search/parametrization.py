@@ -170,11 +170,8 @@ class Parametrization:
         self.rules = rules_of(rig, space, self._moving(), self._clear(), self._domains)
 
     def candidate(self, vector: Sequence[float]) -> Candidate:
-        """Return the placement that a vector (N,) of values stands for.
-
-        The vector of the candidate is the given one after rounding, and after projection onto a
-        surface.
-        """
+        """Return the placement that a vector (N,) of values stands for. The vector of the candidate
+        is the given one after rounding, and after projection onto a surface."""
         poses, values, start = dict[str, Pose](), list[float](), 0
         for name, domain in self._domains.items():
             count = len(domain.variables)
@@ -246,10 +243,8 @@ def _domain(sensor: Sensor, space: SearchSpace, surfaces: dict[str, MountSurface
 
 
 def feasible_start(parametrization: Parametrization, seed: int = 0) -> Candidate:
-    """Return the start; if it breaks a rule, a placement near it that breaks none.
-
-    `InputError` when no such placement is found; the message names rules that exclude each other.
-    """
+    """Return the start; if it breaks a rule, a placement near it that breaks none. `InputError`
+    when no such placement is found; the message names rules that exclude each other."""
     if parametrization.allowed(parametrization.start.rig):
         return parametrization.start
     broken_rules = [parametrization.broken(parametrization.start.rig)]

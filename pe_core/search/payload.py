@@ -53,10 +53,8 @@ class SentPayload:
 
 
 class Payload:
-    """Objects that tasks have in common, pickled together: what they share is sent once.
-
-    The objects must not change; `Unreadable` is raised for one that cannot be pickled.
-    """
+    """Objects that tasks have in common, pickled together: what they share is sent once. The
+    objects must not change; `Unreadable` is raised for one that cannot be pickled."""
 
     def __init__(self, objects: Iterable[object]) -> None:
         self.objects = tuple(objects)
@@ -74,10 +72,8 @@ class Payload:
 
 
 def send_payload(executor: Executor, objects: Iterable[object]) -> SentPayload:
-    """Send objects to all workers of an executor, unless they have them.
-
-    Raises `Unreadable` when an object cannot be pickled.
-    """
+    """Send objects to all workers of an executor, unless they have them. Raises `Unreadable` when
+    an object cannot be pickled."""
     sent, needed = _SENT.get(executor), {id(part): part for part in objects}
     if sent is None or not sent.payload.covers(needed.values()):
         earlier = () if sent is None else sent.payload.objects
@@ -132,10 +128,8 @@ def receive(key: str, data: bytes) -> None:
 
 @cache
 def _worker() -> Any:
-    """Return the payload that this worker has unpickled, and its key.
-
-    Threads share none of it, so that no thread waits for another.
-    """
+    """Return the payload that this worker has unpickled, and its key. Threads share none of it, so
+    that no thread waits for another."""
     return threads().local()
 
 
@@ -149,10 +143,8 @@ def keep_freed_memory() -> bool:
 
 
 def unpickled(packed: PackedPayload, content: bytes) -> Any:
-    """Return content that refers to a payload, in a worker.
-
-    Raises `Unreadable` when the worker lacks the payload, or does not know a class of it.
-    """
+    """Return content that refers to a payload, in a worker. Raises `Unreadable` when the worker
+    lacks the payload, or does not know a class of it."""
     try:
         worker = _worker()
         if getattr(worker, "key", None) != packed.key:

@@ -56,10 +56,8 @@ def outward_yaw(x: float, y: float) -> float:
 
 
 def surface_points(triangles: Floats, count: int) -> tuple[Floats, Ints]:
-    """Return points (N, 3) on triangles (F, 3, 3) [m], and their faces (N,).
-
-    The coarse cover is first; N is `count`. The same triangles give the same points.
-    """
+    """Return points (N, 3) on triangles (F, 3, 3) [m], and their faces (N,). The coarse cover is
+    first; N is `count`. The same triangles give the same points."""
     edges = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     normals = cross(*edges)
     area = np.cumsum(np.sqrt(dot(normals, normals)))

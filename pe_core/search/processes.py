@@ -121,10 +121,8 @@ def start_processes(count: int | None = None, common: Iterable[object] = ()) -> 
 
 
 class LazyProcesses:
-    """Processes for a search that takes longer than `SHORT_S`; None until they are up.
-
-    Parameters as those of `start_processes`; `common` is read when they start.
-    """
+    """Processes for a search that takes longer than `SHORT_S`; None until they are up. Parameters
+    as those of `start_processes`; `common` is read when they start."""
 
     def __init__(self, count: int | None = None, common: Iterable[object] = ()) -> None:
         self._count, self._common, self._began = count, common, time.monotonic()

@@ -243,10 +243,8 @@ def _with_images(names: Sequence[str], mounting: Mounting) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class DesignSpace:
-    """All designs that a selection allows for a rig.
-
-    `others` are the sensors that are not chosen, `limits` the limits of a design by name.
-    """
+    """All designs that a selection allows for a rig. `others` are the sensors that are not chosen,
+    `limits` the limits of a design by name."""
 
     sites: tuple[Site, ...]
     limits: Mapping[str, Any]
@@ -276,10 +274,8 @@ class DesignSpace:
             BUILD_FIGURES[key].required(offered, f"max_{key}")
 
     def __iter__(self) -> Iterator[Picks]:
-        """Yield designs; sites of one choice take their options in ascending order.
-
-        `InputError` after `MAX_STEPS` partial designs: the limits may allow one design in 1e40.
-        """
+        """Yield designs; sites of one choice take their options in ascending order. `InputError`
+        after `MAX_STEPS` partial designs: the limits may allow one design in 1e40."""
         yield from self._completed((), itertools.count())
 
     def first(self, count: int) -> list[Picks]:
@@ -389,10 +385,8 @@ class DesignSpace:
 
 
 def pareto_front(costs: Sequence[Sequence[float]]) -> list[int]:
-    """Return the indices of the non-dominated costs, lowest first; of equal ones the first.
-
-    Costs dominate others if none of their values is higher and they are not equal.
-    """
+    """Return the indices of the non-dominated costs, lowest first; of equal ones the first. Costs
+    dominate others if none of their values is higher and they are not equal."""
     front: list[int] = []
     for number in sorted(range(len(costs)), key=lambda k: (*costs[k], k)):
         own = costs[number]  # what dominates it comes before it

@@ -161,10 +161,8 @@ def with_error(pose: Pose, error: Floats) -> Pose:
 
 
 class RobustObjective:
-    """The entropy of a rig with all mounting errors and failures of a tolerance: mean or worst.
-
-    The mounting errors, drawn from `seed`, are the same for every rig.
-    """
+    """The entropy of a rig with all mounting errors and failures of a tolerance: mean or worst. The
+    mounting errors, drawn from `seed`, are the same for every rig."""
 
     def __init__(self, evaluator: RigEvaluator, tolerance: Tolerance, seed: int = 0) -> None:
         self._evaluator, self._tolerance, self._seed = evaluator, tolerance, seed

@@ -76,10 +76,8 @@ class PlacedBoxes:
         return [rotate(ground_from_frame.T, np.stack(w, axis=1)).T for w in axes]
 
     def crossing(self, which: Ints, directions: Floats) -> tuple[Floats, Floats]:
-        """Return distances (P,) at which rays from the sensor enter and leave one box each.
-
-        `enter` is at least 0; if the ray misses, enter >= leave.
-        """
+        """Return distances (P,) at which rays from the sensor enter and leave one box each. `enter`
+        is at least 0; if the ray misses, enter >= leave."""
         enter, leave = np.zeros(len(which)), np.full(len(which), np.inf)
         for k, speed in enumerate(self.along(which, directions)):
             speed = np.where(np.abs(speed) < NO_SPEED, NO_SPEED, speed)
@@ -121,11 +119,8 @@ class PlacedBoxes:
 
 @dataclass(frozen=True, slots=True)
 class BoxRays:
-    """Rays from a sensor that hit boxes, (R,) each.
-
-    `item` is the box; `directions` (R, 3) are unit vectors in the ground frame; `distance` is the
-    distance to the box [m].
-    """
+    """Rays from a sensor that hit boxes, (R,) each. `item` is the box; `directions` (R, 3) are unit
+    vectors in the ground frame; `distance` is the distance to the box [m]."""
 
     item: Ints
     directions: Floats
@@ -152,10 +147,8 @@ class Rivals:
 
     @classmethod
     def near(cls, boxes: PlacedBoxes, scenes: Ints, balls: Floats, which: Ints) -> "Rivals":
-        """Return, for some boxes, the other boxes of their scenes that may hide them.
-
-        `balls` (N,) are radii of balls round all boxes [m].
-        """
+        """Return, for some boxes, the other boxes of their scenes that may hide them. `balls` (N,)
+        are radii of balls round all boxes [m]."""
         rivals = cls.of(scenes, which)
         other, item = rivals.other, which[rivals.ranks()]
         x, y, _ = boxes.in_ground(boxes.offsets).T

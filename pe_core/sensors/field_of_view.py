@@ -28,10 +28,8 @@ FREE = -1
 def checked_ranges(
     name: str, min_range: float, max_range: float, max_rule: Number
 ) -> tuple[float, float]:
-    """Return the checked minimum and maximum range [m].
-
-    `InputError` when a range breaks its rule, or the minimum is not below the maximum.
-    """
+    """Return the checked minimum and maximum range [m]. `InputError` when a range breaks its rule,
+    or the minimum is not below the maximum."""
     far = max_rule.checked(name, "max_range", max_range)
     near = MIN_RANGE.checked(name, "min_range", min_range) + 0.0
     if not near < far:
@@ -61,11 +59,8 @@ def at_whole_range(sensor: Sensor) -> Sensor:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ViewPatch:
-    """A sensor's field of view as a mesh on the unit sphere.
-
-    `directions` (N, 3) are unit vectors, sensor frame; `faces` (F, 3) indices into them,
-    counter-clockwise as seen from outside.
-    """
+    """A sensor's field of view as a mesh on the unit sphere. `directions` (N, 3) are unit vectors,
+    sensor frame; `faces` (F, 3) indices into them, counter-clockwise as seen from outside."""
 
     directions: Floats
     faces: Ints

@@ -48,9 +48,7 @@ class Voxels:
 @dataclass(frozen=True, slots=True)
 class Occlusion:
     """Rays of a sensor (beams, or places of a picture), and how many of them the vehicle occludes.
-
-    `by_part` counts these by part of the vehicle, in descending order.
-    """
+    `by_part` counts these by part of the vehicle, in descending order."""
 
     rays: int = 0
     occluded: int = 0
@@ -59,10 +57,8 @@ class Occlusion:
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """The measurement m (V,) of a sensor on a sample of voxels.
-
-    The kernel uses `kernel_data` again.
-    """
+    """The measurement m (V,) of a sensor on a sample of voxels. The kernel uses `kernel_data`
+    again."""
 
     sensor: Sensor
     m: NDArray
@@ -96,10 +92,8 @@ class ObjectView:
 
 
 class GridKernel:
-    """Measures sensors of one kind on all voxels of a space, in blocks of x-planes.
-
-    A kind has `rows`, or `planes` if it measures all planes at once.
-    """
+    """Measures sensors of one kind on all voxels of a space, in blocks of x-planes. A kind has
+    `rows`, or `planes` if it measures all planes at once."""
 
     def prepare(self, sensor: Sensor) -> Any:
         """Compute what does not depend on the voxels; called in threads."""
@@ -107,9 +101,7 @@ class GridKernel:
 
     def planes(self, groups: Sequence[Sequence[Any]], pool: Executor) -> list[Planes]:
         """Return a function of a block of planes for each group: the sum over its sensors (eq. 6).
-
-        `groups` holds results of `prepare`. The functions are valid until the next call.
-        """
+        `groups` holds results of `prepare`. The functions are valid until the next call."""
 
         def measured(group: Sequence[Any], planes: slice) -> VisibleRows:
             return reduce(add, (self.rows(one, planes) for one in group))
@@ -139,9 +131,7 @@ def block_voxels(space: PerceptionSpace) -> int:
 
 class CachingKernel:
     """A kernel of one kind of sensors with a `cache` of what does not depend on its targets.
-
-    Kernels of the same kind and vehicle may share it.
-    """
+    Kernels of the same kind and vehicle may share it."""
 
     cache: Any = None
 

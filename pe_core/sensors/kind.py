@@ -210,9 +210,7 @@ KINDS: Mapping[str, Kind] = MappingProxyType(_kinds)
 
 def register(kind: Kind) -> None:
     """Add a kind to the registry: its sensors can then be studied, scored, searched and shown.
-
-    `InputError` when the name is taken, or the model class names another kind.
-    """
+    `InputError` when the name is taken, or the model class names another kind."""
     if kind.name in _kinds:
         raise InputError("kinds", "name", "a name used once", repr(kind.name))
     if getattr(kind.model, "kind", None) != kind.name:
@@ -227,18 +225,13 @@ def unregister(name: str) -> None:
 
 
 def kind_named(name: object, source: str, field: str = "kind") -> Kind:
-    """Return the kind of a name; `source` and `field` are for the message.
-
-    `InputError` when there is no such kind.
-    """
+    """Return the kind of a name; `source` and `field` are for the message. `InputError` when there
+    is no such kind."""
     return _kinds[choice(source, field, name, _kinds)]
 
 
 def kind_of(sensor: Sensor | SensorModel) -> Kind:
-    """Return the kind of a sensor, or of its model.
-
-    `InputError` when its kind is not registered.
-    """
+    """Return the kind of a sensor, or of its model. `InputError` when it is not registered."""
     return kind_named(getattr(sensor, "kind", None), sensor.name)
 
 

@@ -44,10 +44,8 @@ MARGIN = 1e-6
 
 
 class _Kernels(Generic[K]):
-    """Kernels of the kinds of sensors, made by `make`.
-
-    `caches` are those of kernels by kind, shared by all kernels on one vehicle.
-    """
+    """Kernels of the kinds of sensors, made by `make`. `caches` are those of kernels by kind,
+    shared by all kernels on one vehicle."""
 
     def __init__(self, make: Callable[[Sensor], K], caches: dict[str, Any] | None) -> None:
         self._make, self._caches = make, {} if caches is None else caches
@@ -157,10 +155,8 @@ class MeasurementCache:
         return None
 
     def occlusion(self, sensor: Sensor) -> Occlusion:
-        """Return how much of a sensor of the last rig the vehicle occludes.
-
-        A range that is limited to no less than the far end of the vehicle changes nothing.
-        """
+        """Return how much of a sensor of the last rig the vehicle occludes. A range that is limited
+        to no less than the far end of the vehicle changes nothing."""
         whole = at_whole_range(sensor)
         if whole is not sensor and self._vehicle is not None:
             far = np.abs(np.asarray(self._vehicle.bounds) - np.asarray(sensor.pose.position))
@@ -241,10 +237,8 @@ class ObjectMeasurementCache:
 
 
 class VisibleGroundCache:
-    """Marks squares of the ground for rigs.
-
-    `kernel_caches`: Caches of kernels by kind, shared by several of these on one vehicle.
-    """
+    """Marks squares of the ground for rigs. `kernel_caches`: Caches of kernels by kind, shared by
+    several of these on one vehicle."""
 
     def __init__(self, view: GroundView, kernel_caches: dict[str, Any]) -> None:
         self.view = view

@@ -142,10 +142,8 @@ class FanCache:
 
 
 def cast_fan(sensor: Sensor, vehicle: Vehicle | None, through_covers: bool) -> RayFan:
-    """Cast the fan of a sensor.
-
-    A ray loses the dB of each cover that it meets, once for a part, however many skins it has.
-    """
+    """Cast the fan of a sensor. A ray loses the dB of each cover that it meets, once for a part,
+    however many skins it has."""
     window = window_of(sensor.model)
     free = RayFan.free(window)
     if vehicle is None:
@@ -208,10 +206,8 @@ def field_picture_of(
     target: tuple[str, float],
     measured: Callable[[Floats], tuple[Floats, Floats]],
 ) -> FieldPicture:
-    """Return a picture; `target` is a name and the height of a centre [m].
-
-    `measured` takes centres (N, 3), ground frame, and returns m with the vehicle and without it.
-    """
+    """Return a picture; `target` is a name and the height of a centre [m]. `measured` takes centres
+    (N, 3), ground frame, and returns m with the vehicle and without it."""
     (right, left), _ = window
     azimuths = left - (np.arange(PICTURE_COLUMNS) + 0.5) * (left - right) / PICTURE_COLUMNS
     step = max_range / PICTURE_ROWS

@@ -108,9 +108,7 @@ class ConditionScore:
 @dataclass(frozen=True, slots=True)
 class ConditionTable:
     """Scores of a rig under all conditions of a study, on `samples` voxels or objects.
-
-    `below_ground` has parts that a state drives into the ground, by state: depth by part [m].
-    """
+    `below_ground` has parts that a state drives into the ground, by state: depth by part [m]."""
 
     rows: tuple[ConditionScore, ...]
     samples: int
@@ -160,9 +158,7 @@ def condition_table(
     study: Study, workers: int | None = None, watch: Watch | None = None
 ) -> ConditionTable | None:
     """Return the scores of a study's rig under all its conditions; None without conditions.
-
-    `ScoreStopped` when `watch` returned False.
-    """
+    `ScoreStopped` when `watch` returned False."""
     if not study.conditions:
         return None
     samples = study.samples or DEFAULT_SEARCH_SAMPLES
@@ -288,10 +284,8 @@ class ConditionObjective:
 def study_objective(
     study: Study, evaluator: RigEvaluator, samples: int, workers: int | None = None
 ) -> Objective:
-    """Return what a study's search minimises, without its requirements.
-
-    `InputError` when conditions are to be searched over and the study has none.
-    """
+    """Return what a study's search minimises, without its requirements. `InputError` when
+    conditions are to be searched over and the study has none."""
     search = study.search
     if search.conditions is None:
         return objective_of(evaluator, search.tolerance, search.seed)

@@ -243,10 +243,8 @@ class ConditionedChecker(RequirementChecker):
 
 
 def conditions_of(requirement: Requirement, conditions: Conditions) -> Iterator[StateInWeather]:
-    """Yield the conditions under which a requirement has to be met, besides as drawn.
-
-    `InputError` for an unknown state or weather; the nearest names are offered.
-    """
+    """Yield the conditions under which a requirement has to be met, besides as drawn. `InputError`
+    for an unknown state or weather; the nearest names are offered."""
     under = requirement.under
     states = _expanded(under.states, [each.name for each in conditions.states])
     weathers = _expanded(under.weathers, [each.name for each in conditions.weathers])

@@ -104,10 +104,8 @@ def _numbers(pose: Pose) -> list[float]:
 
 
 def read_passthrough(table: Table) -> Passthrough:
-    """Read the tables of `passthrough_table`.
-
-    `InputError` when a key is unknown, or a value is not valid.
-    """
+    """Read the tables of `passthrough_table`. `InputError` when a key is unknown, or a value is not
+    valid."""
     files = table.table("files")
     for name in files.names:
         if not FILE_NAME.fullmatch(name) or name in (".", ".."):

@@ -54,9 +54,7 @@ class Preset:
 
     def requirement(self, name: str | None = None, **zone: Any) -> Requirement:
         """Return the requirement, perhaps under another name, with some keys of its zone replaced.
-
-        `InputError` when a key is wrong.
-        """
+        `InputError` when a key is wrong."""
         table = {"preset": self.id, "name": name or self.id, **({"zone": zone} if zone else {})}
         return read_requirement(Table(table, f"preset {self.id}"))
 
@@ -79,10 +77,8 @@ def preset(identifier: str, source: str = "presets", field: str = "preset") -> P
 
 
 def read_requirements(table: Table) -> tuple[Requirement, ...]:
-    """Return the requirements of a study's table.
-
-    `InputError` with one line that says what is wrong.
-    """
+    """Return the requirements of a study's table. `InputError` with one line that says what is
+    wrong."""
     tables = table.tables("requirement")
     if len(tables) > MAX_REQUIREMENTS:
         expected = f"at most {MAX_REQUIREMENTS} requirements"

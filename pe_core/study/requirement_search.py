@@ -110,9 +110,7 @@ class FeasibleFirst:
 
 def constraints_of(study: Study) -> tuple[FeasibilityRule, ...]:
     """Return what placements of a study's search have to keep: requirements, key figures.
-
-    `InputError` when a zone of a requirement that is to be kept cannot be placed.
-    """
+    `InputError` when a zone of a requirement that is to be kept cannot be placed."""
     search, constraints = study.search, list[FeasibilityRule]()
     if search.requirements == KEEP and study.requirements:
         checker = study.checker()

@@ -143,9 +143,7 @@ def in_file(name: str, value: Any) -> Any:
 
 def read_selection(table: Table, model: Read) -> Selection:
     """Return the choices and limits of `[[choice]]` and `[selection]`, from a study's table.
-
-    `model` reads the model of an option from its table.
-    """
+    `model` reads the model of an option from its table."""
     choices = [_read_choice(each, model) for each in table.tables("choice")]
     own = table.table("selection")
     limits = read_settings(own, Selection)

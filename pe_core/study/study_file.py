@@ -327,10 +327,8 @@ def _mounted_table(sensor: Sensor) -> dict[str, Any]:
 
 
 def _model_value(model: SensorModel, unnamed: str = OWN_MODEL) -> str | dict[str, Any]:
-    """Return the catalogue's name of a model, or the values of an own model.
-
-    `unnamed` is the name of a model that has none in the file.
-    """
+    """Return the catalogue's name of a model, or the values of an own model. `unnamed` is the name
+    of a model that has none in the file."""
     entry = catalog.entries().get(model.name)
     if (
         entry is not None

@@ -81,9 +81,7 @@ class Suggestion:
     @property
     def text(self) -> str:
         """Where the sensors would be: "rear at (-2.5, 0, 1.5) m, roll 0, pitch 30, yaw 180".
-
-        Figures are those of a study file: typed in, they give the placement that was checked.
-        """
+        Figures are those of a study file: typed in, they give the placement that was checked."""
         where = []
         for name in self.moved:
             pose = self.rig[name].pose
@@ -148,10 +146,8 @@ def with_blind_spot(study: Study, x: float, y: float) -> Study:
 
 
 def suggestions(study: Study) -> dict[str, Suggestion | None]:
-    """Return by requirement that is not met the nearest placement found that meets it.
-
-    None where no placement that was tried is enough. Mounting errors are left out.
-    """
+    """Return by requirement that is not met the nearest placement found that meets it. None where
+    no placement that was tried is enough. Mounting errors are left out."""
     mender = _Mender(study, (), None)
     mender.move()
     return {name: mender.moved.get(name) for name in mender.names}

@@ -87,10 +87,7 @@ def known_rigs() -> Mapping[str, KnownRig]:
 
 
 def known_rig(key: str) -> KnownRig:
-    """Return the rig of that key.
-
-    `InputError` when there is no rig of that key.
-    """
+    """Return the rig of that key. `InputError` when there is no rig of that key."""
     return known_rigs()[choice("catalogue", "rig", key, known_rigs())]
 
 

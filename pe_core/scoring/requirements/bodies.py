@@ -118,10 +118,8 @@ class Body:
         return k, ~inner
 
     def shells(self) -> tuple[Floats, Floats, Ints]:
-        """Return boxes round a cylinder, which its cells do not fill; none of a box.
-
-        Centres (S, 3) from the foot, sizes (S, 3) [m], and bands (S,).
-        """
+        """Return boxes round a cylinder, which its cells do not fill; none of a box. Centres (S, 3)
+        from the foot, sizes (S, 3) [m], and bands (S,)."""
         tall = self.size[2] / self.bands
         count = self.bands if self.is_round and not self.is_ring else 0
         bands = np.arange(count)

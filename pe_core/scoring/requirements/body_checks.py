@@ -30,10 +30,8 @@ PART = ("part",)
 
 
 class SceneCaches(dict[int, dict[str, Any]]):
-    """Caches of kernels by scene, shared by all sets of samples: a beam is cast once.
-
-    Scene 0 is the rig as it stands, the others are the rig with mounting errors.
-    """
+    """Caches of kernels by scene, shared by all sets of samples: a beam is cast once. Scene 0 is
+    the rig as it stands, the others are the rig with mounting errors."""
 
     def __init__(self, vehicle: Vehicle | None) -> None:
         self.vehicle = vehicle
@@ -95,9 +93,7 @@ class BodyChecks:
 
     def results(self, rig: Rig, cases: Sequence[Rig] = ()) -> list[ZoneResult]:
         """Return for each requirement which samples pass, with the rig as it stands and in all.
-
-        `cases` are the rig with mounting errors, for requirements that ask for them.
-        """
+        `cases` are the rig with mounting errors, for requirements that ask for them."""
         measured = self._measured(0, rig)
         found = [self._result(k, rig, measured) for k in range(len(self._wanted))]
         asking = [k for k, (own, _) in enumerate(self._wanted) if own.under.mounting]

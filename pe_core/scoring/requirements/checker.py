@@ -222,10 +222,8 @@ def checkable(
     reference: Reference | None = None,
     space: PerceptionSpace | None = None,
 ) -> tuple[tuple[Requirement, ...], dict[str, str]]:
-    """Return the requirements that a rig on a vehicle can be held to, and why not, by name.
-
-    Others have a zone that cannot be placed, or ask for kinds of sensors that the rig lacks.
-    """
+    """Return the requirements that a rig on a vehicle can be held to, and why not, by name. Others
+    have a zone that cannot be placed, or ask for kinds of sensors that the rig lacks."""
     fitting, reasons = [], {}
     planes: dict[tuple[Any, ...], VehiclePlanes] = {}
     for each in requirements:
@@ -240,10 +238,8 @@ def checkable(
 
 
 def check_extent(requirement: Requirement, zone: PlacedZone, space: PerceptionSpace) -> None:
-    """Raise `InputError` for a zone outside of the space, or narrower than a body.
-
-    A zone whose blind ground is asked for is wholly in the space.
-    """
+    """Raise `InputError` for a zone outside of the space, or narrower than a body. A zone whose
+    blind ground is asked for is wholly in the space."""
     who = f"requirement {requirement.name!r}"
     low, high = zone.bounds
     (x0, y0), (x1, y1) = low.tolist(), high.tolist()

@@ -149,10 +149,8 @@ class Criterion:
 
 @dataclass(frozen=True)
 class Under:
-    """What a requirement has to be met under, besides the rig as it stands.
-
-    `states` and `weathers` are those of the study, by name; "*": all.
-    """
+    """What a requirement has to be met under, besides the rig as it stands. `states` and `weathers`
+    are those of the study, by name; "*": all."""
 
     one_lost: bool = setting(
         False, FLAG, "Met without any one of the sensors, too", Panel("one_lost", "One Sensor Lost")
@@ -218,10 +216,8 @@ class Requirement(ShortRepr):
 
     @property
     def is_changed(self) -> bool:
-        """Whether it asks for something else than its preset.
-
-        The driver's eyes and the side of the kerb are the vehicle's, and change no preset.
-        """
+        """Whether it asks for something else than its preset. The driver's eyes and the side of the
+        kerb are the vehicle's, and change no preset."""
         own = self.original
         if own is None:
             return False

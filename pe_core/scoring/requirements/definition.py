@@ -63,9 +63,7 @@ def has_enough(
     sensor: Sensor, objects: Objects, m: Floats, criterion: Criterion
 ) -> NDArray[np.bool_]:
     """Whether m (N,) of bodies' boxes, points or pixels, is enough, for image and solid angle too.
-
-    An image of m pixels has at least m / w rows, if no row has more than w pixels.
-    """
+    An image of m pixels has at least m / w rows, if no row has more than w pixels."""
     kind = kind_of(sensor)
     counts = kind.counts_points
     enough = m >= (criterion.points * kind.point if counts else criterion.pixels)
@@ -133,10 +131,8 @@ def body_met(seen: Mapping[str, bool], rig: Rig, criterion: Criterion) -> bool:
 def placed(
     body: Body, feet: Sequence[Sequence[float]] | Floats, headings: Sequence[float], cells: bool
 ) -> Objects:
-    """Return a body's boxes at all feet (N, 3) and headings, as objects that each stand alone.
-
-    Foot after foot, heading after heading, cell after cell.
-    """
+    """Return a body's boxes at all feet (N, 3) and headings, as objects that each stand alone. Foot
+    after foot, heading after heading, cell after cell."""
     return _objects(body, *body.boxes(cells), feet, headings)
 
 

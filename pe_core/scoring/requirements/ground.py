@@ -29,10 +29,8 @@ MAX_CELLS = 120_000
 
 
 class GroundCheck:
-    """Holds rigs to a requirement on blind ground in a space.
-
-    The `vehicle` occludes; distances are from the rectangle of the `anchor`, the vehicle as drawn.
-    """
+    """Holds rigs to a requirement on blind ground in a space. The `vehicle` occludes; distances are
+    from the rectangle of the `anchor`, the vehicle as drawn."""
 
     def __init__(
         self,
@@ -49,9 +47,8 @@ class GroundCheck:
         self._grown: dict[float, _ZoneGround | None] = {}
 
     def verdict(self, rig: Rig, preview: bool, cases: Sequence[Rig] = ()) -> Verdict:
-        """Return the verdict on a rig; a preview has no margin, and is without losses that need
-        not count.
-        """
+        """Return the verdict on a rig; a preview has no margin, and is without losses that need not
+        count."""
         own, ground = self.requirement, self._own
         marks = ground.marks(rig)
         blind = ground.blind(marks.values())

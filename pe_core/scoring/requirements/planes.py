@@ -70,10 +70,8 @@ OCTAGON = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1),
 
 
 def axles_of(vehicle: Vehicle) -> tuple[float, float] | None:
-    """Return x of the rearmost and the foremost axle [m], by where tyres touch the ground.
-
-    None where what touches the ground are not tyres on both sides of two axles or more.
-    """
+    """Return x of the rearmost and the foremost axle [m], by where tyres touch the ground. None
+    where what touches the ground are not tyres on both sides of two axles or more."""
     triangles = vehicle.triangles
     height = float(triangles[..., 2].min()) + CONTACT_M
     points = parts_below(triangles[triangles[..., 2].min(axis=1) <= height], height)
@@ -141,10 +139,8 @@ def parts_below(triangles: Floats, height: float) -> Floats:
 
 
 def _pieces(triangles: Floats) -> tuple[Ints, int]:
-    """Return the piece (F,) that each triangle is of, and the number of pieces.
-
-    The smallest number of a corner spreads over the piece; paths are halved between two rounds.
-    """
+    """Return the piece (F,) that each triangle is of, and the number of pieces. The smallest number
+    of a corner spreads over the piece; paths are halved between two rounds."""
     grid = np.round((triangles - triangles.min(axis=(0, 1))) / WELD_M).astype(np.int64)
     keys = (grid[..., 0] << 42) + (grid[..., 1] << 21) + grid[..., 2]
     _, corner = np.unique(keys, return_inverse=True)
@@ -241,9 +237,7 @@ def parsed(
     axis: int, place: str, source: str, field: str
 ) -> tuple[str | None, float, str | None, float]:
     """Return plane (or None), share [%], sign and offset [m] of a place written as text.
-
-    `InputError` when it is no plane with an offset, or the plane is one of the other axis.
-    """
+    `InputError` when it is no plane with an offset, or the plane is one of the other axis."""
     known = (X_PLANES, Y_PLANES)[axis]
     match = PLACE.fullmatch(place.strip())
     name, share, sign, offset = match.groups() if match else (None, None, None, None)
@@ -265,10 +259,8 @@ def real_text(text: str | None) -> float:
 
 
 def convex_outline(points: Floats) -> Floats:
-    """Return the corners (K, 2) of the convex hull of points (N, 2), counter-clockwise.
-
-    Andrew's monotone chain; before, points inside the octagon of the extreme points are dropped.
-    """
+    """Return the corners (K, 2) of the convex hull of points (N, 2), counter-clockwise. Andrew's
+    monotone chain; before, points inside the octagon of the extreme points are dropped."""
     extreme = points[[int(np.argmax(points @ d)) for d in OCTAGON]]
     inside = np.ones(len(points), bool)
     for a, b in zip(extreme, np.roll(extreme, -1, axis=0), strict=True):

@@ -136,9 +136,7 @@ def part_in_the_way(
 @dataclass(frozen=True, eq=False)
 class Samples:
     """Samples of a zone: `points` (N, 2) [m], `distance` (N,) to the zone, negative inside [m].
-
-    `mask` (NX, NY) are the squares of a zone whose blind ground is asked for.
-    """
+    `mask` (NX, NY) are the squares of a zone whose blind ground is asked for."""
 
     zone: PlacedZone
     points: Floats

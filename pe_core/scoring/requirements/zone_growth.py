@@ -27,10 +27,8 @@ PART_BOXES = 8_000
 
 
 class ZoneGrowth:
-    """Grows the zone of one requirement on bodies.
-
-    Samples are given `inside` the zone, and `around` it up to `zone.grow`.
-    """
+    """Grows the zone of one requirement on bodies. Samples are given `inside` the zone, and
+    `around` it up to `zone.grow`."""
 
     def __init__(
         self,
@@ -111,10 +109,8 @@ class RingPart:
         self._known: dict[tuple[int, str], tuple[Sensor, Flags, Flags]] = {}
 
     def passed(self, rig: Rig, cases: Sequence[Rig], saw: dict[str, int]) -> Flags:
-        """Return which samples (N,) pass, as `ZoneResult.passed`.
-
-        `saw` is what each sensor saw so far, by name; what is measured here is added.
-        """
+        """Return which samples (N,) pass, as `ZoneResult.passed`. `saw` is what each sensor saw so
+        far, by name; what is measured here is added."""
         own = self._requirement
         if own.criterion.ap is not None:  # all sensors count together
             self._whole = self._whole or self._checks(own, self.samples.points)

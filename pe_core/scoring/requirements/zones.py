@@ -192,11 +192,8 @@ class Zone:
 
 @dataclass(frozen=True, eq=False)
 class PlacedZone:
-    """A zone in the ground frame.
-
-    `kind` {"area", "ring", "path", "spots"}.
-    `corners` (K, 2): Of the area, path or spots [m]; none of a ring.
-    """
+    """A zone in the ground frame. `kind` {"area", "ring", "path", "spots"}. `corners` (K, 2): Of
+    the area, path or spots [m]; none of a ring."""
 
     zone: Zone
     planes: VehiclePlanes
@@ -205,10 +202,8 @@ class PlacedZone:
     who: str
 
     def distance(self, points: Floats, within: float = math.inf) -> Floats:
-        """Return the distance (N,) of points (N, 2) to the zone, negative inside [m].
-
-        A distance that is not `within` so many metres may be infinite.
-        """
+        """Return the distance (N,) of points (N, 2) to the zone, negative inside [m]. A distance
+        that is not `within` so many metres may be infinite."""
         if self.kind == "spots":
             return _nearest(points, self.corners, within)
         if self.kind == "path":
@@ -264,9 +259,7 @@ class PlacedZone:
 
     def ring_of_samples(self, low: float, high: float, most: int) -> tuple[Floats, Floats]:
         """Return the samples of the zone grown by `high` that are beyond `low`, as `samples` does.
-
-        Where there would be many more than `most`, more than `most` of any are returned.
-        """
+        Where there would be many more than `most`, more than `most` of any are returned."""
         corners = self.bounds
         around = ((corners[1] - corners[0] + 2.0 * high) / self.zone.step + 1.0).tolist()
         if math.prod(around) > MAX_GRID:
@@ -307,10 +300,8 @@ class PlacedZone:
 
 
 def signed_distance(points: Floats, corners: Floats) -> Floats:
-    """Return the distance (N,) of points (N, 2) to a polygon's edge, negative inside [m].
-
-    Its corners (K, 2) are in either sense of rotation.
-    """
+    """Return the distance (N,) of points (N, 2) to a polygon's edge, negative inside [m]. Its
+    corners (K, 2) are in either sense of rotation."""
     others = np.roll(corners, -1, axis=0)
     away = _to_lines(points, corners, others)
     near = ((points >= corners.min(axis=0)) & (points <= corners.max(axis=0))).all(axis=1)

@@ -58,10 +58,8 @@ EDGE = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class GroundCells:
-    """Squares side by side: their lower ends `x0` (NX,) and `y0` (NY,), and the `step` [m].
-
-    The last ones end where the space does, at `x1` and `y1`.
-    """
+    """Squares side by side: their lower ends `x0` (NX,) and `y0` (NY,), and the `step` [m]. The
+    last ones end where the space does, at `x1` and `y1`."""
 
     x0: Floats
     y0: Floats
@@ -109,10 +107,8 @@ class GroundCells:
         return self.y0 + self.step / 2.0
 
     def points(self, interval: float, *, over_height: bool) -> tuple[Floats, Floats, Floats]:
-        """Points of every cell: x, y [m] and a share of the height, each (cells, K).
-
-        Cells on the right of the vehicle have the mirrored points of the cells on its left.
-        """
+        """Points of every cell: x, y [m] and a share of the height, each (cells, K). Cells on the
+        right of the vehicle have the mirrored points of the cells on its left."""
         count = self._voxels(interval, over_height)
         _, row = np.unique(np.round(np.abs(self.y0 + self.y1), 6), return_inverse=True)
         number = np.add.outer(np.arange(len(self.x0)) * (row.max() + 1), row)
@@ -156,10 +152,8 @@ def _whole_columns(space: PerceptionSpace, axis: int, part: Rectangle | None) ->
 
 
 def opened(flags: Flags, radius: float) -> Flags:
-    """Union of the discs of that radius, in cells, that fit into a region (NX, NY).
-
-    Beyond the edge, the region continues with the values at the edge.
-    """
+    """Union of the discs of that radius, in cells, that fit into a region (NX, NY). Beyond the
+    edge, the region continues with the values at the edge."""
     reach = int(radius)
     steps = np.indices((2 * reach + 1, 2 * reach + 1)).reshape(2, -1).T - reach
     disc = steps[(steps**2).sum(axis=1) <= radius**2]  # (N, 2) to cells with their middle within it
@@ -175,11 +169,8 @@ def closed(flags: Flags, radius: float) -> Flags:
 
 
 def dilated(flags: Flags, widths: list[int]) -> Flags:
-    """Dilate a region (NX, NY) by a symmetric shape.
-
-    The shape is given by rows: k rows from its middle it extends `widths[k]` cells to either side.
-    Cells beyond the edge are not set.
-    """
+    """Dilate a region (NX, NY) by a symmetric shape. The shape is given by rows: k rows from its
+    middle it extends `widths[k]` cells to either side. Cells beyond the edge are not set."""
     near = np.zeros_like(flags)
     by_width = {width: _along(flags, width) for width in set(widths)}
     for k, width in enumerate(widths[: len(flags)]):
@@ -203,10 +194,8 @@ def _along(flags: Flags, reach: int) -> Flags:
 
 
 def squares_within(radius: float) -> list[int]:
-    """Shape for `dilated`: squares with all points within a radius of all points of one square.
-
-    The radius is in squares. The shape is empty if it is less than the diagonal of a square.
-    """
+    """Shape for `dilated`: squares with all points within a radius of all points of one square. The
+    radius is in squares. The shape is empty if it is less than the diagonal of a square."""
     rows = int(math.sqrt(max(radius**2 - 1.0, 0.0)))
     return [int(math.sqrt(radius**2 - (k + 1) ** 2)) - 1 for k in range(rows)]
 

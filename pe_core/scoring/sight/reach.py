@@ -165,10 +165,8 @@ def _edge(space: PerceptionSpace, bearing: float) -> float:
 
 
 def _end_of_longest(values: Floats, min_value: float) -> float:
-    """End of the longest run of values of at least `min_value`, the first of several; else 0.
-
-    In rings from the first ring's inner edge, interpolated linearly between the middles of rings.
-    """
+    """End of the longest run of values of at least `min_value`, the first of several; else 0. In
+    rings from the first ring's inner edge, interpolated linearly between the middles of rings."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], values >= min_value, [False]])))
     if not len(edges):
         return 0.0

@@ -105,10 +105,8 @@ def in_layer(
 
 
 def layer_at(space: PerceptionSpace, height: float) -> int:
-    """Return the number of the layer of voxels that holds a height [m].
-
-    `InputError` when it is not in the space.
-    """
+    """Return the number of the layer of voxels that holds a height [m]. `InputError` when it is not
+    in the space."""
     height = FINITE.checked("sight", "height", height)
     layer = math.floor((height - space.z[0]) / space.interval + ROUNDING)
     if not 0 <= layer < space.shape[2]:
@@ -322,11 +320,8 @@ class VisibleShares:
 def visible_shares(
     sample: VoxelSample, m: Mapping[str, NDArray], rises: Mapping[str, NDArray]
 ) -> VisibleShares:
-    """Aggregate measurements over a sample of the prior.
-
-    By sensor, `m` (V,) is its measurement, and `rises` (V,) how much the entropy of each voxel
-    rises without it [nats].
-    """
+    """Aggregate measurements over a sample of the prior. By sensor, `m` (V,) is its measurement,
+    and `rises` (V,) how much the entropy of each voxel rises without it [nats]."""
     sees = {name: of_one > 0 for name, of_one in m.items()}
     number = np.sum(list(sees.values()), axis=0, dtype=np.int64)
     masks = zone_masks(sample.centers[:, 0], sample.centers[:, 1])

@@ -81,9 +81,7 @@ class FusedObjects:
         self, rig: Rig, m: Mapping[str, Floats], members: Collection[str] | None = None
     ) -> tuple[Floats, NDArray[np.bool_]]:
         """Return the entropy (N,) of each object [nats], and whether any fusion group detects it.
-
-        `members` names the sensors that are fused; all, by default.
-        """
+        `members` names the sensors that are fused; all, by default."""
         entropies, visible = np.full(self._count, H_BLIND), np.zeros(self._count, bool)
         groups = []  # kind and sum (N,) of each fusion group, eq. 6
         for sensors in rig.groups.values():
@@ -103,10 +101,8 @@ class FusedObjects:
 
 
 class ObjectSums:
-    """Means over the objects: all of them, by class, by zone.
-
-    AP is averaged above the floor of a protocol.
-    """
+    """Means over the objects: all of them, by class, by zone. AP is averaged above the floor of a
+    protocol."""
 
     def __init__(self, drawn: SampledObjects, floor: float = 0.0) -> None:
         self._floor = floor
@@ -154,10 +150,8 @@ class ObjectSums:
         reach: Callable[[str], Mapping[str, float]],
         traffic: bool,
     ) -> ObjectScore:
-        """Return the part of a score that only objects have.
-
-        `points` are m of the LiDARs; `reach` returns how far lone objects of a class are found.
-        """
+        """Return the part of a score that only objects have. `points` are m of the LiDARs; `reach`
+        returns how far lone objects of a class are found."""
         ap = self._ap(entropies)
         total = np.sum(points, axis=0) if points else None
         per_class = {}
@@ -249,10 +243,8 @@ class RingObjects:
 
 
 def ring_objects(drawn: SampledObjects, vehicle: Vehicle | None) -> RingObjects:
-    """Return lone objects in every sector and ring, without those that overlap the vehicle.
-
-    Each class has the mean size, the mean height above the ground and the headings of its objects.
-    """
+    """Return lone objects in every sector and ring, without those that overlap the vehicle. Each
+    class has the mean size, the mean height above the ground and the headings of its objects."""
     per_class = len(SECTORS) * RINGS * PER_CELL
     positions = _positions()
     by_class = []
@@ -287,9 +279,7 @@ def reach(
 
 def _reach(means: list[float], min_ap: float = FOUND_AP) -> float:
     """Return where the mean AP falls below `min_ap`, after the first ring where it is not below.
-
-    Between the middles of two rings it is interpolated linearly.
-    """
+    Between the middles of two rings it is interpolated linearly."""
     first = next((k for k, ap in enumerate(means) if ap >= min_ap), None)
     if first is None:
         return 0.0
@@ -315,11 +305,8 @@ def _positions() -> Floats:
 
 
 class LoneObjects:
-    """Objects of every class of a study, alone in rings round the vehicle.
-
-    They have the mean sizes of the `drawn` objects by class. A sensor that has not moved is not
-    measured again.
-    """
+    """Objects of every class of a study, alone in rings round the vehicle. They have the mean sizes
+    of the `drawn` objects by class. A sensor that has not moved is not measured again."""
 
     def __init__(
         self, drawn: SampledObjects, vehicle: Vehicle | None, model: PerceptionModel
@@ -332,18 +319,14 @@ class LoneObjects:
 
     def ap(self, rig: Rig, members: Collection[str] | None = None) -> Floats:
         """Return the AP (N,) of each object, for the whole rig or the sensors named by `members`.
-
-        `InputError` when a sensor has a curve of its own, or a class has none.
-        """
+        `InputError` when a sensor has a curve of its own, or a class has none."""
         self._fused.check(rig)
         entropies, _ = self._fused.entropies(rig, self._sensors.measure(rig), members)
         return ap_of_entropy(entropies)
 
     def reach(self, class_name: str, ap: Floats, min_ap: float = FOUND_AP) -> Mapping[str, float]:
-        """Return how far a class is found with an AP of at least `min_ap`, by direction [m].
-
-        `ap` is that of `LoneObjects.ap`. 0 in every direction for a class without objects.
-        """
+        """Return how far a class is found with an AP of at least `min_ap`, by direction [m]. `ap`
+        is that of `LoneObjects.ap`. 0 in every direction for a class without objects."""
         if class_name not in self.class_names:
             return dict.fromkeys(SECTORS, 0.0)
         return reach(self._rings, self.class_names.index(class_name), ap, min_ap)

@@ -193,9 +193,7 @@ def _counts(at_once: Mapping[str, float], targets: TargetRule) -> dict[str, int]
 
 def _random_scenes(count: int, scenes: int, shift: float) -> Ints:
     """Return the scene of each of a class's objects, (count,): each scene has as many, or one more.
-
-    Which scenes have one more is random, and differs from class to class (another shift).
-    """
+    Which scenes have one more is random, and differs from class to class (another shift)."""
     numbers = np.empty(count, np.int64)
     order = _permutation(scenes, (shift + 0.5) % 1.0)
     numbers[_permutation(count, shift)] = order[np.arange(count) * scenes // count]

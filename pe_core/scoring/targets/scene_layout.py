@@ -142,10 +142,8 @@ def ground_rectangles(centers: Floats, sizes: Floats, yaws: Floats) -> GroundRec
 
 
 def overlap(a: GroundRectangles, b: GroundRectangles) -> NDArray[np.bool_]:
-    """Whether rectangles, broadcast together, overlap: no axis separates them.
-
-    Separating axes are parallel to a side of either one. Rectangles that only touch do not overlap.
-    """
+    """Whether rectangles, broadcast together, overlap: no axis separates them. Separating axes are
+    parallel to a side of either one. Rectangles that only touch do not overlap."""
     dx, dy = b.x - a.x, b.y - a.y
     turn, slant = np.abs(a.cos * b.cos + a.sin * b.sin), np.abs(a.cos * b.sin - a.sin * b.cos)
     overlaps = np.ones(np.broadcast(a.x, b.x).shape, bool)

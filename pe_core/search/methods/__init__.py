@@ -24,10 +24,8 @@ DEFAULT_METHOD, SCHEDULED_METHOD = "portfolio", "random"
 
 
 def checked_method(source: str, name: object, scheduled: bool = False) -> str:
-    """Return the name of a method, the default for None, or raise `InputError`.
-
-    A schedule chooses no method: one that is `scheduled` has to be named.
-    """
+    """Return the name of a method, the default for None, or raise `InputError`. A schedule chooses
+    no method: one that is `scheduled` has to be named."""
     if name is None and scheduled:
         expected = f"{SCHEDULED_METHOD!r} named with a schedule, which it alone has"
         raise InputError(source, "method", expected, "none named")

@@ -104,10 +104,7 @@ MethodPart = Generator[Question, Answered, T]
 
 @dataclass(frozen=True, slots=True)
 class Phase:
-    """What all questions of one phase of a search share.
-
-    `total`: Candidates of the whole search.
-    """
+    """What all questions of a phase share. `total`: candidates of the whole search."""
 
     round: int
     total: int
@@ -132,9 +129,7 @@ def sampled_candidate(
     parametrization: Parametrization, sample: Callable[[], Sequence[float]]
 ) -> Candidate | None:
     """Return the first feasible placement among samples; None if `MAX_SAMPLED` are infeasible.
-
-    Samples are vectors of design variables; their values are clipped to the variables' ranges.
-    """
+    Samples are vectors of design variables; their values are clipped to the variables' ranges."""
     for _ in range(MAX_SAMPLED):
         values = zip(parametrization.variables, sample(), strict=True)
         candidate = parametrization.candidate([variable.clipped(v) for variable, v in values])
@@ -145,9 +140,7 @@ def sampled_candidate(
 
 class Incumbent:
     """The best placement so far, its entropy on the level in use [nats], and what was evaluated.
-
-    Descents are incumbents of their own.
-    """
+    Descents are incumbents of their own."""
 
     def __init__(self, best: Candidate, entropy: float) -> None:
         self.best, self.entropy, self.count = best, entropy, 0

@@ -35,11 +35,8 @@ STALLED = 8
 
 
 def samples(last: int) -> tuple[int, ...]:
-    """Return how many voxels each level evaluates.
-
-    The last level has as many as the study sets: a search on a sample overestimates its own result,
-    more so with fewer voxels.
-    """
+    """Return how many voxels each level evaluates. The last level has as many as the study sets: a
+    search on a sample overestimates its own result, more so with fewer voxels."""
     count = last or BELOW_GRID
     return max(count // COARSENING, min(MIN_SAMPLES, count)), last
 

@@ -88,10 +88,8 @@ def axes_of(pose: Pose) -> Floats:
 
 
 def offsets_of(centers: Floats, position: Sequence[float] | float, side: float) -> Floats:
-    """Centres relative to a camera, ground axes [m].
-
-    Either (V, 3) relative to a position (3,), or one coordinate of each.
-    """
+    """Centres relative to a camera, ground axes [m]. Either (V, 3) relative to a position (3,), or
+    one coordinate of each."""
     return np.round((centers - np.asarray(position)) / side, SNAP_DECIMALS) * side
 
 
@@ -223,10 +221,8 @@ class RoundAperture(Aperture):
     high: float
 
     def area(self, places: ImagePoints) -> Floats:
-        """Area (V,) inside picture and ellipse of outlines with corners (V, N) each.
-
-        Parts outside the picture are first moved onto its border, where they have no area.
-        """
+        """Area (V,) inside picture and ellipse of outlines with corners (V, N) each. Parts outside
+        the picture are first moved onto its border, where they have no area."""
         x, y = places
         inside = ((x >= 0.0) & (x <= self.width) & (y >= 0.0) & (y <= self.height)).all(axis=1)
         area, centers = np.empty(len(x)), self._centers(places)
@@ -369,10 +365,8 @@ def out_of_range(camera: Camera, offsets: Floats) -> Mask:
 
 
 def cut_to_range(camera: Camera, area: Singles, axes: list[Floats], first: tuple[int, int]) -> None:
-    """Set the areas (n, rows, nz) of voxels out of range to 0.
-
-    `axes` are the centres' coordinates along each axis, `first` the first plane and row.
-    """
+    """Set the areas (n, rows, nz) of voxels out of range to 0. `axes` are the centres' coordinates
+    along each axis, `first` the first plane and row."""
     x, y, z = axes
     y = y[first[1] : first[1] + area.shape[1]]
     for plane, here in zip(area, x[first[0] :], strict=False):

@@ -284,10 +284,8 @@ class BentPlanes(_AreaPlanes):
         return VisibleRows(rows, area)
 
     def _rows_in_view(self, planes: slice) -> slice:
-        """Rows (y) with a voxel that may touch the field, on any of the planes.
-
-        The cosine of the angle from the axis is at most maximum depth over minimum distance.
-        """
+        """Rows (y) with a voxel that may touch the field, on any of the planes. The cosine of the
+        angle from the axis is at most maximum depth over minimum distance."""
         x, y, z = self._offsets[0][planes], self._offsets[1], self._offsets[2]
         forward, ball = self._axes[:, 0], BALL * self._space.interval
         depth = max(forward[0] * x[0], forward[0] * x[-1]) + forward[1] * y

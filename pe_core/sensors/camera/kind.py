@@ -63,10 +63,8 @@ def write(model: Camera) -> dict[str, Any]:
 
 
 def read_lens(name: str, table: Mapping[str, Any]) -> Lens:
-    """Build a lens from a camera's table.
-
-    `InputError` when a number is missing or not possible, or there is no such model.
-    """
+    """Build a lens from a camera's table. `InputError` when a number is missing or not possible, or
+    there is no such model."""
     own = table.get("distortion", {})
     if not isinstance(own, Mapping):
         raise InputError(name, "distortion", "a table", shown(own))

@@ -92,9 +92,7 @@ class Lens(ABC):
 
     def shift(self, theta: Floats, right: Floats, down: Floats) -> tuple[Floats, Floats]:
         """Return the additional shift of the image, in focal lengths, at an angle up to the edge.
-
-        `right` and `down` are the unit vector away from the principal point.
-        """
+        `right` and `down` are the unit vector away from the principal point."""
         return np.zeros_like(theta), np.zeros_like(theta)
 
     @property
@@ -115,10 +113,8 @@ class Lens(ABC):
         )
 
     def unproject(self, right: Floats, down: Floats) -> Floats:
-        """Unit directions (..., 3), forward, left, up, of positions in the picture [px].
-
-        NaN for positions outside the image of the field.
-        """
+        """Unit directions (..., 3), forward, left, up, of positions in the picture [px]. NaN for
+        positions outside the image of the field."""
         x, y = (right - self.cx) / self.fx, (down - self.cy) / self.fy
         x0, y0 = x, y
         for _ in range(SHIFT_ROUNDS if self.shifts else 1):
@@ -172,10 +168,8 @@ def around_axis(depth: Floats, left: Floats, up: Floats) -> tuple[Floats, Floats
 
 
 def reaching(lens: Own, name: str, width: int, height: int) -> Own:
-    """Return the lens with the edge of its field set for a picture of that size.
-
-    `InputError` when it cannot be inverted in all of the picture, or up to its own field of view.
-    """
+    """Return the lens with the edge of its field set for a picture of that size. `InputError` when
+    it cannot be inverted in all of the picture, or up to its own field of view."""
     folds = fold_angle(lens)
     wanted = lens.edge
     if folds >= wanted:

@@ -224,9 +224,7 @@ class PictureBins:
 
     def may_hide_in(self, low: Floats, high: Floats) -> NDArray[np.bool_]:
         """Whether the vehicle may be visible in rectangles of the picture, corners (V, 2) [px].
-
-        Corners are (right, down); False for an empty rectangle.
-        """
+        Corners are (right, down); False for an empty rectangle."""
         shown = (low <= high).all(axis=1)
         ends = np.where(shown[:, None], low, 0.0), np.where(shown[:, None], high, 0.0)
         (x0, y0), (x1, y1) = (
@@ -246,10 +244,8 @@ class PictureBins:
 
 
 def _bins(depth: Floats, u: Floats, v: Floats) -> tuple[Extent, Extent]:
-    """First and last bin along u and v of triangles with corners (3, F).
-
-    Triangles outside the picture are left out. The range has every bin that a triangle touches.
-    """
+    """First and last bin along u and v of triangles with corners (3, F). Triangles outside the
+    picture are left out. The range has every bin that a triangle touches."""
     index = np.flatnonzero(_may_be_visible(depth, u, v))
     depth = depth[:, index]
     i0, i1 = (MAP.rows(w).astype(np.int64) for w in spans_of_triangles(depth, u[:, index]))

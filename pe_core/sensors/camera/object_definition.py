@@ -64,10 +64,8 @@ SIDE_PLACES = np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, 15)] * 2), axis=-1).
 
 @dataclass(frozen=True, slots=True)
 class BoxImages:
-    """Images of boxes: `area` (N,) inside the picture [px], and bounding rectangles.
-
-    `low` and `high` (N, 2) are the rectangles' corners, right and down [px].
-    """
+    """Images of boxes: `area` (N,) inside the picture [px], and bounding rectangles. `low` and
+    `high` (N, 2) are the rectangles' corners, right and down [px]."""
 
     area: Floats
     low: Floats
@@ -79,10 +77,8 @@ class BoxImages:
 
 
 def box_images(camera: Camera, axes: Floats, boxes: PlacedBoxes) -> BoxImages:
-    """Return the images of boxes; a box that contains the camera has no area.
-
-    `axes` (3, 3) rotate from the camera's frame to the ground frame (`definition.axes_of`).
-    """
+    """Return the images of boxes; a box that contains the camera has no area. `axes` (3, 3) rotate
+    from the camera's frame to the ground frame (`definition.axes_of`)."""
     faces = _straight_faces if camera.projection.is_straight else _bent_faces
     count, size = len(boxes.offsets), np.array([camera.width, camera.height], dtype=float)
     images = BoxImages(np.zeros(count), np.full((count, 2), np.inf), np.full((count, 2), -np.inf))
@@ -108,10 +104,8 @@ def along_camera(axes: Floats, boxes: PlacedBoxes, which: Ints, points: Floats) 
 
 
 def face_points(boxes: PlacedBoxes, which: Ints, axis: int, places: Floats) -> Floats:
-    """(P, K, 3) points of the faces that face the sensor, along the boxes' own axes.
-
-    The faces' normals are along `axis`; `places` (K, 2) are in half sides along the other two axes.
-    """
+    """(P, K, 3) points of the faces that face the sensor, along the boxes' own axes. The faces'
+    normals are along `axis`; `places` (K, 2) are in half sides along the other two axes."""
     i, j = (axis + 1) % 3, (axis + 2) % 3
     offsets, halves = boxes.offsets[which], boxes.halves[which]
     points = np.repeat(offsets[:, None, :], len(places), axis=1)
@@ -227,10 +221,8 @@ def visible_share(
     which: Ints,
     is_hidden: Callable[[BoxRays], Flags],
 ) -> Floats:
-    """Return the visible share (P,) of the images of boxes `which` (P,).
-
-    `is_hidden` says of rays to boxes whether something is before their box; `item` is the box.
-    """
+    """Return the visible share (P,) of the images of boxes `which` (P,). `is_hidden` says of rays
+    to boxes whether something is before their box; `item` is the box."""
     share = np.ones(len(which))
     some = np.arange(len(which))
     for hits in (HITS, PARTLY_HITS):

@@ -82,10 +82,8 @@ class Imaged(NamedTuple):
 
 
 class QuickLens:
-    """A camera's lens in tables.
-
-    `outer` is the maximum angle from the axis that the picture shows [rad].
-    """
+    """A camera's lens in tables. `outer` is the maximum angle from the axis that the picture shows
+    [rad]."""
 
     def __init__(self, camera: Camera) -> None:
         lens = self._lens = camera.projection
@@ -170,10 +168,8 @@ def _widest_in(camera: Camera) -> float:
 def pixel_areas(
     camera: Camera, pose: Pose, centers: Floats, side: float, seen: VisibleMesh | None
 ) -> Floats:
-    """(V,) pixels covered by voxels with centres (V, 3) and a side [m]; 0 where hidden.
-
-    `seen` is the vehicle from the camera's position; it hides a voxel by its centre.
-    """
+    """(V,) pixels covered by voxels with centres (V, 3) and a side [m]; 0 where hidden. `seen` is
+    the vehicle from the camera's position; it hides a voxel by its centre."""
     axes, area = axes_of(pose), np.zeros(len(centers))
     roughly = in_sensor_frame(axes, centers - np.asarray(pose.position))
     index = np.flatnonzero(in_view(camera, *roughly, side))
@@ -198,9 +194,7 @@ def pixel_areas(
 
 class Sorted(NamedTuple):
     """Classified voxels: accurate in closed form (`plain`), or perhaps on the border (`edge`).
-
-    `area` are the areas of the closed form.
-    """
+    `area` are the areas of the closed form."""
 
     plain: Mask
     edge: Mask

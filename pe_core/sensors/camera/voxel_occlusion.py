@@ -20,10 +20,8 @@ from ...scene.vehicle import VisibleMesh
 def positions_of(
     axes: list[Floats], index: Ints, shape: tuple[int, ...], first: tuple[int, int]
 ) -> Floats:
-    """Positions (V, 3) of voxels from coordinates along each axis.
-
-    `index` (V,) are flat indices in an array of `shape`, which begins at the plane and row `first`.
-    """
+    """Positions (V, 3) of voxels from coordinates along each axis. `index` (V,) are flat indices in
+    an array of `shape`, which begins at the plane and row `first`."""
     column, k = np.divmod(index, shape[2])
     i, j = np.divmod(column, shape[1])
     x, y, z = axes

@@ -94,9 +94,7 @@ class RotatedBeams:
 
     def components(self, beams: Ints) -> list[Floats]:
         """Return the directions of beams (N,) as three arrays (N,), one an axis, without zeros.
-
-        This is the form in which kernels divide by them (`definition.without_zeros`).
-        """
+        This is the form in which kernels divide by them (`definition.without_zeros`)."""
         return [np.take(w, beams) for w in self._components]
 
 
@@ -122,10 +120,8 @@ class FixedEnds:
 
 
 class LazyEnds:
-    """Ends of a mounted LiDAR's beams; a beam is cast when its end is requested first.
-
-    `beams` are those of the sensor, at its orientation; `max_range` is as of `FixedEnds`.
-    """
+    """Ends of a mounted LiDAR's beams; a beam is cast when its end is requested first. `beams` are
+    those of the sensor, at its orientation; `max_range` is as of `FixedEnds`."""
 
     def __init__(self, sensor: Sensor, beams: RotatedBeams, vehicle: Vehicle) -> None:
         model = lidar_of(sensor)
@@ -179,9 +175,7 @@ class CastBeams:
 
 class BeamCache:
     """Rotated and cast beams of the LiDARs on a vehicle; several kernels may share one cache.
-
-    Entries are by the sensor's name: those of the last rig.
-    """
+    Entries are by the sensor's name: those of the last rig."""
 
     def __init__(self, vehicle: Vehicle | None) -> None:
         self._vehicle = vehicle

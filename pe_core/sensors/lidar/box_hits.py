@@ -54,10 +54,8 @@ class BoxTester:
         return lidar_of(self.sensor)
 
     def hit_pairs(self, box: Ints, beam: Ints) -> tuple[Ints, Floats]:
-        """Test (box, beam) pairs (P,): a hit is a beam that enters the box before it ends.
-
-        Returns the indices (H,) of the hits, and the distances (H,) at which they enter [m].
-        """
+        """Test (box, beam) pairs (P,): a hit is a beam that enters the box before it ends. Returns
+        the indices (H,) of the hits, and the distances (H,) at which they enter [m]."""
         parts = [(np.zeros(0, np.int64), np.zeros(0))]
         for block in blocks(len(box), PAIR_BLOCK):
             some = beam[block]
@@ -167,10 +165,8 @@ class FanBeams:
         return runs.take(np.flatnonzero(exists))
 
     def decided(self, runs: ChannelRuns) -> tuple[Flags, NDArray[np.int16]]:
-        """Return whether runs (R,) are decided without a test, and their occluded beams (R,).
-
-        All beams of a decided run hit its box, except those that the vehicle occludes.
-        """
+        """Return whether runs (R,) are decided without a test, and their occluded beams (R,). All
+        beams of a decided run hit its box, except those that the vehicle occludes."""
         occluded = np.zeros(len(runs.box), np.int16)
         decided = ~(self.range_unsure[runs.box] | runs.unsure)
         if self.occlusion is not None:

@@ -220,10 +220,8 @@ def _inner_window(seen: Silhouettes, slopes: SlopeBounds) -> Counts:
 
 
 def slice_through(seen: Silhouettes) -> tuple[Singles, Singles, Singles]:
-    """Return half width and half height of a rectangle inside the slice, and the slice's skew.
-
-    The skew is the distance by which the slice recedes from the axis for each side to the left.
-    """
+    """Return half width and half height of a rectangle inside the slice, and the slice's skew. The
+    skew is the distance by which the slice recedes from the axis for each side to the left."""
     a, b, c = (np.copysign(r, r * s) for r, s in zip(seen.radial, seen.lateral, strict=True))
     skew: Singles = (a + b + c) / seen.width
     tilt: list[Singles] = [

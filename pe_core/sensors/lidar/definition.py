@@ -61,10 +61,8 @@ def position_in_voxels(position: Sequence[float], origin: Sequence[float], side:
 
 
 def without_zeros(directions: Floats) -> Floats:
-    """Return directions with components of 0, or of less, replaced by `ZERO_COMPONENT`.
-
-    What is nearer to 0 than that (an angle of 1e-320 degrees) would overflow where it divides.
-    """
+    """Return directions with components of 0, or of less, replaced by `ZERO_COMPONENT`. What is
+    nearer to 0 than that (an angle of 1e-320 degrees) would overflow where it divides."""
     return np.where(np.abs(directions) < ZERO_COMPONENT, ZERO_COMPONENT, directions)
 
 
@@ -111,9 +109,7 @@ def with_returns(
     sensor: Sensor, counts: NDArray, centers: Floats, objects: Objects | None = None
 ) -> NDArray:
     """Return the points that counts (V,) of beams are worth at centres (V, 3), if not all return.
-
-    `objects` are what is there; None: voxels.
-    """
+    `objects` are what is there; None: voxels."""
     if lidar_of(sensor).returns != ROAD:
         return counts
     return counts * share_of_points(centers - np.asarray(sensor.pose.position), objects)
@@ -123,9 +119,7 @@ def _near_pairs(
     offsets: Floats, distance: Floats, balls: Floats, directions: Floats
 ) -> tuple[Ints, Ints]:
     """Return (thing, beam) pairs (P,) whose beam meets the ball round the thing; no other hits it.
-
-    `offsets` (V, 3) and `distance` (V,) are those of the things' centres from the sensor.
-    """
+    `offsets` (V, 3) and `distance` (V,) are those of the things' centres from the sensor."""
     safe = np.maximum(distance, balls)
     min_cosine = np.where(distance > balls, np.cos(np.arcsin(balls / safe) + CULL_MARGIN_RAD), -2.0)
     cosine = offsets @ directions.T / safe[:, None]
@@ -157,10 +151,8 @@ class BoxHits:
 def count_on_objects(
     sensor: Sensor, objects: Objects, vehicle: Vehicle | None, traffic: bool
 ) -> Floats:
-    """Count the beams that end on objects (N,): m of objects.
-
-    In `traffic` the objects of a scene occlude each other.
-    """
+    """Count the beams that end on objects (N,): m of objects. In `traffic` the objects of a scene
+    occlude each other."""
     directions = beam_directions(sensor)
     ends = beam_ends(sensor, directions, vehicle)
     hits = _box_hits(PlacedBoxes.of(objects, sensor.pose.position), directions, ends)
@@ -190,9 +182,7 @@ def count_on_parts(sensor: Sensor, parts: BodyParts, vehicle: Vehicle | None) ->
 
 def counts_in_bands(hits: BoxHits, parts: BodyParts, min_range: float) -> Floats:
     """Return the number (N,) of the hits of each cell that are in the band of the beam's end.
-
-    Without beams that may end below the minimum range [m].
-    """
+    Without beams that may end below the minimum range [m]."""
     body, layer, band = (w[hits.box] for w in (parts.objects.scenes, parts.layers, parts.bands))
     order = np.lexsort((hits.box, hits.enter, layer, hits.beam, body))
     body, beam = body[order], hits.beam[order]

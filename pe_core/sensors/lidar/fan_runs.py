@@ -61,10 +61,8 @@ class ChannelSlopes:
         return float(np.abs(self.slopes).max())
 
     def below(self, scaled: Floats) -> tuple[Small, Flags]:
-        """Count the channels below slopes of any shape, and flag unsure counts.
-
-        `scaled` are the slopes times `scale`; they are overwritten.
-        """
+        """Count the channels below slopes of any shape, and flag unsure counts. `scaled` are the
+        slopes times `scale`; they are overwritten."""
         scaled -= self.low * self.scale - 1.0
         inside = np.minimum(scaled, CHANNEL_BINS - 1.0)
         np.maximum(inside, 0.0, out=inside)
@@ -133,10 +131,8 @@ RUN_FIELDS = tuple(field.name for field in fields(ChannelRuns))
 
 @dataclass(frozen=True, slots=True)
 class RunBlock(ChannelRuns):
-    """Runs of boxes (N,) at consecutive azimuth steps: `box` is (N,), all else (A, N).
-
-    Where a plane misses a box, `low` equals `high`.
-    """
+    """Runs of boxes (N,) at consecutive azimuth steps: `box` is (N,), all else (A, N). Where a
+    plane misses a box, `low` equals `high`."""
 
     def take(self, index: NDArray) -> ChannelRuns:
         """Return the runs with these flags (A, N)."""
@@ -148,9 +144,7 @@ class RunBlock(ChannelRuns):
 @dataclass(frozen=True, slots=True)
 class RotatedFan:
     """A fan at a yaw: its first azimuth `start` and its `step` [rad], `count` steps to a circle.
-
-    `rays` (2, 2 A) are the unit vectors of the azimuths, over two turns.
-    """
+    `rays` (2, 2 A) are the unit vectors of the azimuths, over two turns."""
 
     slopes: ChannelSlopes
     start: float

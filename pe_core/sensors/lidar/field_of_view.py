@@ -111,12 +111,8 @@ class RangePicture:
 def range_picture(
     sensor: Sensor, vehicle: Vehicle | None, things: Vehicle | None = None
 ) -> RangePicture:
-    """Return the range image of a mounted LiDAR.
-
-    `sensor`: A LiDAR.
-    `vehicle`: The vehicle it is mounted on.
-    `things`: Other bodies in the scene, as parts of one mesh.
-    """
+    """Return the range image of a mounted LiDAR. `sensor`: A LiDAR. `vehicle`: The vehicle it is
+    mounted on. `things`: Other bodies in the scene, as parts of one mesh."""
     lidar, position = lidar_of(sensor), sensor.pose.position
     directions = rotate(sensor.pose.ground_from_sensor, lidar.directions)
     ground = np.full(len(directions), np.inf)

@@ -101,10 +101,8 @@ class BeamGrid:
                     self._add_saturating(part, axis, sign)
 
     def _add_saturating(self, sweep: "_Sweep", axis: int, sign: int) -> None:
-        """Add the entries through planes across `axis`, of at most MAX_COUNT beams along `sign`.
-
-        So no count overflows; the sums are clipped.
-        """
+        """Add the entries through planes across `axis`, of at most MAX_COUNT beams along `sign`. So
+        no count overflows; the sums are clipped."""
         before = [self._padded[box].copy() for box in self._saturable]
         for box in self._saturable:
             self._padded[box] = 0

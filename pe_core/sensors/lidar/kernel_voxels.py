@@ -269,10 +269,8 @@ def merged(x: Floats, y: Floats, first: Floats, last: Floats) -> tuple[Floats, .
 
 @dataclass(frozen=True, slots=True)
 class GroundSegments:
-    """Segments seen from above, (L,) each: start `x`, `y` and extent `dx`, `dy`.
-
-    In squares of a grid, from its lowest corner.
-    """
+    """Segments seen from above, (L,) each: start `x`, `y` and extent `dx`, `dy`. In squares of a
+    grid, from its lowest corner."""
 
     x: Floats
     y: Floats

@@ -33,11 +33,8 @@ STRIDE = 4.0 * TURN
 
 @dataclass(frozen=True, slots=True)
 class Windows:
-    """Directions that cubes may cover, seen from the sensor; (V,) each [rad].
-
-    `azimuth` is the middle of the window and `half_azimuth` its half width; `low` and `high` are
-    elevations.
-    """
+    """Directions that cubes may cover, seen from the sensor; (V,) each [rad]. `azimuth` is the
+    middle of the window and `half_azimuth` its half width; `low` and `high` are elevations."""
 
     azimuth: Floats
     half_azimuth: Floats
@@ -92,10 +89,8 @@ class Lattice:
         )
 
     def window_beams(self, bounds: Bracket, voxels: Ints) -> tuple[Ints, Ints]:
-        """Return (voxel, beam) pairs (P,) of the beams in the outer windows of `bounds`.
-
-        `voxels` (N,) are indices into `bounds`; the pairs number them 0 to N - 1.
-        """
+        """Return (voxel, beam) pairs (P,) of the beams in the outer windows of `bounds`. `voxels`
+        (N,) are indices into `bounds`; the pairs number them 0 to N - 1."""
         rows, columns = (n[voxels].astype(np.int64) for n in (bounds.rows, bounds.columns))
         voxel = np.repeat(np.arange(len(voxels)), rows)
         row = np.repeat(bounds.row[voxels], rows) + count_up(rows)
@@ -179,10 +174,8 @@ class BeamBands:
         return cls(keys[order], beams[order])
 
     def candidates(self, windows: Windows) -> tuple[Ints, Ints]:
-        """Return (voxel, beam) pairs (P,) of the beams that may lie in each voxel's window.
-
-        A half width of pi or more is all round; elevations beyond +-90 degrees are allowed.
-        """
+        """Return (voxel, beam) pairs (P,) of the beams that may lie in each voxel's window. A half
+        width of pi or more is all round; elevations beyond +-90 degrees are allowed."""
         azimuth, half, low, high = windows.azimuth, windows.half_azimuth, windows.low, windows.high
         first = _band(np.maximum(low, -math.pi / 2))
         n = _band(np.minimum(high, math.pi / 2)) - first + 1

@@ -205,10 +205,8 @@ def _different_pairs(out: Floats) -> Iterator[Ints]:
 def _inverse_distances(
     boxes: PlacedBoxes, axes: list[Floats], out: Floats
 ) -> tuple[Floats, Floats]:
-    """Inverse distances (3, 3, N) of sides that may face the sensor, and (6, 3, N) of far sides.
-
-    A near side that does not face it is replaced by one that does.
-    """
+    """Inverse distances (3, 3, N) of sides that may face the sensor, and (6, 3, N) of far sides. A
+    near side that does not face it is replaced by one that does."""
     near, far = [], []
     with np.errstate(divide="ignore", invalid="ignore"):  # of sides that face the other way
         for k, axis in enumerate(axes):

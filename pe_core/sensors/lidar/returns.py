@@ -78,10 +78,8 @@ def expected_points(
 
 
 def passed(box: Ints, beam: Ints, enter: Floats, scenes: Ints, fill: Floats) -> Floats:
-    """Return the share (H,) of each beam that nearer boxes of its scene have let through.
-
-    A beam enters a box at a distance, (H,) each; `scenes` (N,) are those of the boxes, `fill` (H,).
-    """
+    """Return the share (H,) of each beam that nearer boxes of its scene have let through. A beam
+    enters a box at a distance, (H,) each; `scenes` (N,) are those of the boxes, `fill` (H,)."""
     order = np.lexsort((box, enter, beam, scenes[box]))
     beam, scene, kept = beam[order], scenes[box][order], 1.0 - fill[order]
     same = np.zeros(len(order), bool)

@@ -56,11 +56,8 @@ class VoxelPoints:
 
 @dataclass(frozen=True, slots=True)
 class PlacedLidar:
-    """A LiDAR among the voxels of a grid.
-
-    `position` (3,) is seen from the grid's lowest corner, in voxel sides
-    (`definition.position_in_voxels`); `side` is a voxel's side [m].
-    """
+    """A LiDAR among the voxels of a grid. `position` (3,) is seen from the grid's lowest corner, in
+    voxel sides (`definition.position_in_voxels`); `side` is a voxel's side [m]."""
 
     lattice: "Lattice"
     position: Floats
@@ -149,10 +146,8 @@ def _any_in_window(flags: NDArray[np.bool_], bounds: Bracket, voxels: Ints) -> N
 def count_pairs(
     offsets: Floats, lidar: PlacedLidar, voxel: Ints, beam: Ints, without_vehicle: bool = False
 ) -> Ints:
-    """Count for each voxel (V,) the (voxel, beam) pairs (P,) whose beam passes it; exact.
-
-    `offsets` (V, 3) are the voxels' centres seen from the sensor, in sides.
-    """
+    """Count for each voxel (V,) the (voxel, beam) pairs (P,) whose beam passes it; exact. `offsets`
+    (V, 3) are the voxels' centres seen from the sensor, in sides."""
     counts, occludable = np.zeros(len(offsets), np.int64), []
     for block in blocks(len(voxel), PAIR_BLOCK):
         through, enter = _through(offsets, lidar, voxel[block], beam[block])
@@ -169,10 +164,8 @@ def count_pairs(
 
 
 def _through(offsets: Floats, lidar: PlacedLidar, voxel: Ints, beam: Ints) -> tuple[Ints, Floats]:
-    """Pairs whose beam enters its cube in range, and the distance there, in sides.
-
-    The arithmetic of `definition.cube_crossing`, axis by axis.
-    """
+    """Pairs whose beam enters its cube in range, and the distance there, in sides. The arithmetic
+    of `definition.cube_crossing`, axis by axis."""
     enter, leave = np.zeros(len(voxel)), np.full(len(voxel), np.inf)
     for axis, step in enumerate(lidar.beams.components(beam)):
         center = offsets[voxel, axis]

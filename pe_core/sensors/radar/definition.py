@@ -212,9 +212,7 @@ def _block(
 
 def seen_sizes(boxes: PlacedBoxes) -> tuple[tuple[Floats, Floats, Floats], Floats, Floats]:
     """Return mean depth, width and height (N,) of boxes as seen [m], their distance, and aspect.
-
-    The aspect is the angle between the heading and the direction to the radar [rad].
-    """
+    The aspect is the angle between the heading and the direction to the radar [rad]."""
     length, width, height = (2.0 * boxes.halves).T
     x, y, _ = boxes.offsets.T
     flat = np.maximum(np.sqrt(x * x + y * y), NEAR_M)
@@ -260,10 +258,8 @@ def measure_columns(
 
 
 def detects_points(sensor: Sensor, points: Floats, fan: RayFan) -> Flags:
-    """Whether points (N, 3) of posts are detected with the probability of the data sheet.
-
-    A post has the RCS in one cell that 95 % of all pedestrians exceed, the weakest class.
-    """
+    """Whether points (N, 3) of posts are detected with the probability of the data sheet. A post
+    has the RCS in one cell that 95 % of all pedestrians exceed, the weakest class."""
     radar = radar_of(sensor)
     offsets = points - (np.asarray(sensor.pose.position) + NUDGE_M)
     distance = np.maximum(np.sqrt(dot(offsets, offsets)), NEAR_M)

@@ -131,9 +131,7 @@ def cautious_reflectivity(name: str, own: Mapping[str, Reflectivity]) -> Reflect
 
 def read_reflectivity(source: str, tables: Any) -> dict[str, Reflectivity]:
     """Return RCS by class from ``rcs_dbsm = { car = 7, van = { aspect_deg = [], dbsm = [] } }``.
-
-    `InputError` when it is no table, or angles do not ascend.
-    """
+    `InputError` when it is no table, or angles do not ascend."""
     if not isinstance(tables, Mapping):
         raise InputError(source, "rcs_dbsm", "a table of classes", shown(tables))
     return {

@@ -78,9 +78,7 @@ DEGREES = Number(cap=1e6, unit="degrees", noun="angle")
 
 def read(name: str, table: Mapping[str, Any], folder: Path) -> Radar:
     """Build a radar from its table; `mode` is a list of tables, one for each scan of a frame.
-
-    `InputError` when a key is missing or unknown, or a figure is impossible.
-    """
+    `InputError` when a key is missing or unknown, or a figure is impossible."""
     modes = listed(table.get("mode"), 100)
     if not modes:
         raise InputError(name, "mode", "a list of tables, one a mode", shown(table.get("mode")))

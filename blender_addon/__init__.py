@@ -18,6 +18,7 @@ from . import (
     preferences_panel,
     properties,
     sensor_cache,
+    variant_pictures,
     vehicle_cache,
     where_map,
     wiring,
@@ -74,6 +75,7 @@ def stop() -> None:
     live.unregister()
     location_query.clear()
     where_map.clear()
+    variant_pictures.clear()
     diagnostics.postpone_checks()
     change_events.unregister()
     consistency.unregister()

@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from .engine import advice, exchange, jobs, outputs, page, pe
+from .engine import advice, exchange, graphics, jobs, outputs, page, pe
 
 OnProgress = Callable[[float], None]
 SCORED_SHARE = 0.25
@@ -127,6 +127,10 @@ def _write_one(path: Path, made: bytes) -> WrittenFiles:
     return WrittenFiles((path,))
 
 
+PICTURE_PX, PICTURE_TRIANGLES = (320, 200), 20_000
+"""Of the picture of a variant: width and height, and triangles of its vehicle at most."""
+
+
 class PendingVariant(NamedTuple):
     """A variant without a valid score, or without key figures."""
 
@@ -140,6 +144,14 @@ class ComparedVariant(NamedTuple):
 
     score: pe.Score | None
     figures: advice.KeyFigures
+    picture: bytes
+
+
+def _small_picture(study: pe.Study) -> bytes:
+    vehicle = study.vehicle
+    if vehicle is not None:
+        vehicle, _ = graphics.simplified(vehicle, PICTURE_TRIANGLES, quick=True)
+    return page.vehicle_picture(vehicle, study.rig, PICTURE_PX, marked=True)
 
 
 class CompareJob(jobs.Job):
@@ -167,7 +179,7 @@ class CompareJob(jobs.Job):
                 break
             looking = jobs.Progress("seeing", 1.0 - FIGURES_SHARE)
             yield self._progress(name, len(compared), looking)
-            compared[key] = ComparedVariant(score, study.key_figures())
+            compared[key] = ComparedVariant(score, study.key_figures(), _small_picture(study))
         self.compared = None if self.dropped else compared or None
 
     def _progress(self, name: str, done: int, step: jobs.Progress) -> jobs.Progress:

@@ -18,7 +18,7 @@ BY_STATE, BY_SENSOR, BY_CHANNEL = "STATE", "SENSOR", "CHANNEL"
 HEIGHTS_M = {AVERAGE: None, "H0": 0.0, "H50": 0.5, "H100": 1.0, "H150": 1.5}
 MIN_LENGTH_M = 0.1
 
-OPACITY = studies.Number(0.05, 1.0)
+OPACITY, SHARE = studies.Number(0.05, 1.0), studies.Number(0.0, 1.0)
 METRES, LENGTH = studies.Number(0.5, unit="m"), studies.Number(MIN_LENGTH_M, unit="m")
 COUNT, KEY = studies.Whole(1), studies.Whole(0)
 
@@ -190,6 +190,15 @@ class ViewSettings:
         True, "Other Variant", "Show the variant whose ghost is switched on in the list of variants"
     )
     ghost_key: int = _value(0, KEY, "Ghost", "Key of the variant that is shown; 0: none")
+    wipe: bool = _switch(
+        False,
+        "Wipe",
+        "Show ground map, blind ground and reach of the other variant left of a line in the view, "
+        "and those of the present sensors right of it",
+    )
+    wipe_at: float = _value(
+        0.5, SHARE, "At", "Where the line is, as a share of the view's width", when="wipe"
+    )
     show_place: bool = _switch(True, "Queried Location", "Mark the queried location")
     show_where: bool = _switch(
         True, "Where?", "Colour the body by the figure that the rig has with one more sensor there"

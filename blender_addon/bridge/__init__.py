@@ -109,6 +109,7 @@ from .variant_results import (
     figures_signature,
     hardware_note,
     keep_rig,
+    picture_of,
     restore_result,
     same_score,
     score_of,

@@ -1,5 +1,6 @@
 """Results of variants: their stored scores and key figures, and the designs of a search."""
 
+import base64
 import json
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -186,15 +187,23 @@ def figures_signature(scene: Scene, now: Fingerprint) -> str:
     return " ".join(stories.values()) or now.surroundings
 
 
-def write_figures(variant: Variant, figures: advice.KeyFigures, signature: str) -> None:
-    """Store key figures with a variant."""
-    variant.figures_json = json.dumps({"of": signature, "figures": figures.to_dict()})
+def write_figures(
+    variant: Variant, figures: advice.KeyFigures, picture: bytes, signature: str
+) -> None:
+    """Store key figures with a variant, and its picture, a PNG file."""
+    shown = {"figures": figures.to_dict(), "picture": base64.b64encode(picture).decode()}
+    variant.figures_json = json.dumps({"of": signature, **shown})
 
 
 def figures_of(variant: Variant, signature: str) -> advice.KeyFigures | None:
     """Return a variant's key figures; None if none with this signature are stored."""
     kept = json.loads(variant.figures_json or "{}")
     return advice.KeyFigures.from_dict(kept["figures"]) if kept.get("of") == signature else None
+
+
+def picture_of(variant: Variant) -> str:
+    """Return a variant's picture in base 64; empty if none is stored."""
+    return str(json.loads(variant.figures_json or "{}").get("picture", ""))
 
 
 def restore_result(

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import bpy
 
-from .. import bridge, result_staleness
+from .. import bridge, result_staleness, variant_pictures
 from ..engine import advice, pe
 from ..language import draw_label, shown
 from ..live import SAME, SENSE_ICONS
@@ -14,9 +14,11 @@ from ..own_jobs import ComparedVariant, CompareJob, PendingVariant
 from .declared import INTERNAL, OperatorResult, Told, operator
 from .jobs import JobRow, Task
 
-LABEL_PX, COLUMN_PX = 260, 150
+LABEL_PX, COLUMN_PX = 260, 170
 MIN_WIDTH_PX, LETTER_PX = 560, 7
 """Smallest width of the table, and width of a letter of the sentences above it."""
+PICTURE_SCALE, BAR_SHARE = 7.0, 0.45
+"""Height of a picture in rows, and share of a cell that is its bar."""
 MAX_VARIANTS = 8
 TITLES = {
     "margin": "Margin of stories [s], –: never confirmed",
@@ -67,10 +69,10 @@ def compare_task(context: bpy.types.Context) -> Task | None:
     def finish(scene: bpy.types.Scene, found: dict[int, ComparedVariant]) -> Told:
         for row in scene.perception_entropy.variants:  # those that still exist
             if row.key in found:
-                score, figures = found[row.key]
+                score, figures, picture = found[row.key]
                 if score is not None:
                     bridge.store_variant_score(row, score, taken.surroundings)
-                bridge.write_figures(row, figures, figures_of)
+                bridge.write_figures(row, figures, picture, figures_of)
         scored = sum(variant.score is not None for variant in found.values())
         return Told(f"{scored} scored, {len(found)} compared", tuple(map(str, refused)))
 
@@ -98,6 +100,7 @@ COMPARE = JobRow(
 def _open(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
     """Compute the table, and open it in a window that stays until it is closed."""
     self.names, self.rows = comparison_of(context.scene)
+    self.pictures = [bridge.picture_of(row) for row in compared_variants(context.scene)]
     width = max(LABEL_PX + COLUMN_PX * len(self.names), MIN_WIDTH_PX)
     letters = width // LETTER_PX
     self.said = sentences(self.names, self.rows, letters)
@@ -110,7 +113,7 @@ def _open(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> Ope
 
 def _draw(self: Any, _context: bpy.types.Context) -> None:
     """Draw figures of the rigs as bars, the scores in words, and the scores by zone and class."""
-    _draw_bars(self.layout, self.names, of_rigs(self.rows))
+    _draw_bars(self.layout, self.names, of_rigs(self.rows), self.pictures)
     said = self.layout.column(align=True)
     for line in self.said:
         draw_label(said, line)
@@ -134,24 +137,38 @@ def of_rigs(rows: Sequence[advice.ComparedRow]) -> list[advice.ComparedRow]:
 
 
 def _draw_bars(
-    layout: bpy.types.UILayout, names: list[str], rows: Sequence[advice.ComparedRow]
+    layout: bpy.types.UILayout,
+    names: list[str],
+    rows: Sequence[advice.ComparedRow],
+    pictures: Sequence[str] = (),
 ) -> None:
-    """Draw a row a figure, and in it a bar a variant: its length, its figure and the change."""
+    """Draw the variants' pictures; below, a row a figure, and in it a bar a variant: its length,
+    its figure and the change."""
     lines = layout.box().column(align=True)
     share = LABEL_PX / (LABEL_PX + COLUMN_PX * len(names))
+    if any(pictures):
+        split = lines.split(factor=share)
+        split.label(text="")
+        cells = _cells(split, names)
+        for each in pictures:
+            cells.template_icon(variant_pictures.icon_of(each), scale=PICTURE_SCALE)
     for row in [None, *rows]:
         split = lines.split(factor=share)
         label = "The largest difference first" if row is None else label_of(row)
         draw_label(split, label)
-        cells = split.row()
+        cells = _cells(split, names)
         for k, name in enumerate(names):
             if row is None:
                 cells.label(text=name, translate=False)
                 continue
-            cell, (text, best, change, sense) = cells.row(align=True), _cell(row, k)
-            text = f"{text} {change}".strip()
-            cell.progress(text=text, factor=row.share(k), translate=False)
-            cell.label(text="", icon="SOLO_ON" if best else SENSE_ICONS[sense])
+            bar, (text, best, change, sense) = cells.split(factor=BAR_SHARE), _cell(row, k)
+            bar.progress(text=text, factor=row.share(k), translate=False)
+            draw_label(bar, change, "SOLO_ON" if best else SENSE_ICONS[sense])
+
+
+def _cells(layout: bpy.types.UILayout, names: list[str]) -> bpy.types.UILayout:
+    """Return where the cells of a line go: a column of the same width for each variant."""
+    return layout.grid_flow(row_major=True, columns=len(names), even_columns=True)
 
 
 def label_of(row: advice.ComparedRow) -> str:

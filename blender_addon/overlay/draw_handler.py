@@ -14,10 +14,10 @@ from mathutils import Matrix
 
 from .. import bridge, engine_process, vehicle_cache, viewport
 from ..engine import graphics, pe
-from . import labels, scheduler, strip, surroundings
+from . import labels, scheduler, strip, surroundings, wipe
 from .batches import Batches
 from .layer_cache import shown_of
-from .layers import LAYERS, WHOLE_RIG, Layer
+from .layers import LAYERS, OTHER_RIG, WHOLE_RIG, Layer
 
 OFFSET_SHARE = 0.002
 """Share of its distance from the eye by which a thing is drawn nearer."""
@@ -88,7 +88,10 @@ def draw() -> None:
     if eye is not None:
         surroundings.draw_around(context.scene, eye, context.region)
     now = _seconds(context.scene)
-    wanted = [(layer, uploaded(scene, layer, names, now)) for layer, names in _visible(context)]
+    wanted = [
+        (layer, _by_side(context, names, uploaded(scene, layer, names, now)))
+        for layer, names in _visible(context)
+    ]
     for key in [k for k in _batches if k[0] == scene and k[2] not in shown_of(*k[:2])]:
         del _batches[key]
     before = gpu.state.blend_get(), gpu.state.depth_test_get(), gpu.state.depth_mask_get()
@@ -96,16 +99,30 @@ def draw() -> None:
     gpu.state.depth_test_set("LESS_EQUAL")
     gpu.state.depth_mask_set(False)
     try:
-        for layer, several in wanted:
-            with depth_offset(context.region_data, layer.on_ground):
-                for each in several:
-                    each.draw_areas()
-                for each in several:
-                    each.draw_lines(context.region, layer.line_px, edged=layer.edged)
+        for layer, sides in wanted:
+            for clip, several in sides:
+                with depth_offset(context.region_data, layer.on_ground), clip:
+                    for each in several:
+                        each.draw_areas()
+                    for each in several:
+                        each.draw_lines(context.region, layer.line_px, edged=layer.edged)
     finally:
         gpu.state.depth_mask_set(before[2])
         gpu.state.depth_test_set(before[1])
         gpu.state.blend_set(before[0])
+
+
+def _by_side(
+    context: bpy.types.Context, names: list[str], several: list[Batches]
+) -> list[tuple[contextlib.AbstractContextManager[None], list[Batches]]]:
+    """Return batches of a layer, and where they are drawn: those of two variants on two sides."""
+    if OTHER_RIG not in names:
+        return [(contextlib.nullcontext(), several)]
+    line = wipe.line_px(context)
+    return [
+        (wipe.clipped(context.region, line, name), [each])
+        for name, each in zip(names, several, strict=True)
+    ]
 
 
 def draw_text() -> None:
@@ -118,9 +135,14 @@ def draw_text() -> None:
     scene, now = context.scene.name, _seconds(context.scene)
     visible = [(layer.name, name) for layer, names in _visible(context) for name in names]
     written: list[graphics.Tag] = []
+    wiped, line = {layer for layer, name in visible if name == OTHER_RIG}, 0.0
+    if wiped:
+        line = wipe.line_px(context)
+        wipe.draw_line(context, line, _names_of_both(context.scene))
     for layer, name in visible:
         item = shown_of(scene, layer)[name]
-        written += item.shape.at(now).labels
+        tags = item.shape.at(now).labels
+        written += wipe.on_side(context, tags, line, name) if layer in wiped else tags
         below = getattr(item.shape, "strip", None)
         if below is not None and viewport.is_lower_left(context):
             old = scheduler.is_preview(scene, layer, name, item)
@@ -139,10 +161,22 @@ def draw_text() -> None:
     labels.draw_labels(context, written, taken)
 
 
+def _names_of_both(scene: bpy.types.Scene) -> tuple[str, str]:
+    """Return the name of the ghost variant, and that of what is in the scene."""
+    settings = scene.perception_entropy
+    names = {row.key: row.name for row in settings.variants}
+    here = names.get(settings.variant_key, "")
+    changed = f"{here} (changed)" if here and settings.variant_changed else here
+    return names.get(settings.view.ghost_key, ""), changed or "Present sensors"
+
+
 def _legend(scene: str, layer: str, name: str) -> graphics.ColorKey | None:
     """Return the legend of a shape, marked where it is a preview and does not say so itself."""
     item = shown_of(scene, layer)[name]
     found = item.shape.at(0.0).legend
+    if name == OTHER_RIG and found not in (None, _legend(scene, layer, WHOLE_RIG)):
+        variant = _names_of_both(bpy.data.scenes[scene])[0]
+        found = replace(found, title=f"{found.title}, {variant}")
     if found is None or "preview" in found.title:
         return found
     if not scheduler.is_preview(scene, layer, name, item):
@@ -179,7 +213,8 @@ def _visible(context: bpy.types.Context) -> Iterator[tuple[Layer, list[str]]]:
     """Yield the layers, each with the names of the sensors that the view shows."""
     scene, through, space = context.scene.name, _sensor_looked_through(context), context.space_data
     # In a local view there is no layer of the whole rig.
-    known = {WHOLE_RIG: not (space and space.type == "VIEW_3D" and space.local_view)}
+    is_whole = not (space and space.type == "VIEW_3D" and space.local_view)
+    known = {WHOLE_RIG: is_whole, OTHER_RIG: is_whole}
     for layer in LAYERS:
         names = list(shown_of(scene, layer.name))
         for name in names:

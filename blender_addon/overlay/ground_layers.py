@@ -40,14 +40,17 @@ def ground_map(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
 
 def shows_difference(request: ViewRequest) -> bool:
     """Whether a difference map is shown; the number of sensors has no difference map."""
-    return request.view.ground_difference and request.view.ground_quantity != graphics.SENSORS
+    view = request.view
+    is_asked = view.ground_difference and not request.is_wiped
+    return is_asked and view.ground_quantity != graphics.SENSORS
 
 
 def scored_map(request: ViewRequest) -> pe.GroundMap | None:
     """Return the score's own map, if it is to be shown."""
     view = request.view
     averaged = view.ground_height_m is None and view.ground_quantity != graphics.SENSORS
-    return request.scored if averaged and not shows_difference(request) else None
+    is_own = averaged and not request.is_wiped and not shows_difference(request)
+    return request.scored if is_own else None
 
 
 def compared_key(request: ViewRequest) -> Hashable:
@@ -102,7 +105,7 @@ def _bounds(
     return cache.fitted(
         of,
         lambda: graphics.fitted_bounds(seen, view.ground_quantity),
-        anew=not request.moving,
+        anew=not request.moving and not request.is_wiped,  # both sides in the same colours
         scored=request.has_result,
     )
 

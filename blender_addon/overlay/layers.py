@@ -24,13 +24,17 @@ from .place_colors import place_colors
 from .request import SceneSensor, ViewRequest
 from .requirement_zones import requirement_zones
 
-WHOLE_RIG = ""
-"""The name of shapes that belong to no single sensor."""
+WHOLE_RIG, OTHER_RIG = "", "\0other variant"
+"""The names of shapes that belong to no single sensor: of the scene, and of the variant that a wipe
+shows beside it."""
 BLIND_WITHIN_M = 10.0
 RING_ALPHA = 0.55
 OCCLUDED_ALPHA = 0.35
 """Opacity of blocked beams behind the vehicle: many of them would hide all else."""
 FRUSTUM_M, UNSELECTED_ALPHA = 1.0, 0.6
+
+LayerKeys = Callable[[ViewRequest], dict[str, Hashable]]
+LayerMaker = Callable[[ViewRequest, LayerCache, str], graphics.LayerShape]
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,15 +50,28 @@ class Layer:
 
     name: str
     label: str
-    keys: Callable[[ViewRequest], dict[str, Hashable]]
-    shape: Callable[[ViewRequest, LayerCache, str], graphics.LayerShape]
+    keys: LayerKeys
+    shape: LayerMaker
     line_px: float = 1.2
     rough: bool = False
     on_ground: bool = False
     edged: bool = False
 
 
-def _rig_keys(*settings: str, prior: bool = True) -> Callable[[ViewRequest], dict[str, Hashable]]:
+def _wiped(keys: LayerKeys, shape: LayerMaker) -> tuple[LayerKeys, LayerMaker]:
+    """Return keys and shapes of a layer of the whole rig that shows two variants in a wipe."""
+
+    def both(request: ViewRequest) -> dict[str, Hashable]:
+        other = keys(request.of_other).get(WHOLE_RIG) if request.is_wiped else None
+        return keys(request) if other is None else {**keys(request), OTHER_RIG: other}
+
+    def either(request: ViewRequest, cache: LayerCache, name: str) -> graphics.LayerShape:
+        return shape(request.of_other if name == OTHER_RIG else request, cache, WHOLE_RIG)
+
+    return both, either
+
+
+def _rig_keys(*settings: str, prior: bool = True) -> LayerKeys:
     """Return the keys of a layer of the whole rig that depends on these settings."""
 
     def keys(request: ViewRequest) -> dict[str, Hashable]:
@@ -75,7 +92,8 @@ def _ground_keys(request: ViewRequest) -> dict[str, Hashable]:
     settings: tuple[str, ...] = ("ground_quantity", "ground_height", "ground_opacity")
     settings += ("ground_range", "ground_fits")
     keys = _rig_keys(*settings)(request)
-    more = id(ground_layers.scored_map(request)), ground_layers.compared_key(request)
+    scored, compared = ground_layers.scored_map(request), ground_layers.compared_key(request)
+    more = id(scored), compared, request.is_wiped
     return {name: (key, more) for name, key in keys.items()}
 
 
@@ -229,7 +247,7 @@ def _ghost_keys(request: ViewRequest) -> dict[str, Hashable]:
         return {}
     others = tuple((s.name, id(s.model), s.pose, s.group, s.curve) for s in request.ghosts)
     here = tuple((each.sensor.name, each.sensor.pose) for each in request.counted)
-    reach_too = "reach" in request.view.layers and request.prior is not None
+    reach_too = "reach" in request.view.layers and request.prior and not request.is_wiped
     reached = (request.body_key, request.prior_key, request.view.reach_class) if reach_too else None
     return {WHOLE_RIG: (others, here, request.ghosts_name, request.ghosts_title, reached)}
 
@@ -239,7 +257,7 @@ def _ghosts(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.Lay
     shape = ghost_sensors(request.ghosts, here, request.ghosts_name, of)
     if request.ghosts_title:
         return shape
-    if "reach" not in request.view.layers or request.prior is None:
+    if "reach" not in request.view.layers or request.prior is None or request.is_wiped:
         return shape
     rig, known = pe.Rig(request.ghosts), request.prior.class_names
     of = request.view.reach_class if request.view.reach_class in known else known[0]
@@ -353,9 +371,9 @@ def _front(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.Lay
 
 ZONES: dict[str, Any] = {"on_ground": True, "edged": True}
 LAYERS = (
-    Layer("ground", "Ground Map", _ground_keys, _ground, rough=True, on_ground=True),
-    Layer("blind", "Blind Ground", _rig_keys("blind_height"), _blind, 1.6, **ZONES),
-    Layer("reach", "Reach", _reach_keys, _reach, 2.2, **ZONES),
+    Layer("ground", "Ground Map", *_wiped(_ground_keys, _ground), rough=True, on_ground=True),
+    Layer("blind", "Blind Ground", *_wiped(_rig_keys("blind_height"), _blind), 1.6, **ZONES),
+    Layer("reach", "Reach", *_wiped(_reach_keys, _reach), 2.2, **ZONES),
     Layer(
         "requirements", "Requirements", _requirement_keys, _requirements, 1.6, rough=True, **ZONES
     ),

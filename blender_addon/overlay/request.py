@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -93,6 +93,18 @@ class ViewRequest:
     def counted(self) -> tuple[SceneSensor, ...]:
         """The sensors that are scored."""
         return tuple(each for each in self.sensors if each.counted)
+
+    @property
+    def is_wiped(self) -> bool:
+        """Whether one view shows the ground of two variants."""
+        return self.view.wipe and bool(self.ghosts) and not self.ghosts_title
+
+    @property
+    def of_other(self) -> ViewRequest:
+        """The same request for the sensors of the other variant."""
+        colors = graphics.sensor_colors(self.ghosts)
+        sensors = tuple(SceneSensor(each, colors[each.name]) for each in self.ghosts)
+        return replace(self, sensors=sensors)
 
     def of_beams(self) -> tuple[SceneSensor, ...]:
         """Return the sensors whose beams are to be drawn."""

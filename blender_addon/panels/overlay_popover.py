@@ -82,7 +82,7 @@ def draw_in_header(self: bpy.types.Header, context: Context) -> None:
 COLORS = "ground_range"
 ELSEWHERE = ("ground_difference", "ground_fits", "ghost_key")
 """Drawn with the colours, or set by buttons in another place."""
-SLIDERS = {"ground_opacity"}
+SLIDERS = {"ground_opacity", "wipe_at"}
 EXPANDED = {"ground_quantity", "blind_height", "reach_of", "beams_of", "channels"}
 """Menus whose entries are buttons beside each other."""
 

@@ -53,6 +53,10 @@ def variants(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
     buttons.separator()
     buttons.operator("pe.duplicate_variant", text="", icon="DUPLICATE")
     draw_state(layout, settings)
+    if settings.view.ghost_key:
+        row = layout.row(align=True)
+        row.prop(settings.view, "wipe", icon="MOD_MIRROR")
+        row.prop(settings.view, "wipe_at", text="", slider=True)
     if settings.live.on:
         name, menu = columns(layout, 0.4)
         draw_label(name, "Compare Live With")

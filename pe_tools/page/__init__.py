@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from .document import page_bytes as page_bytes
     from .document import write_page as write_page
     from .pictures.vehicle_picture import picture_file as picture_file
+    from .pictures.vehicle_picture import vehicle_picture as vehicle_picture
     from .report_context import About as About
     from .report_context import ReportContext as ReportContext
     from .report_context import keyed_contexts as keyed_contexts
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 _MODULES = {
     "review_studies": "build",
     **dict.fromkeys(("PAGE", "page_bytes", "write_page"), "document"),
-    "picture_file": "pictures.vehicle_picture",
+    **dict.fromkeys(("picture_file", "vehicle_picture"), "pictures.vehicle_picture"),
     **dict.fromkeys(("About", "ReportContext", "keyed_contexts"), "report_context"),
 }
 __all__ = [*sorted(_MODULES), "add_page", "add_review_options"]

@@ -52,7 +52,7 @@ class Layout:
     def _inner(self, **_):
         return Layout(self.notes)
 
-    row = column = split = box = _inner
+    row = column = split = box = grid_flow = _inner
 
 
 def drawn(cls, **context) -> Layout:

@@ -68,6 +68,25 @@ def test_the_scene_shows_the_variant_whose_ghost_is_on(two):
     assert "ghosts" not in scenes.drawn(two)
 
 
+def test_a_wipe_shows_the_ground_of_both_variants_as_each_alone_is_shown(two):
+    (row,), view = two.perception_entropy.variants, two.perception_entropy.view
+    view.show_ground = view.show_blind = view.show_reach = view.wipe = True
+    before = scenes.drawn(two)
+    assert set(before["blind"]) == {layers.WHOLE_RIG}, "no other variant is shown"
+    bpy.ops.pe.ghost_variant(key=row.key)
+    both = scenes.drawn(two)
+    bpy.ops.pe.ghost_variant(key=row.key)
+    bpy.ops.pe.switch_variant(key=row.key)
+    after = scenes.drawn(two)
+    for layer in ("blind", "reach"):
+        for name, alone in ((layers.WHOLE_RIG, before), (layers.OTHER_RIG, after)):
+            wanted, found = alone[layer][layers.WHOLE_RIG].lines, both[layer][name].lines
+            assert np.array_equal(found.points, wanted.points)
+    maps = [both["ground"][name] for name in (layers.WHOLE_RIG, layers.OTHER_RIG)]
+    assert maps[0].legend == maps[1].legend, "both in the same colours"
+    assert not np.array_equal(maps[0].sheet.mesh[1], maps[1].sheet.mesh[1])
+
+
 def test_the_scene_marks_the_place_that_was_asked_about(two):
     assert "place" not in scenes.drawn(two)
     bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0))

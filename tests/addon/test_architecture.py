@@ -54,6 +54,7 @@ preferences_panel: engine language library own_catalog properties
 live: analysis_calls bridge change_events choices engine engine_calls engine_process language
     sensor_cache signals vehicle_cache viewport
 best_so_far: engine
+variant_pictures:
 overlay: choices engine engine_calls view_settings viewport
 overlay.snapshot: best_so_far bridge choices engine live location_query overlay sensor_cache
     vehicle_cache view_settings where_map
@@ -65,17 +66,17 @@ overlay.draw_handler: bridge engine engine_process overlay overlay.scheduler
 operators: best_so_far bridge choices diagnostics engine engine_calls engine_process film housing
     language library live location_query overlay overlay.surroundings own_jobs properties
     result_staleness sensor_cache sensor_kinds signals translation_context
-    vehicle_cache view_settings viewport where_map
+    variant_pictures vehicle_cache view_settings viewport where_map
 panels: bridge choices diagnostics engine language live location_query operators properties
     sensor_cache sensor_kinds where_map
 commands: bridge engine film result_staleness
 wiring: bridge change_events consistency diagnostics engine_process housing live location_query
     operators overlay.draw_handler overlay.scheduler result_staleness sensor_cache signals
-    vehicle_cache viewport where_map
+    variant_pictures vehicle_cache viewport where_map
 __main__: __init__ commands engine
 __init__: best_so_far change_events commands consistency diagnostics engine_process language
     library live location_query operators overlay.draw_handler panels preferences_panel properties
-    sensor_cache translation_context vehicle_cache where_map wiring
+    sensor_cache translation_context variant_pictures vehicle_cache where_map wiring
 """
 """What each module or package may import. What stands below a package is part of it, unless it has
 a line of its own."""

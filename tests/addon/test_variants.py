@@ -1,5 +1,6 @@
 """Variants: kept, put back exactly, nothing lost; their scores are those of the scene."""
 
+import base64
 import json
 from dataclasses import replace
 
@@ -228,6 +229,9 @@ def test_bars_have_the_largest_difference_first_and_the_longest_is_full(ideas):
         if min(row.values) > 0.0:
             shares = [row.share(k) for k in range(2)]
             assert shares == pytest.approx([value / ends[-1] for value in row.values])
+    pictures = [bridge.picture_of(row) for row in compare_variants.compared_variants(ideas)]
+    assert all(base64.b64decode(each).startswith(b"\x89PNG") for each in pictures)
+    assert pictures[0] != pictures[1], "the sensor stands elsewhere"
     layout = Layout()
     compare_variants._draw_bars(layout, names, rows)
     texts = layout.texts("label")

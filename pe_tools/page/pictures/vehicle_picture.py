@@ -42,15 +42,33 @@ LABEL_SPACING = 34.0
 ROUNDS = 40  # Distance between two discs, and steps in which they are moved apart
 BEHIND_M = 0.12  # A sensor farther than this behind the visible surface counts as hidden by it
 PROUD_M = 0.0005  # Height of a window above the housing's surface
+MARK_PX, EDGE_COLOR = 7.0, (0.1, 0.12, 0.14)
 WINDOW = Paint((0.02, 0.022, 0.025), 0.9)
 
 
-def vehicle_picture(vehicle: pe.Vehicle | None, rig: pe.Rig, size: tuple[int, int]) -> bytes:
+def vehicle_picture(
+    vehicle: pe.Vehicle | None, rig: pe.Rig, size: tuple[int, int], *, marked: bool = False
+) -> bytes:
     """Return a picture of a rig on its vehicle as a PNG file of a size (width, height) [px].
     Sensors are drawn in their housings, in default ones if their size is not known. The view is
-    from ahead on the right, with the whole vehicle in the picture."""
+    from ahead on the right, with the whole vehicle in the picture. In a small picture, discs mark
+    the sensors, also those that the vehicle hides."""
     view = default_view(vehicle, rig, size)
-    return graphics.png_bytes(graphics.as_bytes(rendered(vehicle, rig, size, view)))
+    picture = rendered(vehicle, rig, size, view)
+    if marked:
+        _mark(picture, rig, view)
+    return graphics.png_bytes(graphics.as_bytes(picture))
+
+
+def _mark(picture: Floats, rig: pe.Rig, view: Viewpoint) -> None:
+    """Draw a disc in a sensor's colour, with a dark edge, over each sensor of a picture."""
+    down, right = np.mgrid[: picture.shape[0], : picture.shape[1]] + 0.5
+    places = view.project(np.array([s.pose.position for s in rig]), *picture.shape[1::-1])
+    colors = graphics.sensor_colors_on_paper(rig).values()
+    for x, y, color in zip(*places, colors, strict=True):
+        far = np.hypot(right - x, down - y)
+        picture[far < MARK_PX] = EDGE_COLOR
+        picture[far < MARK_PX - 1.5] = color
 
 
 def rendered(

@@ -12,8 +12,7 @@ import bpy
 
 from . import sensor_cache, signals, vehicle_cache
 
-IDLE_S = 0.25
-"""How long nothing has to move until the scene is idle."""
+IDLE_S = 0.25  # How long nothing has to move until the scene is idle
 
 _idle_at = 0.0
 _change_count = 0

@@ -7,10 +7,8 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-Range = tuple[float, float]
-"""Low and high bound [m]."""
-FocusArea = tuple[Range, Range]
-"""Ranges of x and y."""
+Range = tuple[float, float]  # Low and high bound [m]
+FocusArea = tuple[Range, Range]  # Ranges of x and y
 
 ALL: Range = (-math.inf, math.inf)
 AHEAD: Range = (0.0, math.inf)

@@ -13,8 +13,7 @@ import bpy
 from . import analysis_calls, bridge, engine_process, sensor_cache, signals, vehicle_cache
 from .engine import advice, jobs, pe
 
-IDLE_DELAY_S = 1.0
-"""How long the scene has to be idle until the checks run."""
+IDLE_DELAY_S = 1.0  # How long the scene has to be idle until the checks run
 WARNINGS, EXPLANATION = "warnings", "words"
 """Topics of requests."""
 

@@ -14,8 +14,7 @@ from .engine import catalog, pe, requirements, text
 SAMPLES = 32_768
 """Voxels that a live score evaluates: an error of 0.02 nats on the sedan, 10 ms a move of a LiDAR.
 16,384 would save 2 ms at nearly twice the error; 65,536 cost 5 ms more for an error of 0.017."""
-MAX_SCENES = 64
-"""Scenes of objects that a live score evaluates at most."""
+MAX_SCENES = 64  # Scenes of objects that a live score evaluates at most
 HELD_SAMPLES = 16_384
 """Voxels for a sensor that is held under the mouse, and for known rigs."""
 DEFAULT_SPACE, VOXELS = pe.PerceptionSpace(), pe.TargetRule()

@@ -17,8 +17,7 @@ from .overlay.request import ViewRequest
 
 FOLLOWS_MOUSE, BEHIND, JOB = engine_process.FOLLOWS_MOUSE, engine_process.BEHIND, "job"
 """Lanes: what follows the mouse waits for nothing else, and a job keeps nothing waiting."""
-POLL_S = 0.005
-"""How often the timer looks for results, while one is awaited."""
+POLL_S = 0.005  # How often the timer looks for results, while one is awaited
 MAX_MODELS = 256
 LIVE_SCORE, OVERLAY = "live score of ", "overlay "
 VIEW_TOPICS = LIVE_SCORE, OVERLAY

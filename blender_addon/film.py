@@ -34,10 +34,8 @@ SIDE, BASE, ROW, LETTER = 0.93, -0.5, 0.033, 0.024
 half the picture's width."""
 EXPOSURE = 1.3
 """What faces the camera gets back the light that the studio takes [stops]."""
-NEAR_TO = 0.024
-"""Height of a name, as a share of its distance from the camera."""
-GOP = 12
-"""Frames from one key frame to the next: a page jumps to any moment."""
+NEAR_TO = 0.024  # Height of a name, as a share of its distance from the camera
+GOP = 12  # Frames from one key frame to the next: a page jumps to any moment
 
 
 def write_film(scene: bpy.types.Scene, study: pe.Study, story: motion.Story, path: Path) -> None:

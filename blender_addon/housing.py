@@ -19,10 +19,8 @@ from .sensor_kinds import row_of
 
 BODY, TRIM, GLASS, MARK = range(4)
 """What a face is made of."""
-CIRCLE_POINTS = 48
-"""Points of a circle."""
-MARK_M = 0.001
-"""How far the arrow that says where ahead is stands out."""
+CIRCLE_POINTS = 48  # Points of a circle
+MARK_M = 0.001  # How far the arrow that says where ahead is stands out
 
 
 @dataclass(frozen=True)
@@ -123,8 +121,7 @@ def _circle(radius: float, height: float) -> Floats:
     return np.stack([*flat, np.full(CIRCLE_POINTS, height)], axis=1)
 
 
-KEY = "pe_housing"
-"""A mesh's own property: the model whose housing it is."""
+KEY = "pe_housing"  # A mesh's own property: the model whose housing it is
 CREASE_RAD = math.radians(30.0)
 MATERIALS = {
     "PE housing": ((0.50, 0.52, 0.55), 0.4, 0.45),

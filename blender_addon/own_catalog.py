@@ -6,8 +6,7 @@ import bpy
 
 from .engine import catalog, pe
 
-problem = ""
-"""Why the file was not loaded, in one line; empty where it was."""
+problem = ""  # Why the file was not loaded, in one line; empty where it was
 _names: list[str] = []
 
 

@@ -11,8 +11,7 @@ from .engine import advice, exchange, graphics, jobs, outputs, page, pe
 OnProgress = Callable[[float], None]
 SCORED_SHARE = 0.25
 """About which share of an export is done after the score."""
-FIGURES_SHARE = 0.1
-"""About which share of a score's time its key figures take."""
+FIGURES_SHARE = 0.1  # About which share of a score's time its key figures take
 
 
 @dataclass(frozen=True, slots=True)

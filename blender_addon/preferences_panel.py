@@ -26,8 +26,7 @@ def redraw(_preferences: bpy.types.AddonPreferences, _context: bpy.types.Context
     signals.view_changed.emit()
 
 
-NAMES_SHARE = 0.4
-"""Share of the width that Blender gives to names of properties."""
+NAMES_SHARE = 0.4  # Share of the width that Blender gives to names of properties
 
 
 class PE_Preferences(bpy.types.AddonPreferences):

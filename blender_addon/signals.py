@@ -32,15 +32,12 @@ class Signal:
 
 study_changed = Signal()
 """Something changed that the score depends on: sensors, vehicle, prior, focus."""
-view_changed = Signal()
-"""Something changed that only the 3D view and the panels show."""
+view_changed = Signal()  # Something changed that only the 3D view and the panels show
 
 moving = Signal()
 """A sensor or the vehicle is moving: emitted by a timer, a moment after each move."""
-idle = Signal()
-"""Nothing has moved for a moment: emitted once after the last move."""
+idle = Signal()  # Nothing has moved for a moment: emitted once after the last move
 
-live_toggled = Signal()
-"""The live score was switched on or off."""
+live_toggled = Signal()  # The live score was switched on or off
 live_score_changed = Signal()
 """A scene has a new live score, or a new note why there is none."""

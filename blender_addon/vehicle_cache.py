@@ -94,8 +94,7 @@ def vehicle_digest(vehicle: pe.Vehicle) -> str:
     return digest.hexdigest()
 
 
-shared = VehicleCache()
-"""The one cache of the add-on."""
+shared = VehicleCache()  # The one cache of the add-on
 
 
 def counted_members(

@@ -196,8 +196,7 @@ def beside_toolbar(context: bpy.types.Context) -> float:
     return left + MARGIN * ui_scale()
 
 
-STRIP = "strip"
-"""The plate along the lower edge: those in the corners stand above it."""
+STRIP = "strip"  # The plate along the lower edge: those in the corners stand above it
 
 
 def sidebar_left(context: bpy.types.Context) -> float:

@@ -9,6 +9,7 @@ RESULTS is a folder that such a search has left; without it one is made.
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -18,11 +19,6 @@ ROOT = Path(__file__).resolve().parents[1]
 if str(ROOT) not in sys.path:  # run as a script
     sys.path.insert(0, str(ROOT))
 
-from pe_core.study import Study  # noqa: E402
-from pe_tools.cli import drive  # noqa: E402
-from pe_tools.jobs import Outcome, ScoreJob  # noqa: E402
-from pe_tools.page import ReportContext, page_bytes  # noqa: E402
-from pe_tools.page.build import outcome_of_folder  # noqa: E402
 from tests.review.browser import opened, started  # noqa: E402
 
 EXAMPLE = Path("blend_assets/examples/four_corners")
@@ -31,25 +27,10 @@ PICTURE = ROOT / "docs" / "images" / "four_corners_review.png"
 COMMAND = ["pe", "optimize", str(EXAMPLE / "study.toml"), "-o", "four_corners"]
 
 
-def scored(study: Study) -> Outcome:
-    """Score a study on its own voxels."""
-    outcome = drive(ScoreJob(study))
-    assert outcome is not None
-    return outcome
-
-
-def reviewed(results: Path) -> ReportContext:
-    """Return the search in a folder of results as the content of its page."""
-    outcome = outcome_of_folder(results, scored)
-    assert outcome is not None, f"{results} holds no search"
-    return ReportContext("The shuttle's four corners", outcome, command=" ".join(COMMAND))
-
-
 def write(results: Path) -> None:
     """Write page and picture."""
-    one = reviewed(results)
     PAGE.parent.mkdir(exist_ok=True)
-    PAGE.write_bytes(page_bytes([one]))
+    shutil.copyfile(results / "review.html", PAGE)
     photograph()
     print(PAGE)
 
@@ -65,12 +46,13 @@ def main(arguments: list[str]) -> int:
     if arguments:
         write(Path(arguments[0]))
         return 0
-    os.chdir(ROOT)
-    with TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "pe_tools", *COMMAND[1:-1], folder, "--no-review"]
-        status = subprocess.run(command).returncode
+    with TemporaryDirectory() as folder:  # the page has the command as it was typed
+        (Path(folder) / EXAMPLE.parts[0]).symlink_to(ROOT / EXAMPLE.parts[0])
+        command = [sys.executable, "-m", "pe_tools", *COMMAND[1:]]
+        environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+        status = subprocess.run(command, cwd=folder, env=environment).returncode
         if status == 0:
-            write(Path(folder))
+            write(Path(folder) / COMMAND[-1])
     return status
 
 

@@ -144,8 +144,7 @@ def _cased(word: str, like: str) -> str:
     return word.capitalize() if like[0].isupper() else word
 
 
-SENSORS = "Sensors"
-"""The collection of a scene's sensors."""
+SENSORS = "Sensors"  # The collection of a scene's sensors
 
 
 def is_copy(whose: str, obj: Object, sensors: Sequence[Object]) -> bool:

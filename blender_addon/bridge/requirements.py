@@ -15,8 +15,7 @@ from bpy.types import PropertyGroup
 
 from ..engine import pe, requirements, studies, text
 
-REASON = "reason"
-"""Key of a stored text that is why there is no verdict."""
+REASON = "reason"  # Key of a stored text that is why there is no verdict
 TableData = dict[str, Any]
 Requirement = requirements.Requirement
 Verdict = requirements.Verdict

@@ -26,8 +26,7 @@ def pair_as_typed(values: Sequence[float]) -> tuple[float, float]:
     return low, high
 
 
-LARGEST_INT = 2**31 - 1
-"""A property holds no larger whole number."""
+LARGEST_INT = 2**31 - 1  # A property holds no larger whole number
 PLACED = frozenset({"score_samples", "targets", "traffic", "scenes"})
 """Settings with a place of their own in the signature of a scene."""
 

@@ -14,8 +14,7 @@ FILM_MM = 36.0
 """Width of the picture in the camera; only its ratio to the focal length matters."""
 SHORTEST_MM = 1.0
 """Blender knows no shorter focal length: wider lenses get a wider film."""
-WIDEST = math.radians(150.0)
-"""A wider pinhole shows little but its own corners."""
+WIDEST = math.radians(150.0)  # A wider pinhole shows little but its own corners
 NEAR_M, FAR_M = 0.01, 1000.0
 SIZE_M = 0.1
 CAMERA_FROM_SENSOR = Matrix(((0, 0, -1, 0), (-1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 0, 1)))

@@ -8,13 +8,11 @@ from .state import LiveScore, ShownScore
 
 MIN_CHANGE = 0.0005
 """Entropies nearer to each other than this are the same in the text [nats]."""
-MIN_ZONE_CHANGE = 0.005
-"""A zone is named from this change on [nats]."""
+MIN_ZONE_CHANGE = 0.005  # A zone is named from this change on [nats]
 BETTER, SAME, WORSE = -1, 0, 1
 SENSE_ICONS = {BETTER: "COLORSET_04_VEC", SAME: "NONE", WORSE: "COLORSET_02_VEC"}
 """Blender's own: blue is better, orange worse, told apart by colour-blind eyes, too."""
-MAX_LABEL_LETTERS = 32
-"""Letters of a variant's name that the read-out has room for."""
+MAX_LABEL_LETTERS = 32  # Letters of a variant's name that the read-out has room for
 MINUS = "\N{MINUS SIGN}"
 BEFORE_SEARCH = "before the search"
 NO_FIGURE, ARROW = "\N{EN DASH}", " \N{RIGHTWARDS ARROW} "

@@ -17,10 +17,8 @@ from ..sensor_kinds import Mount, mount_of
 from .declared import INTERNAL, OperatorResult, operator
 from .surface_pose import is_part
 
-ROOF_DEPTH_M = 0.1
-"""Points this near to the vehicle's highest point belong to the roof."""
-FRONT_INSET_M = 0.05
-"""How far behind the roof's front edge a camera is placed."""
+ROOF_DEPTH_M = 0.1  # Points this near to the vehicle's highest point belong to the roof
+FRONT_INSET_M = 0.05  # How far behind the roof's front edge a camera is placed
 DOWN = (0.0, 0.0, -1.0)
 
 

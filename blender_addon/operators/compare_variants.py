@@ -200,8 +200,7 @@ class TextCell(NamedTuple):
     sense: int = SAME
 
 
-TableCell = TextCell | None
-"""None is a gap."""
+TableCell = TextCell | None  # None is a gap
 
 
 def draw_column(column: bpy.types.UILayout, cells: list[TableCell], alignment: str) -> None:

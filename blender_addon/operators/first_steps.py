@@ -11,8 +11,7 @@ from ..language import shown
 from .declared import Failed, OperatorResult, operator
 from .surface_pose import is_part
 
-VEHICLE = "Vehicle"
-"""Name of a new collection for the vehicle."""
+VEHICLE = "Vehicle"  # Name of a new collection for the vehicle
 
 
 @operator("Use Selected Objects", mode="The vehicle is chosen in Object Mode")

@@ -13,10 +13,8 @@ from .add_sensor import select_only
 from .declared import Refused, RowList, chosen_sensor, operator
 from .edit_sensors import NAME
 
-IN_A_BOX = "BOX"
-"""The entry for no mount in the menu of a sensor's mounts."""
-NO_GO_SIZE_M = 0.25
-"""Half a side of a no-go area that encloses no part."""
+IN_A_BOX = "BOX"  # The entry for no mount in the menu of a sensor's mounts
+NO_GO_SIZE_M = 0.25  # Half a side of a no-go area that encloses no part
 PART_MARGIN_M, MIN_SIDE_M = 0.02, 0.01
 """Margin of a no-go area round parts, and its smallest side."""
 _listed: list[tuple[str, str, str]] = []

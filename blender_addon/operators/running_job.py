@@ -18,12 +18,10 @@ TICK_S = 0.05
 """How often the window looks how far the job is."""
 STATUS_BAR_WIDTH = 14.0
 """Room for the text in the status bar, in Blender's units of a button's height."""
-SHOW_EVERY_S = 0.2
-"""How often the progress is drawn: drawing takes time from the work."""
+SHOW_EVERY_S = 0.2  # How often the progress is drawn: drawing takes time from the work
 BEST_EVERY_S = 0.5
 """How often the 3D view is redrawn at most, after a better placement was found."""
-EVENTS_S = 0.3
-"""How long windows get events after a job was ended from outside."""
+EVENTS_S = 0.3  # How long windows get events after a job was ended from outside
 
 
 class RunningJob(jobs.WatchedJob):

@@ -13,8 +13,7 @@ from .. import bridge
 from ..engine import search
 from ..sensor_kinds import Mount
 
-PASS_STEP_M = 1e-3
-"""How far behind a surface that is not the vehicle's a ray goes on."""
+PASS_STEP_M = 1e-3  # How far behind a surface that is not the vehicle's a ray goes on
 MAX_STEPS = 64
 
 
@@ -56,10 +55,8 @@ def spot_on_ray(
     return None
 
 
-POSITION_DECIMALS = 3
-"""A sensor that is put down by hand stands at whole millimetres."""
-PARALLEL_COS = 0.999
-"""Of two unit vectors: they are parallel."""
+POSITION_DECIMALS = 3  # A sensor that is put down by hand stands at whole millimetres
+PARALLEL_COS = 0.999  # Of two unit vectors: they are parallel
 STAND_OFF_STEP_M, MIN_STAND_OFF_M, MAX_STAND_OFF_M = 0.01, 0.0, 2.0
 MAX_PITCH_DEG = 90.0
 """A sensor pitches no further than straight down or up."""

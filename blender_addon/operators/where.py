@@ -15,10 +15,8 @@ from .declared import INTERNAL, OperatorResult, Refused, operator
 from .jobs import JobRow, Task, begin, of_study
 from .query_location import clicking
 
-WHOLE = "WHOLE"
-"""What is covered, where it is no mount."""
-NEAR_M = 0.4
-"""A click takes the nearest place, if it is no farther away than this."""
+WHOLE = "WHOLE"  # What is covered, where it is no mount
+NEAR_M = 0.4  # A click takes the nearest place, if it is no farther away than this
 _listed: list[tuple[str, str, str]] = []
 """What the menu lists: Blender reads the texts after the function that made them returned."""
 

@@ -119,8 +119,7 @@ SMOOTHED_POINTS = 9
 """Points of the running mean that is drawn of an outline: it follows cells of 5 cm."""
 SIDES = {"front": (0, 1), "rear": (0, -1), "left": (1, 1), "right": (1, -1)}
 """By side: the axis that leads there, and its sign."""
-TICK_M = 0.35
-"""Half the length of the bar across the end of a measure."""
+TICK_M = 0.35  # Half the length of the bar across the end of a measure
 
 
 def blind_ground(
@@ -225,8 +224,7 @@ def _flat(points: Floats) -> Floats:
     return np.column_stack([points, np.zeros(len(points))])
 
 
-REACH_AP = 0.5
-"""The average precision from which an object counts as detected."""
+REACH_AP = 0.5  # The average precision from which an object counts as detected
 BEARINGS = 72
 LABEL_COUNT = 8
 """At how many bearings the distance is written."""

@@ -15,8 +15,7 @@ RISE, PADDING = 10.0, 4.0
 MARGIN, GAP = 16.0, 12.0
 GIZMOS, BESIDE_GIZMOS = 330.0, 48.0
 """Height and width of Blender's own gizmos, from the upper right corner."""
-HEADER = 110.0
-"""Height of the headers and of Blender's own text, from the top."""
+HEADER = 110.0  # Height of the headers and of Blender's own text, from the top
 MIN_WIDTH, BAR, ROW = 150.0, 10.0, 17.0
 VALUES = 0.8
 """Size of the values below a scale, as a share of its words."""
@@ -25,8 +24,7 @@ FAINT_INK: graphics.Rgba = (0.72, 0.72, 0.72, 1.0)
 PLATE: graphics.Rgba = (0.10, 0.10, 0.10, 0.78)
 LABEL_PLATE: graphics.Rgba = (0.08, 0.08, 0.08, 0.55)
 
-CornerPair = tuple[Floats, Floats]
-"""Lowest and highest corner [m]."""
+CornerPair = tuple[Floats, Floats]  # Lowest and highest corner [m]
 
 
 def draw_labels(

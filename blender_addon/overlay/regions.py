@@ -92,8 +92,7 @@ def box_edges(low: Sequence[float] | Floats, high: Sequence[float] | Floats) -> 
 
 FOCUS_HEIGHT_M = 2.0
 """Height of a box: about that of objects in it. The focus itself holds at all heights."""
-INSET_M = 0.15
-"""Distance of neighbouring boxes: regions may share an edge."""
+INSET_M = 0.15  # Distance of neighbouring boxes: regions may share an edge
 MORE_COLOR: graphics.Rgba = (0.98, 0.82, 0.30, 0.90)
 LESS_COLOR: graphics.Rgba = (0.62, 0.66, 0.74, 0.90)
 

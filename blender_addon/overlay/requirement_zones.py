@@ -16,13 +16,11 @@ NOT_MET: graphics.Rgba = (0.95, 0.36, 0.16, 1.0)
 NOT_CHECKED: graphics.Rgba = (0.6, 0.6, 0.6, 1.0)
 FILL_ALPHA, FAINT_ALPHA = 0.5, 0.5
 """Opacity of filled samples, and of the outlines of zones that are not selected."""
-ON_GROUND_M = 0.015
-"""Zones are drawn a little above the ground."""
+ON_GROUND_M = 0.015  # Zones are drawn a little above the ground
 TICK_M = 0.12
 HATCH_M = 0.2
 """Distance of hatching lines along x on small samples."""
-MAX_ROWS = 8
-"""Requirements that the legend names."""
+MAX_ROWS = 8  # Requirements that the legend names
 SHORT_LETTERS = 34
 PROBE_M = 0.01
 

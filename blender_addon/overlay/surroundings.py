@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     import bpy
 
 
-MAX_EYES = 4
-"""Poses whose surroundings are kept on the graphics card."""
+MAX_EYES = 4  # Poses whose surroundings are kept on the graphics card
 LINE_PX = 1.0
 _kept: text.RecentCache[tuple[graphics.Surroundings, Batches, Batches]] = text.RecentCache(MAX_EYES)
 

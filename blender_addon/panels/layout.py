@@ -200,12 +200,9 @@ def columns(layout: UILayout, factor: float) -> tuple[UILayout, UILayout]:
 
 BESIDE_PX, ICON_PX = 72, 20
 """Width of borders and the tab's name, and of an icon, at a scale of 1."""
-BUTTON_PX = 26
-"""Width of a small button beside a sentence, at a scale of 1."""
-POPUP_PX = 340
-"""Width of a panel that is called as a popup, at a scale of 1."""
-MIN_ROOM_PX = 40
-"""A sidebar can be made narrower than any word."""
+BUTTON_PX = 26  # Width of a small button beside a sentence, at a scale of 1
+POPUP_PX = 340  # Width of a panel that is called as a popup, at a scale of 1
+MIN_ROOM_PX = 40  # A sidebar can be made narrower than any word
 FONT = 0
 
 

@@ -10,16 +10,12 @@ from ..language import draw_label
 from ..sensor_cache import sensors as listed_sensors
 from .layout import row_list
 
-MODEL_FROM = 0.64
-"""Where the model begins, in shares of the room for name and model."""
-MAX_ROWS = 7
-"""More sensors are a list that scrolls: the panel stays as long as it is."""
+MODEL_FROM = 0.64  # Where the model begins, in shares of the room for name and model
+MAX_ROWS = 7  # More sensors are a list that scrolls: the panel stays as long as it is
 SHOWN_ITEM = 1 << 30
 """`UIList.bitflag_filter_item`, which only its instances have."""
-SWATCH_UNITS = 0.8
-"""Width of a colour, in widths of an icon."""
-FIGURE_SHARE = 0.26
-"""Room for a loss of two digits before the point: "10.37"."""
+SWATCH_UNITS = 0.8  # Width of a colour, in widths of an icon
+FIGURE_SHARE = 0.26  # Room for a loss of two digits before the point: "10.37"
 
 
 def draw_sensors(layout: UILayout, context: Context) -> None:

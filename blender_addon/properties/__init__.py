@@ -28,8 +28,7 @@ from .scene import PE_SceneSettings
 from .sensor import AXIS_LABELS, FREE_BY_DEFAULT, PE_ObjectSettings
 from .view import PE_LiveSettings, PE_ViewSettings
 
-VIEW_ROWS = rows_of(ViewSettings)
-"""Fields of the settings of the 3D view, by property."""
+VIEW_ROWS = rows_of(ViewSettings)  # Fields of the settings of the 3D view, by property
 
 CLASSES = (
     PE_CurveSettings,

@@ -16,8 +16,7 @@ from bpy.props import (
 from ..engine import studies
 from .callbacks import changed, redraw
 
-LARGEST_INT = 2**31 - 1
-"""The largest whole number that a property can hold."""
+LARGEST_INT = 2**31 - 1  # The largest whole number that a property can hold
 DRAWN = "reference."
 """Settings whose keys begin so change the picture in the 3D view, and no score."""
 UNITS = {"m": "LENGTH", "m2": "AREA"}

@@ -26,8 +26,7 @@ from .declared import group_of
 from .fields import menu, number, numbers, rows, switch, switches, text
 from .list_rows import PE_SensorOption
 
-AXIS_LABELS = ("X", "Y", "Z", "Roll", "Pitch", "Yaw")
-"""Of `search.AXES`."""
+AXIS_LABELS = ("X", "Y", "Z", "Roll", "Pitch", "Yaw")  # Of `search.AXES`
 
 FREE_BY_DEFAULT = tuple(axis in search.PAPER_FREE for axis in search.AXES)
 

@@ -13,8 +13,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-MAX_FOUND_LENGTH = 80
-"""Maximum characters of a found value in a message."""
+MAX_FOUND_LENGTH = 80  # Maximum characters of a found value in a message
 MAX_TEXT_LENGTH = 160
 """Maximum characters of the field and of what was expected: a list of all keys of a table fits."""
 MAX_NAMES = 1000

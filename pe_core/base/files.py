@@ -23,8 +23,7 @@ from .errors import InputError, require_memory, size_text
 MESH_BYTES = 2 << 30
 LABEL_BYTES = 2 << 30
 """Maximum size of a mesh file and of a file of labelled boxes."""
-TEXT_BYTES = 16 << 20
-"""Maximum size of a study, a file of channel angles or a table."""
+TEXT_BYTES = 16 << 20  # Maximum size of a study, a file of channel angles or a table
 MAX_NAME_BYTES = 255
 """Most bytes of a name of a file or folder on the usual file systems."""
 CHUNK = 1 << 20

@@ -9,12 +9,9 @@ import numpy as np
 
 from .plugins import required_package
 
-MAX_LINE = 160
-"""Characters of a value in a console."""
-LONG = 60
-"""Characters of a value inside another."""
-FEW = 4
-"""Names or items that are shown of many."""
+MAX_LINE = 160  # Characters of a value in a console
+LONG = 60  # Characters of a value inside another
+FEW = 4  # Names or items that are shown of many
 
 
 def _line(instance: Any) -> str:

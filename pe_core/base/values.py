@@ -19,17 +19,14 @@ import numpy as np
 from .arrays import Floats
 from .errors import InputError, one_of, shown
 
-DEGREE_DECIMALS = 9
-"""Decimals of degrees in a file, where these give the angle exactly."""
+DEGREE_DECIMALS = 9  # Decimals of degrees in a file, where these give the angle exactly
 MAX_DECIMALS = 17
 NEAR_ULPS = 2
 """Search range round the converted degrees, in units of the last place."""
 TO_RADIANS, TO_DEGREES = math.pi / 180.0, 180.0 / math.pi
 
-MAX_NAME = 255
-"""Maximum characters of a name, as in file systems and in Blender."""
-MAX_PATH = 4096
-"""Maximum characters of a path, as in Linux."""
+MAX_NAME = 255  # Maximum characters of a name, as in file systems and in Blender
+MAX_PATH = 4096  # Maximum characters of a path, as in Linux
 NUMBER_NAMES = {2: "two", 3: "three"}
 
 

@@ -32,10 +32,8 @@ __all__ = ["OTHER_LABELS", "OWN", "Entry", "KnownRig", "KnownSensor", "add", "ad
 __all__ += ["data_sheet", "entries", "from_table", "housing", "known_rig", "known_rigs", "load"]
 __all__ += ["matching", "names", "remove", "replace_added", "rig_on", "scan_above_base", "to_table"]
 
-PAPER_FILE = "paper.toml"
-"""File with the paper's sensors, which come first in lists."""
-OWN = "own"
-"""Replaces the file name for presets that a program has added."""
+PAPER_FILE = "paper.toml"  # File with the paper's sensors, which come first in lists
+OWN = "own"  # Replaces the file name for presets that a program has added
 OTHER_LABELS = {
     PAPER_FILE: "Paper",
     "cameras.toml": "Cameras",

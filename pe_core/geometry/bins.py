@@ -17,14 +17,12 @@ from ..base.arrays import Floats, Ints
 
 Spans = tuple[Floats, Floats]
 """Minimum and maximum of a coordinate of G shapes, each (G,)."""
-MARGIN = 1e-9
-"""Projections are enlarged by this in u and v, against rounding errors."""
+MARGIN = 1e-9  # Projections are enlarged by this in u and v, against rounding errors
 BOX_MARGIN = 2e-9
 """The same for boxes; larger, so that the projection of a box contains that of its content."""
 SIDE_MARGIN = 1e-11
 """Rounding error of a plane through two corners, relative to the farthest corner's distance^2."""
-TALL = 2
-"""Shapes over more rows than this are cut row by row along their sides."""
+TALL = 2  # Shapes over more rows than this are cut row by row along their sides
 
 
 def count_up(counts: Ints) -> Ints:

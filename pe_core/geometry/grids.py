@@ -20,8 +20,7 @@ DIVIDES_TOLERANCE = 1e-6
 """Maximum difference of an extent from a whole number of voxels (0.1 is not exact in binary)."""
 MAX_COLUMNS = 2**25
 """Maximum number of columns, 26 times the paper's: each class of the prior stores one in each."""
-EDGE_M = 1e6
-"""Maximum magnitude of a bound of the space."""
+EDGE_M = 1e6  # Maximum magnitude of a bound of the space
 INTERVAL = Number(1e-3, EDGE_M, unit="m", noun="length")
 BOUND = Number(cap=EDGE_M, unit="m")
 

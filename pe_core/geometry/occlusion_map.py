@@ -38,8 +38,7 @@ EDGE_ON = 1e-8
 """Sine of the angle to a triangle's plane from which on its depth is known well enough."""
 SLOPE_ROUNDING = 1e-12
 """Rounding of one over a depth, over the size of what it is summed from."""
-FARTHEST = 1e-30
-"""One over a depth that is as good as infinite."""
+FARTHEST = 1e-30  # One over a depth that is as good as infinite
 BOXES_AT_ONCE = 1 << 12
 PAIRS_AT_ONCE = 1 << 17
 

@@ -12,8 +12,7 @@ from .poses import Pose, cross, dot, rotate
 
 SIDES = 16
 """Number of sides of the prism that encloses a cylinder: at most 2 % of the radius larger."""
-TOUCH_M = 1e-5
-"""Overlaps up to this depth do not count: positions are rounded [m]."""
+TOUCH_M = 1e-5  # Overlaps up to this depth do not count: positions are rounded [m]
 PARALLEL = 1e-9
 """Shorter cross products are not used as axes: the two directions are parallel."""
 

@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike
 from ..base.arrays import Floats
 from ..base.values import Angle, Number, degrees_in_file, vector
 
-FARTHEST_M = 1e4
-"""Maximum magnitude of a coordinate; kernels rely on it."""
+FARTHEST_M = 1e4  # Maximum magnitude of a coordinate; kernels rely on it
 TURNS_DEG = 3600.0
 """Maximum magnitude of an angle, ten turns: more is probably a mistake."""
 METRES = Number(-FARTHEST_M, FARTHEST_M, unit="m")

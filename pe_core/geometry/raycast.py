@@ -23,8 +23,7 @@ from .bins import FACES, Raster, RowSpans, Spans, blocks, count_up, row_spans, s
 from .culling import Ends, FaceLook, Facing, Targets, VisibleBoxes, min_distance
 from .ray_traversal import RayBoxes, RayWalk, TriangleTree
 
-MAX_BINS = 1024
-"""Maximum number of bins along a side."""
+MAX_BINS = 1024  # Maximum number of bins along a side
 FINER = 2.0
 """Maximum ratio of bins to rays along a side, for meshes with many triangles."""
 SORTING_SHARE = 0.8
@@ -117,20 +116,17 @@ class BinnedRays:
 PAIRS_AT_ONCE = 1 << 15
 MANY = np.iinfo(np.int64).max
 """A number larger than any index or count."""
-RAYS_AT_ONCE = 1 << 18
-"""Maximum rays that are cast at once, to limit memory."""
+RAYS_AT_ONCE = 1 << 18  # Maximum rays that are cast at once, to limit memory
 FINE = 16
 """Ratio of triangles to rays above which rays are followed down the tree one by one."""
 MIN_BOXES_TO_SORT = 256
 """Minimum number of boxes of such a mesh's level that is sorted by distance."""
 FIRST_BOXES = 64
 """Boxes that are opened before finished rays are removed; doubled each time."""
-FEW_RAYS = 12
-"""Maximum rays in a box for which each ray is followed on its own."""
+FEW_RAYS = 12  # Maximum rays in a box for which each ray is followed on its own
 MIN_RAYS_TO_CUT = 16
 """Rays in a triangle's rectangle above which its bins are cut along its edges."""
-MAX_BOXES = 1 << 13
-"""Maximum boxes whose triangles are tested at once, to limit memory."""
+MAX_BOXES = 1 << 13  # Maximum boxes whose triangles are tested at once, to limit memory
 
 
 @dataclass(frozen=True, slots=True)

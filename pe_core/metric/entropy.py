@@ -63,8 +63,7 @@ class ApCurve:
 
 POINTPILLARS = ApCurve(0.152, 0.659)
 """LiDAR, PointPillars on KITTI moderate (Ma, Liu and Li, ICRA 2021)."""
-RTM3D = ApCurve(0.055, 0.155)
-"""Camera, RTM3D on KITTI moderate (same source)."""
+RTM3D = ApCurve(0.055, 0.155)  # Camera, RTM3D on KITTI moderate (same source)
 
 
 def average_precision(m: ArrayLike, curve: ApCurve) -> Floats:

@@ -33,10 +33,8 @@ CurveOf = str | ApCurve
 """An AP curve: the name of a kind of sensor ("lidar", "camera"), or the curve itself."""
 Measurement = tuple[CurveOf, NDArray]
 """Curve and m of a fusion group: integers (beams) or floats (pixels)."""
-MAX_TABLE = (1 << 16) - 1
-"""Counts are stored in 16 bits."""
-MAX_BYTE_COUNTS = 257
-"""Maximum number of 8-bit counts whose sum fits 16 bits."""
+MAX_TABLE = (1 << 16) - 1  # Counts are stored in 16 bits
+MAX_BYTE_COUNTS = 257  # Maximum number of 8-bit counts whose sum fits 16 bits
 GroupCounts = tuple[CurveOf, NDArray]
 Areas = tuple[CurveOf, slice, NDArray[np.floating]]
 DIGITS = 11

@@ -187,8 +187,7 @@ class Story:
         )
 
 
-OTHER = "other"
-"""Class of bodies that only occlude."""
+OTHER = "other"  # Class of bodies that only occlude
 
 
 def outline(vehicle: Vehicle | None) -> tuple[Floats, Floats]:

@@ -18,8 +18,7 @@ from ..geometry.grids import PerceptionSpace
 from .boxes import MAX_CLASSES, voxel_of
 from .classes import Shape
 
-NPY_BYTES = 2**28
-"""Largest file of weights."""
+NPY_BYTES = 2**28  # Largest file of weights
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -29,14 +29,11 @@ FAR_LARGER = 1.5
 """...and this many times as long as those of all smaller parts together."""
 BINS, ENOUGH = 256, 100_000
 """Bins along an axis for the surface of a mesh, and about how many triangles are sampled."""
-FEW_RUNS = 1000
-"""Below this number of runs, a loop over them is faster."""
+FEW_RUNS = 1000  # Below this number of runs, a loop over them is faster
 SMALLEST_M, LARGEST_M, WIDEST_M = 0.1, 60.0, 25.0
 """Minimum and maximum length of a vehicle's longest side; maximum of its second longest."""
-CAR_M = 4.5
-"""Length of a typical car, for comparison."""
-MAX_UNITS = 2
-"""Maximum number of possible units in a message."""
+CAR_M = 4.5  # Length of a typical car, for comparison
+MAX_UNITS = 2  # Maximum number of possible units in a message
 USUAL_M = (0.4, 30.0)
 USUAL_SECOND_M = 10.0
 """Range of the longest side of most vehicles, and maximum of the second longest."""

@@ -14,8 +14,7 @@ from ..geometry.poses import METRES
 from .mesh import BodyShape, size_words
 from .vehicle import Vehicle
 
-LONGER = 1.15
-"""Minimum ratio of two sides for one to count as longer."""
+LONGER = 1.15  # Minimum ratio of two sides for one to count as longer
 EVEN, UNEVEN = 0.01, 5.0
 """Limits for `BodyShape.lopsided`: across the vehicle it is below EVEN; along the other two axes it
 is above 1.5 EVEN, and above UNEVEN times the value across."""
@@ -45,8 +44,7 @@ UNKNOWN, FIELD_M = "not known", 100.0
 """Text for 0 in Blender's panel, and maximum of its fields."""
 AXLE_APART_M = 0.3
 """Minimum distance of two axles along the vehicle; nearer wheels are on one or on twin axles."""
-ROUNDED = 4
-"""Decimals of a guessed length [m]: a tenth of a millimetre."""
+ROUNDED = 4  # Decimals of a guessed length [m]: a tenth of a millimetre
 UP = 2
 
 

@@ -42,18 +42,15 @@ from .score import (
 
 Grouped = Sequence[Sequence[Sensor]]
 """Sensors whose measurements are summed, and kept, together."""
-FACTOR = 2.0
-"""Maximum ratio of an estimate and the measured memory, either way."""
+FACTOR = 2.0  # Maximum ratio of an estimate and the measured memory, either way
 COLUMN_BYTES = 10
 """Memory of a column and a class: the density, a copy, and arrays made of it."""
-TREE_BYTES = 300
-"""Memory of a triangle of the vehicle, once rays are cast (measured)."""
+TREE_BYTES = 300  # Memory of a triangle of the vehicle, once rays are cast (measured)
 PLANE_BYTES = 24
 """Memory of a voxel of a thread's planes: counts, sums, precision, entropy, weights."""
 SAMPLE_BYTES = 600
 """Memory of a sampled voxel (measured: 270 to 420 while sampling, 590 with 32 sensors)."""
-COARSER = (2, 4, 5, 10, 20)
-"""Factors of the voxel's side that a message suggests."""
+COARSER = (2, 4, 5, 10, 20)  # Factors of the voxel's side that a message suggests
 KernelKey = tuple[str, ApCurve | None]
 """A kind, and the AP curve of its own that a sensor may have."""
 MeasuredGroup = tuple[CurveOf, Planes]

@@ -24,8 +24,7 @@ from ..sensors import Occlusion
 
 FigureKey = tuple[str, str, str]
 """Group ("rig", "zone", "class"), name (empty for the rig), and measure ("entropy", ...)."""
-ALIKE = 10.0**-DECIMALS
-"""Entropies no farther apart than this do not differ [nats]."""
+ALIKE = 10.0**-DECIMALS  # Entropies no farther apart than this do not differ [nats]
 RULE_OF_THREE = 3.0
 """Rule of three: if n draws are equal, at most 3 / n of all others differ, with 95 % certainty."""
 FARTHEST_M = 80.0

@@ -26,20 +26,14 @@ from ..scoring.requirements.planes import convex_outline
 from ..sensors.kind import kind_of
 from .domains import ROUNDING_M
 
-CELL_M = 0.01
-"""Side of the squares in which a frontal area is counted [m]."""
-AROUND_M = 2.0
-"""So far round the body housings are seen from the front [m]."""
-CHUNKS = 300
-"""The body is drawn in at most so many parts, each in little memory."""
+CELL_M = 0.01  # Side of the squares in which a frontal area is counted [m]
+AROUND_M = 2.0  # So far round the body housings are seen from the front [m]
+CHUNKS = 300  # The body is drawn in at most so many parts, each in little memory
 TURNS, LAYERS = 360, 36
 """Azimuths and elevations of the cells of a field of view."""
-RAYS = 20_000
-"""Directions that fill the cells: 5 to 40 fall on one."""
-ALONE = "one sensor alone"
-"""Why there is no distance and no common field."""
-RELATIVE = 1e-9
-"""Relative rounding error that is allowed for sums."""
+RAYS = 20_000  # Directions that fill the cells: 5 to 40 fall on one
+ALONE = "one sensor alone"  # Why there is no distance and no common field
+RELATIVE = 1e-9  # Relative rounding error that is allowed for sums
 
 
 @dataclass(frozen=True)

@@ -45,8 +45,7 @@ def label_of(objective: str) -> tuple[str, str]:
     return OBJECTIVES.get(objective, (objective.replace("_", " "), ""))
 
 
-OVER = 200
-"""Placements over which the gain of a search is taken by default."""
+OVER = 200  # Placements over which the gain of a search is taken by default
 
 
 @dataclass(frozen=True, slots=True)

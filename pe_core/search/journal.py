@@ -18,8 +18,7 @@ from .dispatch import evaluate_all
 
 OnTold = Callable[[Rig, int, float], None]
 """Takes a rig, the level that it was evaluated on, and its value."""
-DIGEST_BYTES = 4
-"""Length of the digest that identifies a placement."""
+DIGEST_BYTES = 4  # Length of the digest that identifies a placement
 BATCH = 16
 """Candidates that a method may ask for at once when several are evaluated in parallel."""
 

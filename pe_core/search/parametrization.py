@@ -38,8 +38,7 @@ of its width."""
 Vector = tuple[float, ...]
 MAX_TRIES = 2000
 """Placements checked before the rules are said to exclude all; nearest to the start first."""
-MAX_NAMED = 4
-"""How many rules the message names."""
+MAX_NAMED = 4  # How many rules the message names
 
 
 @dataclass(frozen=True, slots=True)

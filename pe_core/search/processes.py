@@ -21,8 +21,7 @@ from .payload import Unreadable, keep_freed_memory, receive, send_payload
 
 T = TypeVar("T")
 
-START_S = 60.0
-"""Processes that are not up after this time never will be."""
+START_S = 60.0  # Processes that are not up after this time never will be
 SHORT_S = 2.0
 """A search that ends within this time needs no processes: starting them takes as long."""
 

@@ -34,10 +34,8 @@ from .mounts import Mounting, NoGo, SlotMount, SurfaceMount
 
 PAPER_FREE = ("x", "y", "z", "pitch")
 """What the paper searches; roll and yaw are fixed "for symmetry of the placement"."""
-HEADROOM_M = 0.75
-"""How far above the vehicle's top a sensor may be mounted by default."""
-MIN_HEIGHT_M = 0.2
-"""The least height of a sensor by default."""
+HEADROOM_M = 0.75  # How far above the vehicle's top a sensor may be mounted by default
+MIN_HEIGHT_M = 0.2  # The least height of a sensor by default
 MAX_ROUNDS = 1000
 """A schedule of more rounds (the paper's has seven) is taken for a typing error."""
 Bounds = tuple[float, float]

@@ -27,12 +27,10 @@ COUNTED, OF_KIND = "max_sensors", "max_of_kind"
 """Limits of numbers of sensors; the others are of sums, as `SUMS`."""
 MAX_STEPS = 20_000
 """How many partial designs are tried in the search for designs within the limits."""
-Worth = tuple[float, float]
-"""A price and an entropy [nats]; lower is better for both."""
+Worth = tuple[float, float]  # A price and an entropy [nats]; lower is better for both
 ALL_UP_TO = 200
 """Up to so many designs are all evaluated; of more, those that the local search visits."""
-MAX_EVALUATED = 400
-"""How many designs the local search evaluates at most."""
+MAX_EVALUATED = 400  # How many designs the local search evaluates at most
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,8 +32,7 @@ from ..scoring.scenarios import mean_or_worst
 from ..scoring.score import Objective, RigEvaluator
 from .domains import AXES, pose_from_values
 
-DRAWS = 8
-"""Draws by default."""
+DRAWS = 8  # Draws by default
 ERRORS, CASES = ("position", "angle", "draws"), ("failures", "worst")
 """Settings of the table [optimize.tolerance], and those of [optimize]."""
 COMBINATIONS = 4

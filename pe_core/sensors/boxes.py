@@ -19,10 +19,8 @@ NUDGE_M = np.array([1.97, 3.02, 4.98]) * 1e-8
 (the horizontal one, at the height of its roof) then runs beside it or through it, whatever the
 rounding. The ratios are those of `lidar.kind`: of no beam at round angles, so that a beam
 through an edge of a box is decided as well."""
-NO_SPEED = 1e-30
-"""Replaces a direction component of exactly 0, to divide by it."""
-NEAREST_M = 1e-6
-"""Replaces the distance 0 [m]."""
+NO_SPEED = 1e-30  # Replaces a direction component of exactly 0, to divide by it
+NEAREST_M = 1e-6  # Replaces the distance 0 [m]
 APART_RAD = 1e-6
 """Margin between the directions of balls, seen from above, that do not hide each other [rad]."""
 CELLS, ROUND = range(2)

@@ -21,8 +21,7 @@ SHORTEST_RANGE_M = 0.001
 MIN_RANGE = Number(0.0, cap=1e5, unit="m", noun="length")
 STEP_M = 0.01
 """A limited range is at least this much above the minimum range."""
-FREE = -1
-"""Value of a free ray in place of a part."""
+FREE = -1  # Value of a free ray in place of a part
 
 
 def checked_ranges(

@@ -45,8 +45,7 @@ BoxSize = tuple[float, float, float]
 ClassCurves = Mapping[str, Mapping[str, ApCurve]]
 """By kind, then by class."""
 
-PAPER_VOXEL_M = 0.1
-"""Side of the voxels of the paper's curves [m]."""
+PAPER_VOXEL_M = 0.1  # Side of the voxels of the paper's curves [m]
 SIZES: dict[str, BoxSize] = {
     "car": (4.6, 1.9, 1.7),
     "pedestrian": (0.8, 0.7, 1.75),

@@ -39,8 +39,7 @@ from .kind import kind_of
 
 K = TypeVar("K", bound=CachingKernel)
 
-MARGIN = 1e-6
-"""Of half a voxel's diagonal, for rounding."""
+MARGIN = 1e-6  # Of half a voxel's diagonal, for rounding
 
 
 class _Kernels(Generic[K]):

@@ -26,12 +26,9 @@ from .kernels import Occlusion
 AngleWindow = tuple[tuple[float, float], tuple[float, float]]
 """Lowest and highest azimuth, and lowest and highest elevation [rad]."""
 
-MAX_STEP_RAD = math.radians(0.5)
-"""Largest bin of a fan."""
-BINS = 240
-"""A window is divided into at least so many bins along its longer side."""
-MAX_STEPS = 720
-"""Of a patch, along a side."""
+MAX_STEP_RAD = math.radians(0.5)  # Largest bin of a fan
+BINS = 240  # A window is divided into at least so many bins along its longer side
+MAX_STEPS = 720  # Of a patch, along a side
 PICTURE_ROWS, PICTURE_COLUMNS = 180, 241
 """Ranges and azimuths of a picture; one of the azimuths is the middle."""
 

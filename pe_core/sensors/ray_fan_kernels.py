@@ -35,8 +35,7 @@ from .kernels import (
 )
 from .ray_fan import FanCache, RayFan, cast_fan, fan_rays, patch_of, window_of, without_parts
 
-VOXEL_BYTES = 200
-"""Memory of a voxel of a block while it is measured (measured)."""
+VOXEL_BYTES = 200  # Memory of a voxel of a block while it is measured (measured)
 BALL_MARGIN_M = 1e-3
 NEAR_FIELD_M, FINE_M = 10.0, 0.02
 """A sensor of a shorter range than this has squares of the ground tested every 2 cm [m]."""

@@ -32,8 +32,7 @@ RAIN_KM = ((0.0, 0.0), (5.0, 1.00), (10.0, 1.56), (25.0, 2.77), (50.0, 4.29), (1
 """Rain [mm/h] and extinction of light [1/km]: drops of Marshall and Palmer, efficiency 2."""
 SNOW_KM = ((0.0, 0.0), (1.0, 1.44), (2.5, 2.43), (5.0, 3.60))
 """Snow [mm/h of water] and extinction of light [1/km], in the same way."""
-BACKSCATTER = 0.046
-"""Backscatter of fog times MOR [1/sr], [FOG]."""
+BACKSCATTER = 0.046  # Backscatter of fog times MOR [1/sr], [FOG]
 TARGET_BACKSCATTER = 1e-6 / math.pi
 PULSE_S = 2e-8
 OVERLAP_M = (0.9, 1.0)

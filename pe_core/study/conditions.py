@@ -29,8 +29,7 @@ AS_DRAWN, CLEAR = "as drawn", "clear"
 """Names of the state and of the weather of a study that has none."""
 OF_STATE, BODY = ("weight", "frame"), ("heave", "roll_rad", "pitch_rad", "about", "unsprung")
 """Settings of the tables [[state]] and [state.body]."""
-EVERY = "*"
-"""Stands for all states, or all weathers, of a study."""
+EVERY = "*"  # Stands for all states, or all weathers, of a study
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,8 @@ BOXES = "boxes.csv"
 """File of labelled boxes beside a study, when they have no file of their own."""
 GRID = "prior.npy"
 """File of a prior's weights beside a study, when they have no file of their own."""
-OPTIMIZED = "optimized.blend"
-"""The file that Blender adds."""
-REVIEW_PAGE = "review.html"
-"""The review page."""
+OPTIMIZED = "optimized.blend"  # The file that Blender adds
+REVIEW_PAGE = "review.html"  # The review page
 SEARCH, RUNNERS_UP = "search.json", tuple(f"runner_up_{k}.toml" for k in (1, 2, 3))
 """Checkpoint of a search, from which it can be resumed, and studies of other optima it found."""
 BESIDE_RESULT = (
@@ -18,5 +16,4 @@ BESIDE_RESULT = (
     *(*RUNNERS_UP, OPTIMIZED, REVIEW_PAGE),
 )
 """All files that belong to a result.json."""
-SCHEMA = 1
-"""Version of the schema of result.json."""
+SCHEMA = 1  # Version of the schema of result.json

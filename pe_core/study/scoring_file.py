@@ -19,8 +19,7 @@ from ..scoring.targets import TargetRule
 from ..sensors import BLIND_RULES, KINDS, PerceptionModel
 from .file_names import BOXES, GRID
 
-CLASSES = "objects"
-"""The table of a kind's curves by class, in [ap.KIND]."""
+CLASSES = "objects"  # The table of a kind's curves by class, in [ap.KIND]
 DEFAULT_MODEL = "road"
 OF_OBJECTS = dict.fromkeys(("length_spread", "width_spread", "any_heading"), 0.0)
 """Settings of a class that matter only for objects, with defaults that a file leaves out."""

@@ -83,10 +83,8 @@ from .search_file import (
 from .study import Search, Study
 from .time_file import read_stories, read_time, story_table, time_table
 
-OWN_MODEL = "own"
-"""Name of an own model in a choice that has no name."""
-MEASUREMENT = ("returns",)
-"""Settings of a study in [measurement]."""
+OWN_MODEL = "own"  # Name of an own model in a choice that has no name
+MEASUREMENT = ("returns",)  # Settings of a study in [measurement]
 AXES_KEYS = ("scale", "rotation", "up", "forward")
 
 

@@ -50,8 +50,7 @@ ADD_PLACES, ADD_COMPARED = 80, 4
 """Places of one more sensor of each model, and of those that are enough so many are scored."""
 SAMPLES = 2048
 """Voxels on which entropies are compared: their difference is that of one sample."""
-SPOT_M = 0.25
-"""Half the side of the square that a blind spot is."""
+SPOT_M = 0.25  # Half the side of the square that a blind spot is
 BLIND_SPOT = "blind spot"
 
 

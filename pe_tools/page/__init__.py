@@ -47,8 +47,7 @@ def add_verbs(verbs: Any) -> None:
     review = verbs.add_parser(
         "review", help="write an HTML page that shows a rig and what its sensors see"
     )
-    about = "study file (TOML), or a folder of results"
-    review.add_argument("studies", nargs="+", metavar="STUDY", help=about)
+    review.add_argument("studies", nargs="+", metavar="STUDY", help="study file (TOML)")
     add_review_options(review)
     app.add_score_options(review)
     review.set_defaults(function=_later("review"))

@@ -1,12 +1,11 @@
 """The sensitivity analysis of a search's result: what is computed, its data, and its lines."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
-from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig
 from pe_core.search import AXES, Objective
 from pe_core.search.goals import FULL, OFF
@@ -22,13 +21,12 @@ from .flatness import (
     ActiveConstraint,
     AxisCost,
     Neighbourhood,
-    PoseStep,
     StepCosts,
     Unmet,
     active_constraints,
     flatness,
 )
-from .optima import BETWEEN, EXAMINED, Archive, Basins, Endings, RunnerUp
+from .optima import BETWEEN, EXAMINED, Archive, Basins, Endings
 
 SHARE = 8  # The analysis evaluates at most the search's evaluations divided by this
 ENDINGS_NEED = EXAMINED * (1 + len(BETWEEN))
@@ -128,36 +126,6 @@ def _unmet_by(study: Study) -> Unmet | None:
         return [n for n, off in zip(names, checker.shortfalls(rig), strict=True) if off]
 
     return unmet
-
-
-def sensitivity_from_dict(table: Mapping[str, Any] | None, rig: Rig) -> Sensitivity | None:
-    """Return the analysis that `Sensitivity.to_dict` wrote; None for None. Runners-up are of the
-    rig's sensors, at other poses. `KeyError`, `TypeError` or `ValueError` when the table is no such
-    analysis."""
-    if table is None:
-        return None
-    by_ap = table.get("objective") == EXPECTED_AP
-    steep = STEEP_AP if by_ap else STEEP_NATS
-    axes, constraints = list[AxisCost](), list[ActiveConstraint]()
-    for row in table["axes"]:
-        cost = {float(step): float(each) for step, each in row["cost"].items()}
-        names = str(row["sensor"]), str(row["axis"]), str(row["status"])
-        axes.append(AxisCost(*names, cost, steep))
-    for row in table["constraints"]:
-        step = PoseStep(str(row["sensor"]), str(row["axis"]), float(row["step"]))
-        by = tuple(map(str, row["constraints"]))
-        constraints.append(ActiveConstraint(by, step, -float(row["gain"])))
-    found = table["endings"]
-    endings = None
-    if found is not None:
-        runners_up = []
-        for row in found["runners_up"]:
-            tables = [row["placements"][sensor.name] for sensor in rig]
-            poses = [Pose.from_degrees(each["position"], each["rotation"]) for each in tables]
-            moved = tuple(map(str, row["moved"]))
-            runners_up.append(RunnerUp(rig.with_poses(poses), float(row["behind"]), moved))
-        endings = Endings(int(found["examined"]), int(found["same_basin"]), tuple(runners_up))
-    return Sensitivity(int(table["evaluations"]), tuple(axes), tuple(constraints), endings, by_ap)
 
 
 def sensitivity_lines(found: Sensitivity) -> Iterator[str]:

@@ -10,7 +10,7 @@ import pe_tools as pt
 from pe_core.search import Goals, Parametrization
 from pe_tools.cli.terminal import summary
 from pe_tools.jobs import result_dict
-from pe_tools.sensitivity import NEAR, Archive, StepCosts, sensitivity_from_dict, sensitivity_lines
+from pe_tools.sensitivity import NEAR, Archive, StepCosts, sensitivity_lines
 from pe_tools.sensitivity.flatness import Neighbourhood, PoseStep, active_constraints, flatness
 from pe_tools.sensitivity.optima import Basins
 from tests.engine import shapes
@@ -169,10 +169,9 @@ def test_another_optimum_is_told_from_the_flank_of_the_same_one():
     assert other.behind == pytest.approx(0.1225) and other.moved == ("roof",)
 
 
-def test_it_is_in_result_json_on_the_terminal_and_read_back(outcome):
+def test_it_is_in_result_json_and_on_the_terminal(outcome):
     table = result_dict(outcome)["sensitivity"]
-    found = sensitivity_from_dict(table, outcome.study.rig)
-    assert found.to_dict() == table and len(table["axes"]) == 6
+    assert len(table["axes"]) == 6
     text = summary(outcome)
     for line in sensitivity_lines(outcome.sensitivity):
         assert line in text

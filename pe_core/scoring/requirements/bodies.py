@@ -32,8 +32,7 @@ DIAGONALS = ((_BEFORE, _BEFORE), (_BEFORE, _AFTER), (_AFTER, _BEFORE), (_AFTER, 
 POST_EVERY = 4
 POST_SHARE = 0.25
 """Side of the posts beside a body, as a share of its shorter horizontal side."""
-FLAT_M = 1e-3
-"""Thickness of a patch of ground."""
+FLAT_M = 1e-3  # Thickness of a patch of ground
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,10 +27,8 @@ from .zones import INSIDE_M, PlacedZone
 
 FULL, INSIDE, PREVIEW = "full", "inside", "preview"
 """Sets of samples: of the zones and the ground round them, of the zones alone, of fewer."""
-COARSE = 2.0
-"""Factor of the step of a preview."""
-PREVIEW_OBJECTS = 1_000
-"""A zone with fewer boxes keeps its step in a preview."""
+COARSE = 2.0  # Factor of the step of a preview
+PREVIEW_OBJECTS = 1_000  # A zone with fewer boxes keeps its step in a preview
 SHARE_WEIGHT, LACKING_WEIGHT, AWAY_WEIGHT = 0.45, 0.45, 0.1
 """Weights of the samples that fail, of sensors and kinds that lack, and of the angle."""
 

@@ -22,10 +22,8 @@ from .criteria import Criterion, Requirement
 from .verdict import GroundFigures, Samples, Verdict, growth, rounded_down
 from .zones import INSIDE_M, PlacedZone, signed_distance
 
-FAR_OFF_M = 10.0
-"""Blind ground this much too far out is as far off as can be."""
-MAX_CELLS = 120_000
-"""A zone is grown as long as its ground has no more squares."""
+FAR_OFF_M = 10.0  # Blind ground this much too far out is as far off as can be
+MAX_CELLS = 120_000  # A zone is grown as long as its ground has no more squares
 
 
 class GroundCheck:

@@ -32,10 +32,8 @@ PATCH_M = 1.0
 """A longer contact patch is no tyre: a body that lies on the ground, or a plane under it."""
 SIDE_SHARE = 0.15
 """Tyres are farther than this share of the width from the middle, on both sides."""
-MIRROR_M = 1.2
-"""Largest side of a mirror with its arm; those of a coach are 1 m long."""
-MIRROR_LOW_M = 0.5
-"""A mirror is higher above the lowest point than this."""
+MIRROR_M = 1.2  # Largest side of a mirror with its arm; those of a coach are 1 m long
+MIRROR_LOW_M = 0.5  # A mirror is higher above the lowest point than this
 STICKS_OUT_M = 0.02
 TWIN_M = 0.1
 """Largest difference of a mirror and the mirror image of the one on the other side."""
@@ -43,8 +41,7 @@ MIN_WIDTH = 0.7
 """Without its mirrors a body has at least this share of its width; else none are found."""
 WELD_M = 1e-4
 """Corners on one grid of this size are one: triangles that share it hang together."""
-MAX_FACES = 300_000
-"""Larger bodies are not searched for mirrors: it would take seconds."""
+MAX_FACES = 300_000  # Larger bodies are not searched for mirrors: it would take seconds
 Place = float | str
 """A coordinate of a zone: metres in the ground frame, or a plane with an offset."""
 PlaneSource = dict[str, Any]

@@ -23,15 +23,12 @@ from .bodies import Body
 from .criteria import Criterion, Requirement, levels_of
 from .zones import INSIDE_M, PlacedZone
 
-DECIMALS = 2
-"""Margins are rounded to the centimetre, to the safe side."""
-FARTHEST_M = 10.0
-"""Zones are grown no farther than this."""
+DECIMALS = 2  # Margins are rounded to the centimetre, to the safe side
+FARTHEST_M = 10.0  # Zones are grown no farther than this
 OCCLUDED, TOO_FEW, IN_PART, NO_COUNT = "occluded", "too few", "in part", "not counted"
 """Codes of reasons, beside those of `Kind.missed`. In part: a share has to be visible, and less may
 be. Not counted: the criterion leaves out sensors of this kind."""
-CUBE_M = 0.1
-"""Side of the cubes by which it is told why a sensor does not see a body."""
+CUBE_M = 0.1  # Side of the cubes by which it is told why a sensor does not see a body
 LINES = ("path", "spots")
 """Kinds of zones without an inside: one that fails does not shrink."""
 

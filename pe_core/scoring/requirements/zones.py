@@ -23,8 +23,7 @@ from .planes import DECIMALS, SIDES, Place, VehiclePlanes, parsed
 
 PlacePair = tuple[Place, Place]
 
-STEP_M = 0.15
-"""The largest step of the grid of UN R159 Annex 3."""
+STEP_M = 0.15  # The largest step of the grid of UN R159 Annex 3
 STEP = Number(0.02, 100.0, unit="m", noun="length")
 HEIGHT = Number(0.0, 100.0, unit="m", noun="length")
 RING = Number(0.0, 100.0, unit="m", noun="length")
@@ -36,10 +35,8 @@ MAX_PLACES = 2_000_000
 """Places of the grid at most from which the ground round a path or spots is taken."""
 GROWN_M = 0.6
 """How far round a zone samples are taken to find how far it could grow [m]."""
-INSIDE_M = 1e-6
-"""A sample this far outside of a zone is on its edge: rounding."""
-AREA_M2 = 2e-6
-"""Twice the area of the smallest polygon."""
+INSIDE_M = 1e-6  # A sample this far outside of a zone is on its edge: rounding
+AREA_M2 = 2e-6  # Twice the area of the smallest polygon
 WHO = "zone"
 SIDES_MENU = (("Right", "As in countries that drive on the right"), ("Left", "As in the UK"))
 SHAPES = ("x and y", "polygon", "ring", "path", "spots")

@@ -50,10 +50,8 @@ Flat ground would not do: far from the vehicle beams meet it only in rings."""
 NARROW_M = 0.1
 """A narrower strip of blind ground along the body does not count, on a side: edges may be this much
 too far out."""
-NO_BODY_M = 1.0
-"""Half the side of the square that replaces the body without a vehicle."""
-DECIMALS = 6
-"""Distances are rounded to the micrometre."""
+NO_BODY_M = 1.0  # Half the side of the square that replaces the body without a vehicle
+DECIMALS = 6  # Distances are rounded to the micrometre
 SIDES = {"front": (0, 1), "rear": (0, -1), "left": (1, 1), "right": (1, -1)}
 """By side: the axis towards it, and the sign of the direction."""
 BODY_M = 0.3
@@ -68,12 +66,10 @@ MIN_AREA_M2 = 0.18
 PARTLY_VISIBLE = math.sqrt(2.0)
 """A blind point in a marked square is no farther than this from an unmarked square, in squares: a
 body at that point has an unmarked square under it."""
-SECTOR_RADIUS_M = 20.0
-"""Distance from the origin at which blind sectors are measured."""
+SECTOR_RADIUS_M = 20.0  # Distance from the origin at which blind sectors are measured
 SECTOR_HEIGHTS_M = (0.5, 1.0, 1.5)
 """A post or a small child, an older child, an adult who bends."""
-ARC_STEP_M = 0.01
-"""Distance of the points of the circle at which squares are looked up."""
+ARC_STEP_M = 0.01  # Distance of the points of the circle at which squares are looked up
 SQUARES_PER_VOXEL = 16
 """Memory in the cache: a voxel takes some 100 bytes, a square a few."""
 

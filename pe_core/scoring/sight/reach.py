@@ -32,12 +32,10 @@ SMOOTHED_M = 5.0
 """About as long as a car."""
 BESIDE_RAD = math.radians(10.0)
 """Bearings farther apart than this are not smoothed over, and no sector is wider."""
-VOXELS = 32
-"""Voxels of a ring's piece."""
+VOXELS = 32  # Voxels of a ring's piece
 FEW = 0.25
 """With a smaller share of voxels in the space and outside the vehicle, AP counts as 0."""
-DECIMALS = 6
-"""Reaches are rounded to the micrometre."""
+DECIMALS = 6  # Reaches are rounded to the micrometre
 AP = Number(0.0, 1.0, above=True, below=True)
 BEARINGS = Whole(4, 720)
 
@@ -180,8 +178,7 @@ def _end_of_longest(values: Floats, min_value: float) -> float:
 
 AT_LEAST_M = 0.5
 """A reach this near to the end of the evaluated range counts as its end: it is "at least"."""
-ARC_STEPS = 12
-"""Points along the arc of a sector."""
+ARC_STEPS = 12  # Points along the arc of a sector
 
 
 @dataclass(frozen=True, slots=True, eq=False)

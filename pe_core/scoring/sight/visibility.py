@@ -36,8 +36,7 @@ SPREAD_M = 0.7
 """Standard deviation of the Gaussian filter: less than the size of objects."""
 CLOSED = 1.5
 """Radius of the disc of the morphological closing, in standard deviations of the filter."""
-GRAIN_M2 = 12.0
-"""Visible pieces smaller than this are taken for sampling noise."""
+GRAIN_M2 = 12.0  # Visible pieces smaller than this are taken for sampling noise
 EMPTY_WEIGHT = 1e-9
 """Weight of a column without mass, as a share of the largest: it counts only among such columns."""
 MAX_VOXELS = 4_000_000

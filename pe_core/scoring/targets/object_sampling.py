@@ -36,8 +36,7 @@ MENU = (
     ("Objects", "How well objects of the prior are detected: expected AP, and range"),
 )
 """How Blender's panel shows `TARGETS`."""
-SCENES = 256
-"""The default; it gives a standard error of about 0.1 nats on the road."""
+SCENES = 256  # The default; it gives a standard error of about 0.1 nats on the road
 COUNT = Whole(8, 20_000, "scenes")
 """More would take minutes and gigabytes for a standard error below 0.01 nats."""
 OBJECT_BYTES = 1500

@@ -19,17 +19,14 @@ from ..domains import SHARE
 from ..parametrization import Candidate, Parametrization
 from .method import Given, Incumbent, MethodPart, Phase, sampled_candidate
 
-BATCH = 8
-"""Placements that are tried at once."""
+BATCH = 8  # Placements that are tried at once
 HALVINGS = 9
 """The longest step is half a variable's range; the shortest ones are 2^-8 of that."""
-SECOND = 0.7
-"""Probability that a second variable of the same sensor moves, too."""
+SECOND = 0.7  # Probability that a second variable of the same sensor moves, too
 COPIED, TOGETHER = 0.2, 0.2
 """Where there is another sensor of the same model: probability that a sensor takes its values, and
 that both move by the same steps."""
-EVEN = 0.1
-"""Probability that a variable is chosen whatever its steps gained."""
+EVEN = 0.1  # Probability that a variable is chosen whatever its steps gained
 FULL_GAIN, MEMORY = 0.02, 0.1
 """The gain of a step counts up to this [nats], with this weight beside those of earlier steps."""
 

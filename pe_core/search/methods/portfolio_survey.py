@@ -14,10 +14,8 @@ from ..domains import METRE, SHARE, DesignVariable
 from ..parametrization import Candidate
 from .method import Evaluated, Given, Incumbent, MethodPart, Phase, sampled_candidate
 
-TWO_MOVED = 16
-"""Placements with two sensors in other slots, tried at once."""
-MAX_SLOTS = 16
-"""Slots evaluated in one turn; of a longer list, so many are sampled."""
+TWO_MOVED = 16  # Placements with two sensors in other slots, tried at once
+MAX_SLOTS = 16  # Slots evaluated in one turn; of a longer list, so many are sampled
 
 
 class SlotTurn:

@@ -66,14 +66,11 @@ QUAD = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))
 """Corners of a face, in order, in half sides along its two axes."""
 ROUNDING_PX = 1e-6
 """Areas are sums of terms as large as the picture: a smaller result is only rounding."""
-ImagePoints = tuple[Floats, Floats]
-"""Image positions, right and down [px]."""
-PIECES = 8
-"""Straight pieces of an edge of a face."""
+ImagePoints = tuple[Floats, Floats]  # Image positions, right and down [px]
+PIECES = 8  # Straight pieces of an edge of a face
 BESIDE_SIDES, BESIDE_PIECES = 4.0, 32
 """Nearer than this many sides an edge covers 15 degrees and more: it has this many pieces."""
-BALL = math.sqrt(3.0) / 2.0
-"""Radius of the ball round a cube, in sides."""
+BALL = math.sqrt(3.0) / 2.0  # Radius of the ball round a cube, in sides
 RIGHT_BEHIND = math.pi - 1e-3
 """A cube whose ball reaches the direction opposite to the view has no outline [rad]."""
 CUBES_AT_ONCE = 4096

@@ -46,8 +46,7 @@ MANY_RAYS = 50_000
 """Number of rays in consecutive planes above which an occlusion map is faster."""
 ASKED = 16
 """One of this many voxels is tested, to estimate how many the vehicle may hide."""
-LEVEL = 1e-12
-"""Minimum slope along z of a side of the frustum, which is a divisor."""
+LEVEL = 1e-12  # Minimum slope along z of a side of the frustum, which is a divisor
 ALL_ROUND = np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0]])
 """The directions that `VoxelOcclusion` gets as corners of the picture: they include all sides."""
 

@@ -46,14 +46,11 @@ from .model import Camera, PictureBins, picture_occlusion
 from .object_definition import BoxImages, along_camera, box_images, visible_share
 from .sample_areas import bent_pixel_areas, pixel_areas
 
-SEEN_BYTES = 2
-"""Memory of a voxel, averaged over visible and invisible ones (measured)."""
+SEEN_BYTES = 2  # Memory of a voxel, averaged over visible and invisible ones (measured)
 BLOCK_M = 0.125
 """Side of a block of squares: gaps between the middles of blocks are too narrow to count."""
-ROOM_M = 1e-3
-"""Balls round posts are enlarged by this."""
-MARGIN_M = 1e-3
-"""Balls round boxes are enlarged by this."""
+ROOM_M = 1e-3  # Balls round posts are enlarged by this
+MARGIN_M = 1e-3  # Balls round boxes are enlarged by this
 
 
 class ReadyCamera(NamedTuple):

@@ -28,14 +28,11 @@ FOV = Angle(0.001, 220.0)
 COEFFICIENT = Number(cap=1e6, noun="coefficient")
 DEFAULT_EDGE = math.radians(100.0)
 """Default angle from the axis of the edge of a lens with a field of view beyond a plane's."""
-TABLE = 4096
-"""Number of angles of the table that inverts a radius."""
-MIN_SLOPE = 1e-9
-"""At its fold a radius has none."""
+TABLE = 4096  # Number of angles of the table that inverts a radius
+MIN_SLOPE = 1e-9  # At its fold a radius has none
 ROUNDS = 5
 """Steps of Newton's method after the look-up: each doubles the digits, of which four are exact."""
-SHIFT_ROUNDS = 15
-"""Iterations that subtract the shift: each adds one or two digits."""
+SHIFT_ROUNDS = 15  # Iterations that subtract the shift: each adds one or two digits
 RINGS, SPOKES = 1100, 32
 """Directions in which a lens is checked: number of angles from the axis, and number round it."""
 ROOM_PX = 1e-6

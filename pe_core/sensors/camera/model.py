@@ -32,10 +32,8 @@ FARTHEST = Number(SHORTEST_RANGE_M, cap=1e9, unit="m", noun="length", infinite=T
 """Maximum range; a camera as a rule has none."""
 PICTURE_RAYS = 16_384
 """Number of tested positions in the picture: shares are accurate to about a thousandth."""
-Extent = tuple[Ints, Ints]
-"""First and last bin of triangles along one coordinate."""
-CELLS = 64
-"""Number of bins along a side."""
+Extent = tuple[Ints, Ints]  # First and last bin of triangles along one coordinate
+CELLS = 64  # Number of bins along a side
 MAP = Raster((-1.0, 1.0), (-1.0, 1.0), CELLS)
 ROOM_PX = 1e-3
 """Rectangles are enlarged by this, against rounding errors."""

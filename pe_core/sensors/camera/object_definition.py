@@ -46,8 +46,7 @@ from .model import Camera
 
 ImagedFaces = tuple[Ints, Floats, ImagePoints]
 """Boxes (P,), the area (P,) of a face of each, and points (P, K) that bound its image [px]."""
-NEAREST_M = 1e-3
-"""Distance in front of the camera's plane at which a face is cut [m]."""
+NEAREST_M = 1e-3  # Distance in front of the camera's plane at which a face is cut [m]
 PIECES = ((3.0, 32), (12.0, 8), (np.inf, 3))
 """Straight pieces of an edge through a lens with distortion: up to a distance in half
 diagonals, and farther away."""

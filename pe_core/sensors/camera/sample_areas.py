@@ -43,12 +43,10 @@ Array = NDArray[np.floating]
 ENTRIES = 1 << 15
 BEYOND = 0.12
 """Angle beyond the picture up to which a lens is tabulated [rad]."""
-NEAREST_RAD = 0.06
-"""Maximum angular radius of a voxel for the tables."""
+NEAREST_RAD = 0.06  # Maximum angular radius of a voxel for the tables
 MEAN_OFF = 0.07
 """A quarter of the mean squared distance of points in a cube's image, as a share of s^2 / r^2."""
-ANGLES = 4096
-"""Number of angles at which the unevenness of the density is computed."""
+ANGLES = 4096  # Number of angles at which the unevenness of the density is computed
 BORDER_PLACES = 33
 """Points on each side of the picture, to find the maximum angle from the axis."""
 NEAR_SIDES = 15.0

@@ -37,8 +37,7 @@ Mask = NDArray[np.bool_]
 
 MAX_BINS, MIN_BINS = 512, 64
 """Bins along a side of a face."""
-VOXELS_A_BIN = 256
-"""Number of the space's voxels for each bin."""
+VOXELS_A_BIN = 256  # Number of the space's voxels for each bin
 ALIGNED = 1e-8
 """A ray that passes a triangle's corner within this distance (in u and v) is cast: rounding decides
 which of the triangles at the corner it hits, and it may hit none."""

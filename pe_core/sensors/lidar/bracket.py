@@ -30,8 +30,7 @@ single precision."""
 SLACK = np.float32(1e-4)
 """Cubes are taken larger (outer) or smaller (inner) by this, in sides: twice the rounding, in
 single precision, of a point a thousand sides away."""
-BLOCK = 1 << 15
-"""Voxels computed together: their arrays fit the processor's cache."""
+BLOCK = 1 << 15  # Voxels computed together: their arrays fit the processor's cache
 BALL = np.float32(0.867)
 """Radius of the ball around a cube, in sides, rounded up; bounds a cube on the sensor's axis."""
 ON_AXIS = np.float32(1e-25)

@@ -42,10 +42,8 @@ ZERO_COMPONENT = 1e-30
 """Replaces a direction component of exactly 0, so that division by it gives a huge number."""
 MAX_BEAM_TESTS = 1 << 23
 """Beams times voxels (or boxes) tested together: a bound of the memory."""
-CULL_MARGIN_RAD = 1e-6
-"""Cones round cubes are widened by this against rounding [rad]."""
-BALL = np.sqrt(3.0) / 2.0
-"""Radius of the ball around a cube, in sides."""
+CULL_MARGIN_RAD = 1e-6  # Cones round cubes are widened by this against rounding [rad]
+BALL = np.sqrt(3.0) / 2.0  # Radius of the ball around a cube, in sides
 
 
 def offsets_in_voxels(centers: Floats, position: Sequence[float], side: float) -> Floats:

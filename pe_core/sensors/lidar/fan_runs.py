@@ -22,10 +22,8 @@ MAX_SLOPE = 5.0
 """Steeper slopes are compared one by one, without bins."""
 ROUNDING = 1e-9
 """A slope this near to a channel's is unsure, relative: far more than rounding needs."""
-CACHED_MODELS = 16
-"""Models whose fans are in the cache."""
-RUN_BLOCK = 16_000
-"""Runs computed together: their arrays fit the processor's cache."""
+CACHED_MODELS = 16  # Models whose fans are in the cache
+RUN_BLOCK = 16_000  # Runs computed together: their arrays fit the processor's cache
 AZIMUTH_MARGIN = 1e-9
 """Spans of azimuths are widened by this against rounding, in steps."""
 

@@ -34,8 +34,7 @@ from .returns import expected_points
 Bits = NDArray[np.uint64]
 FanBlock = tuple[FanBeams, RunBlock]
 
-MAX_FANS = 16
-"""With more fans, testing beams one by one is as fast."""
+MAX_FANS = 16  # With more fans, testing beams one by one is as fast
 MAX_SLOPE = 1e3
 """A LiDAR with a steeper channel, along its own axis, has its beams tested one by one."""
 WORD = 64
@@ -45,8 +44,7 @@ BIT_COUNTS = np.array([bin(n).count("1") for n in range(1 << 16)], np.uint8)
 """Number of set bits of each 16-bit word."""
 MIN_GAP_M = 1e-5
 """Boxes nearer to each other than this along a ray are compared beam by beam."""
-MIN_INVERSE = 1e-9
-"""Replaces an inverse distance of 0 or below, of an unsure run [1/m]."""
+MIN_INVERSE = 1e-9  # Replaces an inverse distance of 0 or below, of an unsure run [1/m]
 
 
 class LidarObjects(ObjectKernel):

@@ -43,8 +43,7 @@ from .lattice import lattice_of
 from .model import ALL, ROAD, lidar_of
 from .voxel_beams import CUBE_RADIUS, PlacedLidar, VoxelPoints, count_pairs, count_voxel_beams
 
-BEAM_BYTES = 100
-"""Memory of a cast beam, measured: its direction, its end and its hit."""
+BEAM_BYTES = 100  # Memory of a cast beam, measured: its direction, its end and its hit
 MIN_RANGE_BLOCK = 64
 """Voxels tested together; all beams may pass a voxel next to the sensor."""
 SPACING_M, MAX_SPACING_M = 0.05, 0.15
@@ -52,10 +51,8 @@ SPACING_M, MAX_SPACING_M = 0.05, 0.15
 MAX_POINTS = 2_000_000
 DIRECTION_BINS = 1e11
 """Segments whose directions agree to one part in this many lie on one ray."""
-MIN_LENGTH = 1e-9
-"""Replaces the horizontal length 0 of a vertical beam."""
-MAX_LENGTH_M = 1e6
-"""No segment is longer."""
+MIN_LENGTH = 1e-9  # Replaces the horizontal length 0 of a vertical beam
+MAX_LENGTH_M = 1e6  # No segment is longer
 
 
 def compact(

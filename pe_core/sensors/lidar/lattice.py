@@ -18,8 +18,7 @@ from ...geometry.bins import count_up
 from .bracket import Bracket, SlopeBounds
 from .model import Lidar
 
-WINDOW_MARGIN = 1e-7
-"""Windows are widened by this against rounding [rad]."""
+WINDOW_MARGIN = 1e-7  # Windows are widened by this against rounding [rad]
 CACHED_LATTICES = 16
 """Lattices in the cache, by model; a rig has few models, and a search the same few."""
 BAND_RAD = math.radians(0.5)

@@ -26,12 +26,9 @@ azimuth step to azimuth step, which may go on into a second turn."""
 
 MARGIN = 1e-6
 """Windows are widened by this, relative: far more than rounding, far less than an azimuth step."""
-MIN_DISTANCE_M = 1e-9
-"""Replaces a distance of 0 from the sensor's axis [m]."""
-MAX_SLOPE = 1e9
-"""Slopes are clipped to this: beyond all channels."""
-LARGE_WINDOW = 48
-"""A box whose window has this many azimuth steps or more is opened."""
+MIN_DISTANCE_M = 1e-9  # Replaces a distance of 0 from the sensor's axis [m]
+MAX_SLOPE = 1e9  # Slopes are clipped to this: beyond all channels
+LARGE_WINDOW = 48  # A box whose window has this many azimuth steps or more is opened
 
 
 def occlusion_candidates(

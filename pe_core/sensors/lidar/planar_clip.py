@@ -33,16 +33,13 @@ PairBound = tuple[Floats, Floats, Floats, Floats]
 an upper one, else infinity."""
 MIN_BESIDE_M = 1e-3
 """A box has all beams tested if the sensor, seen from above, is nearer to it than this."""
-IN_LINE_M = 1e-5
-"""A box with a side this nearly in line with the sensor is unsure."""
+IN_LINE_M = 1e-5  # A box with a side this nearly in line with the sensor is unsure
 GRAZING = 1e-10
 """A ray whose inverse distances to where it enters and leaves differ by less is unsure [1/m]."""
 ZERO_RISE = 1e-12
 """A pair of sides whose inverse distances differ by less per slope is decided by azimuth alone."""
-SMALL_RISE = 1e-6
-"""A box with a pair between ZERO_RISE and this is unsure."""
-TINY_RISE = 1e-30
-"""Replaces a rise of 0 as a divisor."""
+SMALL_RISE = 1e-6  # A box with a pair between ZERO_RISE and this is unsure
+TINY_RISE = 1e-30  # Replaces a rise of 0 as a divisor
 NEAR, FAR, MAX_PAIRS = 3, 6, 9
 """Sides that may face a sensor and away from it, and the most pairs of them that differ."""
 DISTANCE_MARGIN_M = 1e-3

@@ -18,8 +18,7 @@ import numpy as np
 from ...base.arrays import Floats, Ints
 from ...scene.objects import Objects
 
-ANY = ""
-"""Any class."""
+ANY = ""  # Any class
 SURFACES = {
     ANY: (0.45, 63.1),
     "car": (0.525, 50.1),

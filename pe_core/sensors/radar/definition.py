@@ -42,15 +42,12 @@ TARGET = "car"
 """Class of the object whose share a voxel has."""
 ASPECTS = np.radians(np.arange(2.5, 180.0, 5.0))
 """Aspects over which the RCS of the reference car is averaged [rad]."""
-SIDE_POINTS = 55, 34
-"""Points of a side of a box: neighbouring Fibonacci numbers."""
+SIDE_POINTS = 55, 34  # Points of a side of a box: neighbouring Fibonacci numbers
 OBJECTS_AT_ONCE = 1024
 SURE = 0.9
 """Probability of a detection from which an object counts as one point to a requirement."""
-CONE_MARGIN = 1e-6
-"""Of the cosine and of the angle of the cone round the field of view."""
-NEAR_M = 1e-6
-"""Replaces the distance 0."""
+CONE_MARGIN = 1e-6  # Of the cosine and of the angle of the cone round the field of view
+NEAR_M = 1e-6  # Replaces the distance 0
 
 
 def fan_of(sensor: Sensor, vehicle: Vehicle | None) -> RayFan:

@@ -15,8 +15,7 @@ from ...base.arrays import Floats
 from ...base.errors import InputError, shown
 from ...base.values import A_NAME, Number, listed
 
-MIN_PD = 0.1
-"""A resolution cell that is detected more rarely than this does not count."""
+MIN_PD = 0.1  # A resolution cell that is detected more rarely than this does not count
 DBSM = Number(-60.0, 80.0, unit="dBsm")
 ASPECT_DEG = Number(0.0, 180.0, unit="degrees", noun="angle")
 MEDIAN_DBSM = {
@@ -35,8 +34,7 @@ LOW_DBSM = {"pedestrian": -20.7}
 90 % of them. Of other classes no spread was found."""
 UNKNOWN_DBSM = MEDIAN_DBSM["pedestrian"]
 """Of a class without a figure: the weakest of the table, on the safe side."""
-NO_ECHO = -math.inf
-"""Of a class without a figure to a requirement [dBsm]."""
+NO_ECHO = -math.inf  # Of a class without a figure to a requirement [dBsm]
 
 
 def ratio_of_db(db: float) -> float:

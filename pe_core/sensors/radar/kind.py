@@ -70,8 +70,7 @@ MODE_FIELDS = {
     "elevation_resolution_deg": "elevation_resolution",
 }
 """Fields of a mode by key, in the order of a file."""
-ASCENDING = ("azimuth_deg", "elevation_deg")
-"""Keys of lists of angles."""
+ASCENDING = ("azimuth_deg", "elevation_deg")  # Keys of lists of angles
 KEYS = frozenset({"mode", "rcs_dbsm", *OWN})
 DEGREES = Number(cap=1e6, unit="degrees", noun="angle")
 

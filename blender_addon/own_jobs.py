@@ -32,11 +32,9 @@ class ExportStopped(Exception):
 
 
 class ExportJob(jobs.Job):
-    """Makes files on a thread, then writes them; a stopped job writes nothing.
-
-    `stage` is what it does. `make` gets an outcome, None if the study is not `scored` first, and a
-    callback for the progress, 0 to 1; `write` writes what it returns.
-    """
+    """Makes files on a thread, then writes them; a stopped job writes nothing. `stage` is what it
+    does. `make` gets an outcome, None if the study is not `scored` first, and a callback for the
+    progress, 0 to 1; `write` writes what it returns."""
 
     def __init__(
         self,

@@ -221,11 +221,9 @@ _items: list[tuple[str, str, str, int]] = []
 
 
 def own_kinds(_settings: object, _context: object) -> list[tuple[str, str, str, int]]:
-    """Return the kinds that an own sensor may be of, as Blender wants a menu.
-
-    A .blend file holds the numbers: those of the kinds with a row are their places in the table,
-    others follow from the name.
-    """
+    """Return the kinds that an own sensor may be of, as Blender wants a menu. A .blend file holds
+    the numbers: those of the kinds with a row are their places in the table, others follow from the
+    name."""
     numbers = {name: number for number, name in enumerate(ROWS)}
     _items[:] = [
         (name, kind.label, row_of(name).own_about, numbers.get(name, _number_of(name)))

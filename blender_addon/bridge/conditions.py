@@ -126,7 +126,6 @@ def _weather_of(row: PropertyGroup) -> pe.Weather:
 
 def read_states(scene: Scene) -> list[str]:
     """Read the motions of all states with a frame again; return the names of those that changed.
-
     `InputError` when a part bends or has other triangles at a frame, or the vehicle cannot be read.
     """
     rows = [row for row in scene.perception_entropy.states if row.frame >= 0]

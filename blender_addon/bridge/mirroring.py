@@ -65,11 +65,9 @@ def mirror_of(obj: Object, scene: Scene) -> Object | None:
 
 
 def follow_mirrors(scene: Scene, depsgraph: Depsgraph, sensors: Sequence[Object]) -> list[str]:
-    """Move linked sensors whose mirror image has moved; return their names.
-
-    If both have moved and are no longer mirror images, the first by name leads. Links of
-    duplicates and links to deleted sensors are removed.
-    """
+    """Move linked sensors whose mirror image has moved; return their names. If both have moved and
+    are no longer mirror images, the first by name leads. Links of duplicates and links to deleted
+    sensors are removed."""
     _repair_links(scene, sensors)
     moved: dict[str, pe.Pose] = {}
     current_poses: dict[tuple[str, str], pe.Pose] = {}

@@ -236,11 +236,9 @@ def mount_faces(
 def bounds_box(
     obj: Object, sensor: pe.Sensor, vehicle: pe.Vehicle | None, around: np.ndarray | None = None
 ) -> LimitBox | None:
-    """Return the box of a sensor's own bounds; None for one without any.
-
-    On a fixed axis the box has no extent. On a free axis without bounds it has the default bounds;
-    for a sensor on a surface it spans the faces `around` (F, 3, 3) and the sensor.
-    """
+    """Return the box of a sensor's own bounds; None for one without any. On a fixed axis the box
+    has no extent. On a free axis without bounds it has the default bounds; for a sensor on a
+    surface it spans the faces `around` (F, 3, 3) and the sensor."""
     settings = obj.perception_entropy
     limits = bounds_by_axis(settings.bounded, settings.bounds_low, settings.bounds_high)
     if not set("xyz") & set(limits):

@@ -23,11 +23,9 @@ BEGAN = "began"
 
 
 class ResultPart(NamedTuple):
-    """A zone of the ground or a class of objects: its label, entropy [nats], visible share.
-
-    Of a class: the distance ahead up to which it is found with an AP of 0.5; if objects were
-    scored, its expected AP.
-    """
+    """A zone of the ground or a class of objects: its label, entropy [nats], visible share. Of a
+    class: the distance ahead up to which it is found with an AP of 0.5; if objects were scored, its
+    expected AP."""
 
     name: str
     is_class: bool

@@ -145,10 +145,8 @@ def place_for_now(scene: Scene, rig: pe.Rig, start: pe.Rig) -> Callable[[], None
 
 def place_poses(scene: Scene, poses: Mapping[str, pe.Pose]) -> list[str]:
     """Place sensors, by name, at poses; return the names of sensors that no longer exist.
-
     `InputError` when a constraint, a driver or an animation holds a sensor where it is, or it is
-    another file's.
-    """
+    another file's."""
     present: list[tuple[Object, pe.Pose]] = [
         (scene.objects[name], pose)
         for name, pose in poses.items()

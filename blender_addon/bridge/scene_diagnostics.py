@@ -135,12 +135,9 @@ def _refused(scene: Scene, sensors: Sequence[Object]) -> Iterator[advice.Advice]
 
 
 def check_placeable(scene: Scene, study: pe.Study) -> None:
-    """Check that a search can place the sensors.
-
-    `InputError` when no axis of the study's sensors is free, or an animation, a driver or a
-    constraint holds one that is moved: the placement would be lost at the next frame. When one that
-    is to move on a mount is locked.
-    """
+    """Check that a search can place the sensors. `InputError` when no axis of the study's sensors
+    is free, or an animation, a driver or a constraint holds one that is moved: the placement would
+    be lost at the next frame. When one that is to move on a mount is locked."""
     mounting = study.search.mounting
     sensors = [scene.objects[sensor.name] for sensor in study.rig]
     followers = followers_of(mounting.pairs, mounting.groups)

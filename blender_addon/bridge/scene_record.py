@@ -47,12 +47,9 @@ Requirement = requirements.Requirement
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SceneRecord:
-    """Everything that a study is made of.
-
-    `search` and `selection` hold settings for all sensors together. The record of each sensor
-    holds its free axes, bounds, mount and model options. `source` ("scene" or "variant") is the
-    source that errors about sensors name.
-    """
+    """Everything that a study is made of. `search` and `selection` hold settings for all sensors
+    together. The record of each sensor holds its free axes, bounds, mount and model options.
+    `source` ("scene" or "variant") is the source that errors about sensors name."""
 
     source: str
     sensors: tuple[SensorRecord, ...]

@@ -35,10 +35,8 @@ def values_of(
     settings: PropertyGroup, cls: Any, names: Iterable[str] = (), prefix: str = ""
 ) -> dict[str, Any]:
     """Return the settings of a dataclass that a group of properties holds, by their fields' names.
-
     An optional setting is None if its property is 0, off or at the menu's entry for it; angles are
-    converted to radians. `prefix` is before the properties' names.
-    """
+    converted to radians. `prefix` is before the properties' names."""
     return {
         setting.name: value_of_property(setting, getattr(settings, f"{prefix}{name}"))
         for name, setting in _in_panel(cls, names)

@@ -228,7 +228,6 @@ def write_records(variant: PropertyGroup, records: Sequence[SensorRecord]) -> No
 
 def record_of_sensor(sensor: pe.Sensor) -> SensorRecord:
     """Return the record of an engine's sensor, with the free axes of the paper and no bounds.
-
     `sensor_of` returns an equal sensor from the record, also if its model is not in the catalogue.
     """
     return SensorRecord(

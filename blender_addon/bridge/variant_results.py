@@ -124,11 +124,9 @@ def hardware_note(variants: Sequence[Variant]) -> str:
 
 
 def check_choosable(scene: Scene, study: pe.Study) -> None:
-    """Check that a scene has sensors to choose, and that they can be placed.
-
-    `InputError` when no sensor has models to choose from, no design keeps to the limits, or
-    something else holds a sensor that is to be moved.
-    """
+    """Check that a scene has sensors to choose, and that they can be placed. `InputError` when no
+    sensor has models to choose from, no design keeps to the limits, or something else holds a
+    sensor that is to be moved."""
     if not jobs.has_front(study):
         expected = "a sensor with models to choose from (panel Sensor Choices)"
         raise pe.InputError("scene", "choices", expected, "none")

@@ -85,11 +85,9 @@ def hidden_how(layer: LayerCollection) -> str:
 def drawn_meshes(
     collection: Collection, depsgraph: Depsgraph
 ) -> Iterator[tuple[Object, np.ndarray]]:
-    """Yield every visible mesh and instance of a vehicle, evaluated, and its (4, 4) pose.
-
-    An object is valid only until the next one is yielded: do not store references to it. The pose
-    is ground from object.
-    """
+    """Yield every visible mesh and instance of a vehicle, evaluated, and its (4, 4) pose. An object
+    is valid only until the next one is yielded: do not store references to it. The pose is ground
+    from object."""
     visible = visible_members(collection, depsgraph.view_layer)
     members = {obj for obj in visible if not mounted_on_sensor(obj)}
     # The iterator yields curves, texts and metaballs twice: as themselves and as a mesh.

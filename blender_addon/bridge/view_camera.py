@@ -29,10 +29,8 @@ def view_camera(obj: Object) -> Object | None:
 
 def shown_fov(model: pe.Camera) -> float:
     """Return the horizontal field of view [rad] of the pinhole that shows a camera's whole view.
-
-    Blender's camera has no distortion. For a lens with distortion or with a principal point off
-    the centre, it is the narrowest centred pinhole that contains the field, at most WIDEST.
-    """
+    Blender's camera has no distortion. For a lens with distortion or with a principal point off the
+    centre, it is the narrowest centred pinhole that contains the field, at most WIDEST."""
     if model.lens is None:
         return float(model.hfov)
     depth, left, up = abs(model.outline().T)

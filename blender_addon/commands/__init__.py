@@ -32,11 +32,9 @@ IN_BLENDER = "blender -b FILE.blend --command pe"
 
 
 def main(argv: Sequence[str], prog: str, out: TextIO) -> int:
-    """Run the command on the file that is open; results go to `out`, all else to stderr.
-
-    Returns the exit status. 0: done; 1: bad input, or results that cannot be written; 2: usage; 128
-    plus the number of a signal.
-    """
+    """Run the command on the file that is open; results go to `out`, all else to stderr. Returns
+    the exit status. 0: done; 1: bad input, or results that cannot be written; 2: usage; 128 plus
+    the number of a signal."""
     try:
         with contextlib.redirect_stdout(out):
             args = parser(prog).parse_args(argv)

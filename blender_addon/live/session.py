@@ -192,10 +192,8 @@ MOVE_LABEL = "before this move"
 
 def note_move(state: LiveState, operator: int, now: pe.Rig | None) -> None:
     """Note an update in which something moves; keep what was there before where a move begins.
-
     `state` is as it was before this update. `operator` is the number of the one that moves with the
-    mouse; 0 when there is none. `now` is None when it is the vehicle that moves.
-    """
+    mouse; 0 when there is none. `now` is None when it is the vehicle that moves."""
     if state.operator and operator in (0, state.operator):
         state.operator = operator
         return

@@ -18,10 +18,8 @@ from ..engine_calls import Problem
 @dataclass(slots=True, eq=False)
 class Baseline:
     """What a live score is compared with, in words ("before this move"), its sensors and score.
-
     `rig` is None where the vehicle was another one, `summary` until it has been computed on the
-    sample of the live score.
-    """
+    sample of the live score."""
 
     label: str
     rig: pe.Rig | None

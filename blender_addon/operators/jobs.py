@@ -328,10 +328,8 @@ def front_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprin
 
 def check_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint) -> Task:
     """Check all requirements that the rig can be held to; verdicts are stored as they are found.
-
-    After Esc those that were found before it are kept; a requirement that was changed meanwhile
-    has no verdict.
-    """
+    After Esc those that were found before it are kept; a requirement that was changed meanwhile has
+    no verdict."""
     if not study.requirements and not study.stories:
         raise pe.InputError("scene", "requirements", "at least one, or a story", "none")
     tables = {*bridge.requirements_key(scene.perception_entropy)}

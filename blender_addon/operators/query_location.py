@@ -18,11 +18,9 @@ HINT = "Click the ground or a surface to query it     Esc, right click: done"
 
 
 def clicking(hint: str, once: bool = False) -> dict[str, Any]:
-    """Return members of an operator that is executed at each click on a surface, until Esc.
-
-    With `once` it ends with the first click that does something: an undo step of its own. Its
-    property `point` is the location; `hint` is shown in the status bar.
-    """
+    """Return members of an operator that is executed at each click on a surface, until Esc. With
+    `once` it ends with the first click that does something: an undo step of its own. Its property
+    `point` is the location; `hint` is shown in the status bar."""
 
     def begin(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         context.window_manager.modal_handler_add(self)

@@ -147,12 +147,9 @@ def unregister() -> None:
 
 
 def _send_events(manager: bpy.types.WindowManager) -> None:
-    """Have each window get some events soon.
-
-    Blender keeps the handler of a modal operator whose class is removed, without an operator, until
-    the window's next event. A modal operator that a script starts before it ends Blender: 4.3 looks
-    into the operators of all handlers.
-    """
+    """Have each window get some events soon. Blender keeps the handler of a modal operator whose
+    class is removed, without an operator, until the window's next event. A modal operator that a
+    script starts before it ends Blender: 4.3 looks into the operators of all handlers."""
     timers = {
         window.as_pointer(): manager.event_timer_add(TICK_S, window=window)
         for window in manager.windows

@@ -97,11 +97,9 @@ class Stance:
         return bool(self.yaw_deg or self.pitch_deg)
 
     def placed(self, spot: SurfaceSpot, mount: Mount, middle: Vector) -> Matrix:
-        """Return the pose (4, 4) on a spot of a vehicle with the given middle.
-
-        Upright: z is up, and a sensor that has a front looks away from the middle. Along the
-        normal: the front looks along it, or, of sensors that look all around, their z stands so.
-        """
+        """Return the pose (4, 4) on a spot of a vehicle with the given middle. Upright: z is up,
+        and a sensor that has a front looks away from the middle. Along the normal: the front looks
+        along it, or, of sensors that look all around, their z stands so."""
         origin = spot.point + spot.normal * self.stand_off_m
         at = Matrix.Translation([round(value, POSITION_DECIMALS) for value in origin])
         if not self.along_normal:

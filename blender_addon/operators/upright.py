@@ -41,11 +41,9 @@ def is_dropped(obj: bpy.types.Object) -> bool:
 
 
 def place_on_surface(obj: bpy.types.Object, middle: Vector) -> None:
-    """Put a sensor upright on the surface that the base of its body was dropped on.
-
-    Blender puts the base of its bounding box there. Its body just touches the surface; a sensor
-    without a body has the stand-off of its kind.
-    """
+    """Put a sensor upright on the surface that the base of its body was dropped on. Blender puts
+    the base of its bounding box there. Its body just touches the surface; a sensor without a body
+    has the stand-off of its kind."""
     try:
         mount = mount_for(catalog.load(obj.perception_entropy.model))
     except pe.InputError:  # the model is not in this catalogue: its view is unknown

@@ -29,7 +29,6 @@ AXLE_ALPHA = 0.55
 
 def axles(reference: pe.Reference, half_width: float | None) -> graphics.LayerShape:
     """Return both axles as lines across, and axes on the ground under the middle of the rear one.
-
     `half_width` is the vehicle's [m]; lines go a little beyond it, and are drawn through the body.
     """
     half = BEYOND_M + (DEFAULT_HALF_WIDTH_M if half_width is None else half_width)

@@ -94,11 +94,9 @@ class LayerCache:
     def fitted(
         self, key: Hashable, fit: Callable[[], tuple[float, float]], *, anew: bool, scored: bool
     ) -> tuple[float, float]:
-        """Return the cached range of colours; with `anew`, a newly fitted one.
-
-        The range that was first needed once there was a score is kept: later scores are then
-        shown in the same colours.
-        """
+        """Return the cached range of colours; with `anew`, a newly fitted one. The range that was
+        first needed once there was a score is kept: later scores are then shown in the same
+        colours."""
         if scored:
             return self._keep("scale", key, fit)
         if anew:

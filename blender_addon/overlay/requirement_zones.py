@@ -39,12 +39,9 @@ def requirement_zones(
     before: Mapping[str, bool] | None = None,
     unplaced: Mapping[str, str] | None = None,
 ) -> VerdictShape:
-    """Return the zones of all requirements.
-
-    Of the `chosen` one, by its name, worst place, body, height and margin are drawn. `before` says
-    whether each was met before the last move: the legend names what was lost or won since.
-    `unplaced` says why a requirement cannot be checked.
-    """
+    """Return the zones of all requirements. Of the `chosen` one, by its name, worst place, body,
+    height and margin are drawn. `before` says whether each was met before the last move: the legend
+    names what was lost or won since. `unplaced` says why a requirement cannot be checked."""
     lines, faces, thin, labels = [], [], [], []
     for verdict in verdicts:
         color = MET if verdict.met else NOT_MET

@@ -168,11 +168,9 @@ def draw_list(
     rows: int = 3,
     menu: str = "",
 ) -> UILayout:
-    """Draw a list with the buttons Add and Remove beside it; return the column of buttons.
-
-    `names` are the properties of the rows and of the selected row's index, `buttons` the operators;
-    `menu` is the property of the first that a menu asks for.
-    """
+    """Draw a list with the buttons Add and Remove beside it; return the column of buttons. `names`
+    are the properties of the rows and of the selected row's index, `buttons` the operators; `menu`
+    is the property of the first that a menu asks for."""
     row = layout.row()
     row.use_property_split = False
     row.template_list(kind.__name__, "", settings, names[0], settings, names[1], rows=rows)
@@ -264,12 +262,9 @@ def draw_sentence(
     beside_px: float = 0.0,
     sense: int = SAME,
 ) -> None:
-    """Draw a sentence in as many lines as it needs; the icon is before the first.
-
-    A gain or a loss (`sense`) has its own icon. A sentence that begins with a space continues the
-    one before, and has no icon. `beside_px` is the width of what is beside the sentence, at a scale
-    of 1.
-    """
+    """Draw a sentence in as many lines as it needs; the icon is before the first. A gain or a loss
+    (`sense`) has its own icon. A sentence that begins with a space continues the one before, and
+    has no icon. `beside_px` is the width of what is beside the sentence, at a scale of 1."""
     if text.startswith(" "):
         text, icon = text.strip(), "BLANK1"
     column = layout.column(align=True)

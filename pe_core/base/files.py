@@ -350,10 +350,8 @@ def is_reserved(name: str) -> bool:
 
 def file_stem(name: str, default: str, *, joint: str = "_", max_length: int = MAX_STEM) -> str:
     """Return a name as that of a file, without suffix: ASCII letters, digits, ``-`` and ``_``.
-
     `default` says what the thing is; it stands for a name without such letters, and `joint` for one
-    or several other characters.
-    """
+    or several other characters."""
     plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
     stem = re.sub("[^A-Za-z0-9_-]+" if joint == "_" else "[^A-Za-z0-9]+", joint, plain)
     stem = stem.strip(joint)[:max_length].strip(joint) or default

@@ -212,11 +212,9 @@ def _declared(cls: Any) -> dict[str, Setting]:
 
 
 def check_settings(instance: Any, source: str, prefix: str = "", names: Iterable[str] = ()) -> None:
-    """Replace each setting of a frozen dataclass, or those of `names`, by its checked value.
-
-    It is called from ``__post_init__``. `source`, and a `prefix` of the field's name, are for the
-    message of the `InputError` when a value breaks its rule.
-    """
+    """Replace each setting of a frozen dataclass, or those of `names`, by its checked value. It is
+    called from ``__post_init__``. `source`, and a `prefix` of the field's name, are for the message
+    of the `InputError` when a value breaks its rule."""
     settings = settings_of(type(instance))
     for name in names or settings:
         value = getattr(instance, name)

@@ -33,11 +33,9 @@ import_module({module!r}).{function}(*arguments)
 
 
 def beginning(module: str, function: str, packages: Iterable[tuple[str, str]]) -> str:
-    """Return the first code that a process runs: it calls a function with `arguments`.
-
-    Packages whose first lines would import Blender are not run in it: empty packages of these names
-    and folders stand for them. It is text, because nothing can be imported yet.
-    """
+    """Return the first code that a process runs: it calls a function with `arguments`. Packages
+    whose first lines would import Blender are not run in it: empty packages of these names and
+    folders stand for them. It is text, because nothing can be imported yet."""
     return BEGINNING.format(packages=list(packages), module=module, function=function)
 
 
@@ -88,11 +86,9 @@ def signals_blocked() -> Iterator[None]:
 
 @contextmanager
 def _handlers_held(numbers: Iterable[int]) -> Iterator[None]:
-    """Call Python's handlers of signals after the block.
-
-    To block signals is not enough: another thread then gets them, and Python calls their handlers
-    in the main thread all the same; in other threads never.
-    """
+    """Call Python's handlers of signals after the block. To block signals is not enough: another
+    thread then gets them, and Python calls their handlers in the main thread all the same; in other
+    threads never."""
     before: dict[int, Any] = {}
     came: list[int] = []
     try:

@@ -272,11 +272,9 @@ def rounded(value: float) -> float:
 
 
 def degrees_in_file(angle: float) -> float:
-    """Return the shortest degrees that `math.radians` turns into this angle [rad].
-
-    About a tenth of all floats is not the `math.radians` of any float: then the degrees that come
-    nearest. `as_in_file` rounds an angle to one that a file can hold.
-    """
+    """Return the shortest degrees that `math.radians` turns into this angle [rad]. About a tenth of
+    all floats is not the `math.radians` of any float: then the degrees that come nearest.
+    `as_in_file` rounds an angle to one that a file can hold."""
     degrees = math.degrees(angle)
     for decimals in range(DEGREE_DECIMALS, MAX_DECIMALS + 1):
         rounded = round(degrees, decimals) + 0.0

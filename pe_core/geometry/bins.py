@@ -104,11 +104,9 @@ def spans_of_boxes(near: Floats, far: Floats, low: Floats, high: Floats) -> Span
 
 
 def spans_of_triangles(depth: Floats, w: Floats) -> Spans:
-    """Range of w / depth in triangles with corners (3, G), clipped to -1..1.
-
-    If a corner is behind the sensor, the maximum depth bounds the part in front: a triangle with
-    w > 0 at all corners keeps a positive range, and the same holds for w < 0.
-    """
+    """Range of w / depth in triangles with corners (3, G), clipped to -1..1. If a corner is behind
+    the sensor, the maximum depth bounds the part in front: a triangle with w > 0 at all corners
+    keeps a positive range, and the same holds for w < 0."""
     minimum, maximum, farthest = corner_min(w), corner_max(w), corner_max(depth)
     farthest = np.where(farthest > 0.0, farthest, 1.0)
     behind = corner_min(depth) <= 0.0

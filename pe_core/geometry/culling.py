@@ -38,11 +38,9 @@ Ends = tuple[tuple[float, float], tuple[float, float]]
 
 @dataclass(frozen=True, slots=True)
 class Facing:
-    """Triangles (G,) projected onto one face of the cube round the rays' origin.
-
-    `corners` (G, 3, 3) are relative to the origin [m], `number` (G,) are indices in the tree, `u`,
-    `v` are bounding rectangles on the face.
-    """
+    """Triangles (G,) projected onto one face of the cube round the rays' origin. `corners` (G, 3,
+    3) are relative to the origin [m], `number` (G,) are indices in the tree, `u`, `v` are bounding
+    rectangles on the face."""
 
     corners: Floats
     number: Ints
@@ -56,11 +54,9 @@ class Facing:
 
 
 class Targets:
-    """Triangles with their planes and the planes of their edges.
-
-    `edges` (3, G) each are normals of the planes through the origin and an edge. A ray intersects
-    the triangle's plane at ``offset / (normal . direction)``, `normal` (3, G) and `offset` (G,).
-    """
+    """Triangles with their planes and the planes of their edges. `edges` (3, G) each are normals of
+    the planes through the origin and an edge. A ray intersects the triangle's plane at ``offset /
+    (normal . direction)``, `normal` (3, G) and `offset` (G,)."""
 
     def __init__(self, triangles: Facing) -> None:
         self.triangles = triangles

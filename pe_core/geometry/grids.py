@@ -99,11 +99,9 @@ class PerceptionSpace:
 
 @dataclass(frozen=True)
 class GroundGrid:
-    """Regular grid of squares on the ground, z = 0.
-
-    `origin` (2,) is the corner with the lowest coordinates, ground frame [m], `shape` the number of
-    squares along x and y, `step` the side of a square [m].
-    """
+    """Regular grid of squares on the ground, z = 0. `origin` (2,) is the corner with the lowest
+    coordinates, ground frame [m], `shape` the number of squares along x and y, `step` the side of a
+    square [m]."""
 
     origin: tuple[float, float]
     shape: tuple[int, int]

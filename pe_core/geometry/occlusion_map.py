@@ -44,11 +44,9 @@ PAIRS_AT_ONCE = 1 << 17
 
 
 class OcclusionMap:
-    """The occlusion map of a mesh, for the part of a face that a raster covers.
-
-    `near` and `far` (count * count,) are depths, row after row of the raster [m]; inf where there
-    is no mesh, or perhaps a gap.
-    """
+    """The occlusion map of a mesh, for the part of a face that a raster covers. `near` and `far`
+    (count * count,) are depths, row after row of the raster [m]; inf where there is no mesh, or
+    perhaps a gap."""
 
     def __init__(self, look: FaceLook, raster: Raster) -> None:
         self.raster, self._look = raster, look

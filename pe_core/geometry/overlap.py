@@ -91,11 +91,9 @@ _CYLINDER = _prism(
 
 
 def meets_box(triangles: Floats, half: Floats) -> NDArray[np.bool_]:
-    """Whether triangles (N, 3, 3) overlap the box of half sizes (3,) round the origin.
-
-    Axes: those of the box, the triangle's normal, and cross products of edges and axes
-    (Akenine-Moller, Fast 3D Triangle-Box Overlap Testing, 2001).
-    """
+    """Whether triangles (N, 3, 3) overlap the box of half sizes (3,) round the origin. Axes: those
+    of the box, the triangle's normal, and cross products of edges and axes (Akenine-Moller, Fast 3D
+    Triangle-Box Overlap Testing, 2001)."""
     edges = np.roll(triangles, -1, axis=1) - triangles
     axes = [np.broadcast_to(axis, (len(triangles), 3)) for axis in np.eye(3)]
     axes += [cross(edges[:, 0], edges[:, 1])]
@@ -109,11 +107,9 @@ def meets_box(triangles: Floats, half: Floats) -> NDArray[np.bool_]:
 
 
 def meets_cylinder(triangles: Floats, half: Floats) -> NDArray[np.bool_]:
-    """Whether triangles (N, 3, 3) overlap the upright cylinder round the origin.
-
-    Between the two end planes a triangle is a polygon of parts of its edges and sections with the
-    planes. It overlaps if such a segment is within the radius of the axis, or the axis crosses it.
-    """
+    """Whether triangles (N, 3, 3) overlap the upright cylinder round the origin. Between the two
+    end planes a triangle is a polygon of parts of its edges and sections with the planes. It
+    overlaps if such a segment is within the radius of the axis, or the axis crosses it."""
     radius, top = half[0], half[2]
     meets = _axis_crosses(triangles, top)
     for start in range(3):

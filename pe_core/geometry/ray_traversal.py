@@ -195,11 +195,9 @@ class RayWalk:
         self._shift = np.concatenate([-origin - margin, -origin + margin])
 
     def follow(self, starts: list[RayBoxes], distance: Floats, meet: Meet) -> None:
-        """Call `meet` with the hits of rays on triangles in their boxes.
-
-        `starts` has pairs of each level, the lowest first. `distance` (B,) is the current length of
-        the rays [m]; `meet` may reduce it.
-        """
+        """Call `meet` with the hits of rays on triangles in their boxes. `starts` has pairs of each
+        level, the lowest first. `distance` (B,) is the current length of the rays [m]; `meet` may
+        reduce it."""
         pairs = starts[-1]
         for level in range(len(starts) - 1, 0, -1):
             pairs = _joined([*self._entered(pairs, level, distance), starts[level - 1]])

@@ -31,11 +31,9 @@ SORTING_SHARE = 0.8
 
 
 class BinnedRays:
-    """Rays in the bins of a raster that covers exactly their directions.
-
-    `ray` (R,) are the rays' numbers, `u` and `v` (R,) their directions on the face; `triangles` is
-    the number of triangles of the mesh.
-    """
+    """Rays in the bins of a raster that covers exactly their directions. `ray` (R,) are the rays'
+    numbers, `u` and `v` (R,) their directions on the face; `triangles` is the number of triangles
+    of the mesh."""
 
     def __init__(self, ray: Ints, u: Floats, v: Floats, directions: Floats, triangles: int) -> None:
         along = np.sqrt(len(ray))

@@ -425,11 +425,9 @@ class LeaveOneOut:
 
 
 class _FusionGroup:
-    """A fusion group: the measurements of its sensors, and their sum.
-
-    Of a group with areas a difference would lose digits, so `rests` are the sums over the sensors
-    but each one. Other groups count in whole numbers: the sum less the sensor's count is exact.
-    """
+    """A fusion group: the measurements of its sensors, and their sum. Of a group with areas a
+    difference would lose digits, so `rests` are the sums over the sensors but each one. Other
+    groups count in whole numbers: the sum less the sensor's count is exact."""
 
     def __init__(self, sensors: Sequence[Group], total: Group) -> None:
         self.sensors, self.total = sensors, total

@@ -53,10 +53,8 @@ def scan_factor(bearing_rate: ArrayLike, rate_hz: float) -> Floats:
 
 def factor_of(sensor: Sensor, bearings: Floats, dt: float, rate_hz: float) -> Floats:
     """Return the factor (A, K) of a sensor's m by its scan; 1 but for a LiDAR that turns.
-
     `bearings` (A, K) [rad] are of frames that are `dt` [s] apart. While the direction of the scan
-    is not known, the lower factor of both is taken.
-    """
+    is not known, the lower factor of both is taken."""
     if sensor.kind != LIDAR.name:
         return np.ones(bearings.shape)
     rate, sense = np.gradient(bearings, dt, axis=1), SENSE.get(sensor.scan.turns)

@@ -307,10 +307,8 @@ def _rows(boxes: _Footprints, space: PerceptionSpace) -> Iterator[tuple[Ints, In
 
 def _across(boxes: _Footprints, which: Ints, dx: Floats) -> tuple[Floats, Floats]:
     """Where a line along y, at `dx` from the boxes' centres, enters and leaves their rectangles.
-
     Both are offsets in y from the centre: the line is clipped to the strip between the long sides
-    and to the strip between the short ones.
-    """
+    and to the strip between the short ones."""
     cos, sin = boxes.cos[which], boxes.sin[which]
     long_low, long_high = _strip(sin * dx, boxes.across[which], cos)
     short_low, short_high = _strip(-cos * dx, boxes.along[which], sin)

@@ -183,11 +183,9 @@ def mass_in(cls: ObjectClass, space: PerceptionSpace) -> float:
 def sampled_positions(
     cls: ObjectClass, space: PerceptionSpace, u: Floats, v: Floats
 ) -> tuple[Floats, Floats]:
-    """Return centres x and y [m] of objects of a class in a space, (N,) each.
-
-    Inverse transform sampling: `u` and `v` (N,) are uniform in [0, 1). If the class has no mass in
-    the space, all centres are the same.
-    """
+    """Return centres x and y [m] of objects of a class in a space, (N,) each. Inverse transform
+    sampling: `u` and `v` (N,) are uniform in [0, 1). If the class has no mass in the space, all
+    centres are the same."""
     x, y = _masses(cls, space.x, space.y)
     return _inverted(x, space.x, u), _inverted(y, space.y, v)
 

@@ -141,11 +141,9 @@ class BodyShape:
 
     @cached_property
     def middle(self) -> tuple[float, float]:
-        """Point x, y that belongs on the origin [m]: the middle in x, the axis in y.
-
-        The axis is the middle of the bounds, or the centroid of the surface if that is nearer to
-        y = 0: a single mirror moves the bounds, and a single seat the centroid.
-        """
+        """Point x, y that belongs on the origin [m]: the middle in x, the axis in y. The axis is
+        the middle of the bounds, or the centroid of the surface if that is nearer to y = 0: a
+        single mirror moves the bounds, and a single seat the centroid."""
         low, high = self.bounds
         x, y = ((low + high)[:2] / 2.0).tolist()
         triangles = self.triangles if self.is_ours is None else self.triangles[self.is_ours]
@@ -158,11 +156,9 @@ class BodyShape:
 
     @cached_property
     def lopsided(self) -> tuple[float, float, float]:
-        """Asymmetry of the surface along x, y, z: 0 if it equals its mirror image, at most 2.
-
-        The earth mover's distance, along the axis, between the surface and its mirror image; the
-        unit is half the length of the body's side.
-        """
+        """Asymmetry of the surface along x, y, z: 0 if it equals its mirror image, at most 2. The
+        earth mover's distance, along the axis, between the surface and its mirror image; the unit
+        is half the length of the body's side."""
         body = self.triangles if self.is_ours is None else self.triangles[self.is_ours]
         stride = -(-len(body) // ENOUGH)
         triangles = body[::stride]
@@ -239,10 +235,8 @@ def _rooms(low: Floats, high: Floats, present: NDArray[np.bool_]) -> NDArray[np.
 
 def require_vehicle_size(source: str, body: Any) -> None:
     """Raise `InputError` if a body is too large or too small for a vehicle; a floor does not count.
-
     The body is a `Mesh` or a `Vehicle`. The message has its size, and scale factors that give it
-    the size of a vehicle.
-    """
+    the size of a vehicle."""
     low, high = corner_bounds(body.triangles)
     if _is_possible((high - low).tolist()):
         return

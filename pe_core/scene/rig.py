@@ -32,12 +32,9 @@ NEAR = Number(-10.0, 10.0, unit="m")
 
 
 class SensorModel(ShortRepr):
-    """Intrinsics of a sensor: the base of every kind's model class.
-
-    `kind` is the name of the kind in studies and in the catalogue. With `fuses_early` the sensors
-    of the kind share one fusion group by default. With `sees_through_glass` the vehicle's glass
-    does not occlude.
-    """
+    """Intrinsics of a sensor: the base of every kind's model class. `kind` is the name of the kind
+    in studies and in the catalogue. With `fuses_early` the sensors of the kind share one fusion
+    group by default. With `sees_through_glass` the vehicle's glass does not occlude."""
 
     kind: ClassVar[str]
     fuses_early: ClassVar[bool] = False

@@ -292,11 +292,9 @@ def _with_clearance(
 
 
 def closest_points(point: Floats, triangles: Floats) -> Floats:
-    """Return the closest point (F, 3) on each triangle (F, 3, 3) to a point (3,) [m].
-
-    Regions as in Ericson, Real-Time Collision Detection (2005), section 5.1.5: the projection onto
-    the plane if it lies inside the triangle, else the closest point on an edge.
-    """
+    """Return the closest point (F, 3) on each triangle (F, 3, 3) to a point (3,) [m]. Regions as in
+    Ericson, Real-Time Collision Detection (2005), section 5.1.5: the projection onto the plane if
+    it lies inside the triangle, else the closest point on an edge."""
     a, b, c = (triangles[:, i] for i in range(3))
     nearest = []
     for start, end in ((a, b), (b, c), (c, a)):

@@ -143,11 +143,9 @@ def _up_by_ground(shape: BodyShape) -> int | None:
 
 
 def hood_end(shape: BodyShape, axis: int, up: int) -> float | None:
-    """Return the end of a car, along an axis, that has the hood: 1.0 or -1.0; None if unclear.
-
-    Seen from the side, a car is lower at its hood than at its rear. A body that is taller than wide
-    is not evaluated: the load of a lorry may be lower than its cab.
-    """
+    """Return the end of a car, along an axis, that has the hood: 1.0 or -1.0; None if unclear. Seen
+    from the side, a car is lower at its hood than at its rear. A body that is taller than wide is
+    not evaluated: the load of a lorry may be lower than its cab."""
     other = 3 - axis - up
     size = shape.size
     if not size[up] < size[other] <= size[axis] or not size[up] > 0.0:

@@ -66,11 +66,9 @@ def columns_bytes(space: PerceptionSpace, classes: int) -> int:
 
 
 def require_room_for(space: PerceptionSpace, needed: Callable[[PerceptionSpace], int]) -> None:
-    """Refuse a score of a grid that takes more memory than there is.
-
-    `needed` returns the memory that a score of a space takes [bytes]. The message of the
-    `InputError` has how much it takes, how much there is, and what would fit.
-    """
+    """Refuse a score of a grid that takes more memory than there is. `needed` returns the memory
+    that a score of a space takes [bytes]. The message of the `InputError` has how much it takes,
+    how much there is, and what would fit."""
     there, amount = available_bytes(), needed(space)
     if there is not None and amount > there:
         fitting = next((s.interval for s in _coarser(space) if needed(s) <= there), None)
@@ -281,11 +279,9 @@ class GridScorer:
     def _reduced(
         self, parts: Sequence[Sequence[Group]], planes: slice, members: LeaveOneOut | None
     ) -> tuple[Floats, Floats, Floats]:
-        """Return sums by part and class (P, 2, C), by column of the whole rig, and by sensor.
-
-        The columns (3, n, ny) are entropy and coverage weighted by the prior, and the prior.
-        Sums by sensor (3, S) come from `members`; they are empty without it.
-        """
+        """Return sums by part and class (P, 2, C), by column of the whole rig, and by sensor. The
+        columns (3, n, ny) are entropy and coverage weighted by the prior, and the prior. Sums by
+        sensor (3, S) come from `members`; they are empty without it."""
         by_class = np.zeros((len(parts), 2, len(self._names)))
         columns = np.empty((3, planes.stop - planes.start, self._grounds.shape[1]))
         by_sensor: Floats = np.zeros(1)

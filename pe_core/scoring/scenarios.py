@@ -85,10 +85,8 @@ def parts_by_sums(
     rig: Rig, whole: float, blind: float, by_sensor: NDArray[np.float64]
 ) -> dict[Members, NDArray[np.float64]]:
     """Return weighted entropy and coverage (2, 1) of each sensor alone and the rig without it.
-
     `whole` and `blind` are the weighted entropies of the rig and of no sensor; `by_sensor` (3, S)
-    holds the sums of `LeaveOneOut`. Coverage is computed for single sensors only, else 0.
-    """
+    holds the sums of `LeaveOneOut`. Coverage is computed for single sensors only, else 0."""
     names = tuple(s.name for s in rig)
     order = [s.name for sensors in rig.groups.values() for s in sensors]
     lost, gained, coverage = (dict(zip(order, values, strict=True)) for values in by_sensor)

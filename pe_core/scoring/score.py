@@ -83,10 +83,8 @@ class Scatter(ShortRepr):
 
 def paired_error(one: Scatter | None, other: Scatter | None, figure: FigureKey) -> float | None:
     """Return the standard error of the difference of a figure of two scores on the same sample.
-
     None where they are of different samples, or one lacks the figure: their errors are then
-    independent.
-    """
+    independent."""
     if one is None or other is None or one.sample != other.sample:
         return None
     a, b = one.residuals.get(figure), other.residuals.get(figure)

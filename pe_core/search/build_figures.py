@@ -176,11 +176,9 @@ KNOWN: dict[str, Callable[[str, Placement, Sensor], bool]] = {
 
 @dataclass(frozen=True, slots=True)
 class BuildFigure:
-    """A figure of what can be built.
-
-    `of` is the figure of a `Placement` and the names of `arity` sensors: none, one, or two. `needs`
-    is what it takes of each sensor, of `KNOWN`. Rounding may move a placement by `slack`.
-    """
+    """A figure of what can be built. `of` is the figure of a `Placement` and the names of `arity`
+    sensors: none, one, or two. `needs` is what it takes of each sensor, of `KNOWN`. Rounding may
+    move a placement by `slack`."""
 
     key: str
     unit: str

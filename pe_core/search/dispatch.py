@@ -118,10 +118,8 @@ def _replied(function: Callable[..., Any], *arguments: Any) -> _Reply:
 
 def shared_parts(objective: Objective) -> tuple[object, ...]:
     """Return what a worker is sent once to evaluate an objective: its `shared_parts`, or all of it.
-
     An objective of little content round others has such a method: the rest is sent with each
-    candidate.
-    """
+    candidate."""
     own: Callable[[], tuple[object, ...]] | None = getattr(objective, "shared_parts", None)
     return (objective,) if own is None else own()
 

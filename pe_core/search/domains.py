@@ -80,7 +80,6 @@ def variable_of(axis: str, bounds: tuple[float, float]) -> DesignVariable:
 
 class MountSurface:
     """The faces of a mount, which are parts of the vehicle's body or an area of their own.
-
     `InputError` when there is no vehicle or no such part, or the parts or the area have no faces.
     """
 
@@ -271,10 +270,8 @@ Domain = BoxDomain | SlotDomain | SurfaceDomain
 
 def standoff_point(mount: SurfaceMount, housing: Housing | None) -> Floats:
     """Return the point (3,) of a sensor that a mount's stand-off is measured to, sensor frame [m].
-
     It is the middle of the base of the housing, or of its back on a mount that is facing; the
-    sensor's origin where the housing is unknown.
-    """
+    sensor's origin where the housing is unknown."""
     if housing is None:
         return np.zeros(3)
     if mount.orientation == "facing":

@@ -50,11 +50,9 @@ OVER = 200  # Placements over which the gain of a search is taken by default
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """When a search ends before its budget does; each field that is set may end it.
-
-    The target is reached on all voxels of the search. The time is that of the search, without
-    the scores before and after it; `evaluations` of the result repeats a search that it ended.
-    """
+    """When a search ends before its budget does; each field that is set may end it. The target is
+    reached on all voxels of the search. The time is that of the search, without the scores before
+    and after it; `evaluations` of the result repeats a search that it ended."""
 
     target: float | None = setting(
         None,

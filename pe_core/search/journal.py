@@ -31,11 +31,9 @@ class EvaluatedRig(NamedTuple):
 
 
 class Journal:
-    """Values that a search was told, in the order of its questions.
-
-    The given entries, of an interrupted search, are replayed: their placements are not evaluated
-    again. `source` names the journal in messages.
-    """
+    """Values that a search was told, in the order of its questions. The given entries, of an
+    interrupted search, are replayed: their placements are not evaluated again. `source` names the
+    journal in messages."""
 
     def __init__(self, entries: Iterable[EvaluatedRig] = (), source: str = "journal") -> None:
         self._entries, self._position, self._source = list(entries), 0, source
@@ -51,10 +49,8 @@ class Journal:
 
     def wrap(self, objectives: Sequence[Objective], told: OnTold | None = None) -> list[Objective]:
         """Return objectives, one for each level of a method, that replay and extend the journal.
-
         Behind the end of the journal they evaluate with the given objectives. `told` is called with
-        every value, replayed or new, in the order of the questions.
-        """
+        every value, replayed or new, in the order of the questions."""
         return [JournaledObjective(self, own, k, told) for k, own in enumerate(objectives)]
 
     def replay(self, rig: Rig, level: int) -> float | None:

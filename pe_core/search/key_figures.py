@@ -34,11 +34,9 @@ def blind_height(sight: Sight) -> float:
 
 
 def blind_area(sight: Sight, rig: Rig) -> float:
-    """Return the ground within 10 m of the body where a child is invisible to a rig [m2].
-
-    It is the area of `Sight.blind` for a body of `BLIND_TO_M`, or of the lowest height of the space
-    if that is greater. It is never too small.
-    """
+    """Return the ground within 10 m of the body where a child is invisible to a rig [m2]. It is the
+    area of `Sight.blind` for a body of `BLIND_TO_M`, or of the lowest height of the space if that
+    is greater. It is never too small."""
     return rounded(sight.blind_area(rig, blind_height(sight)))
 
 

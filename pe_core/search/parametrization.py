@@ -43,11 +43,9 @@ MAX_NAMED = 4  # How many rules the message names
 
 @dataclass(frozen=True, slots=True)
 class Follower:
-    """A sensor whose pose is determined by that of another sensor, its leader.
-
-    `relative` is its rotation (3, 3) and position (3,) [m] in the leader's frame; None: it is the
-    leader's mirror image across y = 0.
-    """
+    """A sensor whose pose is determined by that of another sensor, its leader. `relative` is its
+    rotation (3, 3) and position (3,) [m] in the leader's frame; None: it is the leader's mirror
+    image across y = 0."""
 
     name: str
     leader: str
@@ -72,11 +70,9 @@ def mirrored(pose: Pose) -> Pose:
 
 
 def followers(rig: Rig, mounting: Mounting, vehicle: Vehicle | None) -> tuple[Follower, ...]:
-    """Return the sensors that follow others, each after its leader.
-
-    `InputError` when a sensor does not exist, follows two others or follows itself through others,
-    a pair does not start as mirror images, or the vehicle is not symmetric.
-    """
+    """Return the sensors that follow others, each after its leader. `InputError` when a sensor does
+    not exist, follows two others or follows itself through others, a pair does not start as mirror
+    images, or the vehicle is not symmetric."""
     _check_names(rig, mounting)
     waiting = {link.name: link for link in _links(rig, mounting)}
     if mounting.pairs and vehicle is not None:

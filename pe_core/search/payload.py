@@ -100,11 +100,9 @@ def plugin_name(client: Any) -> str:
 
 
 def _plugin(packed: PackedPayload) -> Any:
-    """Return a plugin that brings a payload to each worker of a cluster, to later ones, too.
-
-    As an argument that tasks depend on it would be sent many times: every two seconds Dask's memory
-    manager drops all copies but one.
-    """
+    """Return a plugin that brings a payload to each worker of a cluster, to later ones, too. As an
+    argument that tasks depend on it would be sent many times: every two seconds Dask's memory
+    manager drops all copies but one."""
     distributed = optional_package("distributed")
     assert distributed is not None, "a client of Dask asks for it"
 

@@ -34,11 +34,9 @@ LOW, IN_BODY = f"lower than {MIN_HEIGHT_M:g} m", "the sensor would be in the bod
 
 @dataclass(frozen=True, slots=True)
 class SurfacePlace:
-    """A point and unit normal of a surface [m], and the pose of the sensor there.
-
-    `reason` is the first rule that it breaks as text, empty where it breaks none; `value` the
-    figure of the rig with the sensor there, where it is known.
-    """
+    """A point and unit normal of a surface [m], and the pose of the sensor there. `reason` is the
+    first rule that it breaks as text, empty where it breaks none; `value` the figure of the rig
+    with the sensor there, where it is known."""
 
     point: tuple[float, float, float]
     normal: tuple[float, float, float]

@@ -80,10 +80,8 @@ class Processes(Executor):
 
 def no_processes() -> str:
     """Return why no worker process can be started here; empty where nothing is known against it.
-
     Processes wait for each other with semaphores. Linux keeps them in /dev/shm, which may be
-    missing in a container, or not writable.
-    """
+    missing in a container, or not writable."""
     if "fork" not in multiprocessing.get_all_start_methods():
         return ""  # no semaphore is to be had without the process that tracks them
     try:

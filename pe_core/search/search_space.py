@@ -252,11 +252,9 @@ def rules_of(
     clear: Collection[str],
     domains: dict[str, Domain],
 ) -> tuple[Rule, ...]:
-    """Return the rules for a rig, the cheap ones first.
-
-    A sensor that does not move has no rules of its own, only those between it and moving sensors.
-    Housings of the sensors named by `clear` must be clear of the body and of other housings.
-    """
+    """Return the rules for a rig, the cheap ones first. A sensor that does not move has no rules of
+    its own, only those between it and moving sensors. Housings of the sensors named by `clear` must
+    be clear of the body and of other housings."""
     names = [sensor.name for sensor in rig if sensor.name in moving]
     limits, start = space.mounting.constraints, space.placement(rig)
     rules = [

@@ -159,11 +159,9 @@ class Selection:
 
 @dataclass(frozen=True, slots=True)
 class Site:
-    """Sensors that take one model, or are left out together.
-
-    Options are sorted by price; None, the last, leaves the sensors out. Sites of one choice may
-    exchange their options: it is the same design.
-    """
+    """Sensors that take one model, or are left out together. Options are sorted by price; None, the
+    last, leaves the sensors out. Sites of one choice may exchange their options: it is the same
+    design."""
 
     sensors: tuple[str, ...]
     options: tuple[Option | None, ...]
@@ -182,11 +180,9 @@ class Site:
 
 
 def sites_of(selection: Selection, rig: Rig, mounting: Mounting) -> tuple[Site, ...]:
-    """Return the sites of a study, in the order of its choices.
-
-    `InputError` when a choice has a sensor or a mount that does not exist, two choices have one
-    sensor, a model's kind is not allowed, or a sensor that others follow could be left out.
-    """
+    """Return the sites of a study, in the order of its choices. `InputError` when a choice has a
+    sensor or a mount that does not exist, two choices have one sensor, a model's kind is not
+    allowed, or a sensor that others follow could be left out."""
     sites: list[Site] = []
     for number, choice in enumerate(selection.choices):
         who, options = f"choice[{number}]", sorted(choice.options, key=lambda o: o.price)

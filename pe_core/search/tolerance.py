@@ -114,10 +114,8 @@ class Tolerance:
 
 def mounted_off(rig: Rig, tolerance: Tolerance, seed: int = 0, stream: int = SEARCHED) -> list[Rig]:
     """Return a rig with mounting errors: one rig for each draw and combination, poses rounded.
-
     Other numbers of `seed` and `stream` give other errors. The errors of a sensor depend on its
-    position in the rig, and on no other sensor: linked sensors have errors of their own.
-    """
+    position in the rig, and on no other sensor: linked sensors have errors of their own."""
     poses = [
         [with_error(sensor.pose, error) for error in _errors(tolerance, (seed, stream, number))]
         for number, sensor in enumerate(rig)

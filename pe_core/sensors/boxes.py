@@ -32,11 +32,9 @@ NO_END = -1
 
 @dataclass(frozen=True, slots=True)
 class PlacedBoxes:
-    """Boxes relative to a sensor, along the axes of each box: length, width, up.
-
-    `offsets` (N, 3) are the centres from the sensor [m], `halves` (N, 3) half sizes [m], and
-    `headings` (N, 2) cosine and sine of the yaws.
-    """
+    """Boxes relative to a sensor, along the axes of each box: length, width, up. `offsets` (N, 3)
+    are the centres from the sensor [m], `halves` (N, 3) half sizes [m], and `headings` (N, 2)
+    cosine and sine of the yaws."""
 
     offsets: Floats
     halves: Floats

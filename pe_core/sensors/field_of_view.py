@@ -66,11 +66,9 @@ class ViewPatch:
 
 
 def grid_faces(index: Ints, *, closed: bool) -> Ints:
-    """Return triangles (F, 3) of a grid of points (R, C); `closed` rows are rings.
-
-    Rows go up and columns to the right as seen from outside. Triangles with the same point twice,
-    as at a pole, are left out.
-    """
+    """Return triangles (F, 3) of a grid of points (R, C); `closed` rows are rings. Rows go up and
+    columns to the right as seen from outside. Triangles with the same point twice, as at a pole,
+    are left out."""
     if closed:
         index = np.hstack([index, index[:, :1]])
     a, b, c, d = index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]

@@ -89,11 +89,9 @@ def window_of(model: SensorModel) -> AngleWindow:
 
 
 def angles_of(sensor: Sensor, offsets: Floats) -> tuple[Floats, Floats]:
-    """Return azimuths and elevations (N,) of offsets (N, 3), ground axes, in the sensor frame.
-
-    Of columns of an array NumPy takes another arctangent where the result happens to lie behind
-    them in memory, and its last bit may differ: the coordinates are copied.
-    """
+    """Return azimuths and elevations (N,) of offsets (N, 3), ground axes, in the sensor frame. Of
+    columns of an array NumPy takes another arctangent where the result happens to lie behind them
+    in memory, and its last bit may differ: the coordinates are copied."""
     x, y, z = np.ascontiguousarray(rotate(sensor.pose.ground_from_sensor.T, offsets).T)
     return np.arctan2(y, x), np.arctan2(z, np.sqrt(x * x + y * y))
 

@@ -202,10 +202,8 @@ class FanGround(GroundKernel):
 
 def places_in_square(sensor: Sensor, step: float) -> Floats:
     """Return places (P, 2) that are tested, from a square's middle [m]; the middle is one of them.
-
     A square of the side `step` [m] is marked if a post somewhere in it is detected: near the edges
-    of a cone of 2 m, and close to the body, the middles of squares of 5 cm are too few.
-    """
+    of a cone of 2 m, and close to the body, the middles of squares of 5 cm are too few."""
     if float(sensor.model.max_range) >= NEAR_FIELD_M:  # type: ignore[attr-defined]  # as window_of
         return np.zeros((1, 2))
     steps = math.ceil(step / FINE_M / 2.0 - 0.5)

@@ -25,11 +25,9 @@ from ..search import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, Slo
 
 
 def read_mounting(table: Table, on: Mapping[str, str], folder: Path) -> Mounting:
-    """Return mounts, pairs, groups and constraints of `[optimize]`.
-
-    `on` has the name of the mount of each sensor that is on one. Files of areas are named relative
-    to `folder`, where the study is.
-    """
+    """Return mounts, pairs, groups and constraints of `[optimize]`. `on` has the name of the mount
+    of each sensor that is on one. Files of areas are named relative to `folder`, where the study
+    is."""
     mounts = [_read_mount(each, folder) for each in table.tables("mount")]
     names = [name for name, _ in mounts]
     for name in names:

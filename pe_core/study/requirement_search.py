@@ -27,10 +27,8 @@ INFEASIBLE = 100.0
 
 class FiguresLimit:
     """The constraint that key figures of a rig cost no more than limits; the vehicle is as drawn.
-
     `keys` are those of `KEY_FIGURES`. A limit is the cost of what is wanted, and those of the rig
-    `start` where nothing is.
-    """
+    `start` where nothing is."""
 
     def __init__(self, sight: Sight, keys: Sequence[str], wanted: Wanted, start: Rig) -> None:
         self._sight, self._keys = sight, tuple(keys)
@@ -73,11 +71,9 @@ FeasibilityRule = FiguresLimit | RequirementConstraint
 
 
 class FeasibleFirst:
-    """What a search with constraints minimises.
-
-    The value of a placement is its entropy [nats], that of the objective, if it keeps all
-    constraints; else it is `INFEASIBLE` and the sum of the violations.
-    """
+    """What a search with constraints minimises. The value of a placement is its entropy [nats],
+    that of the objective, if it keeps all constraints; else it is `INFEASIBLE` and the sum of the
+    violations."""
 
     def __init__(self, objective: Objective, constraints: Sequence[FeasibilityRule]) -> None:
         self._objective, self._constraints = objective, tuple(constraints)
@@ -88,11 +84,9 @@ class FeasibleFirst:
         return INFEASIBLE + violation if violation else self._objective.entropy(rig)
 
     def below(self, rig: Rig, cutoff: float) -> float:
-        """Return the value of a placement; inf where it is not below `cutoff`.
-
-        What is not below a cutoff with its entropy is not below it if it breaks a constraint, so
-        constraints, which take longer, are then not checked.
-        """
+        """Return the value of a placement; inf where it is not below `cutoff`. What is not below a
+        cutoff with its entropy is not below it if it breaks a constraint, so constraints, which
+        take longer, are then not checked."""
         if cutoff > INFEASIBLE:
             return self.entropy(rig)
         found = value_below(self._objective, rig, cutoff)

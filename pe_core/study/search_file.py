@@ -73,11 +73,9 @@ def read_search(
     *,
     is_choice: bool,
 ) -> Search:
-    """Return the search of `[optimize]`.
-
-    `free`, `limits` and `on` are free axes, bounds and mounts by sensor, from `[[sensor]]`;
-    `is_choice`: the study has a choice of sensors, which is screened by a schedule.
-    """
+    """Return the search of `[optimize]`. `free`, `limits` and `on` are free axes, bounds and mounts
+    by sensor, from `[[sensor]]`; `is_choice`: the study has a choice of sensors, which is screened
+    by a schedule."""
     method = table.text("method", DEFAULT_METHOD, tuple(METHODS))
     search = Search(
         free,

@@ -63,11 +63,9 @@ class Effect(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Suggestion:
-    """The nearest placement found that meets a requirement, or one more sensor that does.
-
-    Sensors in `moved` are elsewhere, or are new if `added`; requirements in `breaks` were met and
-    no longer are. `before` and `after` are figures of both rigs, `start` is the rig before.
-    """
+    """The nearest placement found that meets a requirement, or one more sensor that does. Sensors
+    in `moved` are elsewhere, or are new if `added`; requirements in `breaks` were met and no longer
+    are. `before` and `after` are figures of both rigs, `start` is the rig before."""
 
     rig: Rig
     moved: tuple[str, ...]

@@ -52,11 +52,9 @@ class KnownRig:
     sensors: tuple[KnownSensor, ...]
 
     def on_vehicle(self, low: Iterable[float], high: Iterable[float]) -> tuple[KnownSensor, ...]:
-        """Return the sensors scaled to another vehicle with bounds `low` and `high`, (3,) [m].
-
-        A coordinate within the bounds of the rig's vehicle keeps its share of the side; one outside
-        keeps its distance from the bounds. Without a known size nothing is scaled.
-        """
+        """Return the sensors scaled to another vehicle with bounds `low` and `high`, (3,) [m]. A
+        coordinate within the bounds of the rig's vehicle keeps its share of the side; one outside
+        keeps its distance from the bounds. Without a known size nothing is scaled."""
         if self.size is None:
             return self.sensors
         length, width, height = self.size

@@ -92,11 +92,9 @@ def axles_of(vehicle: Vehicle) -> tuple[float, float] | None:
 
 @lru_cache(maxsize=4)
 def mirror_faces(vehicle: Vehicle) -> Flags:
-    """Return which triangles (F,) are mirrors by their shape; none where it is not clear.
-
-    Pieces that hang together are mirrors if they are small and high up, stick out beyond all larger
-    pieces, and have a twin on the other side.
-    """
+    """Return which triangles (F,) are mirrors by their shape; none where it is not clear. Pieces
+    that hang together are mirrors if they are small and high up, stick out beyond all larger
+    pieces, and have a twin on the other side."""
     triangles = vehicle.triangles
     none = read_only(np.zeros(len(triangles), bool))
     if len(triangles) > MAX_FACES:

@@ -99,11 +99,9 @@ def columns_of(requirement: Requirement) -> list[Body]:
 
 
 def why_not(sensor: Sensor, body: Body, foot: tuple[float, ...], vehicle: Vehicle | None) -> Reason:
-    """Return why a sensor does not see a body.
-
-    Cubes along the middle of the body, from its foot to its top, are asked for: the part that most
-    of the rays end on to cubes that the sensor would see without the vehicle.
-    """
+    """Return why a sensor does not see a body. Cubes along the middle of the body, from its foot to
+    its top, are asked for: the part that most of the rays end on to cubes that the sensor would see
+    without the vehicle."""
     kind = kind_of(sensor)
     x, y, z = foot
     count = max(1, math.ceil(body.size[2] / CUBE_M - 1e-9))

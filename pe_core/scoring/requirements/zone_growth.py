@@ -48,10 +48,8 @@ class ZoneGrowth:
         self, result: ZoneResult, rig: Rig, cases: Sequence[Rig]
     ) -> Iterator[tuple[float, bool]]:
         """Yield the margin of a zone that meets its requirement, and whether it could grow more.
-
         The zone is grown to twice as far again and again, as long as it does not fail, and a margin
-        is yielded after each part that is measured: the last one counts.
-        """
+        is yielded after each part that is measured: the last one counts."""
         wanted, step = self._requirement.criterion.zone_share, self._requirement.zone.step
         distance, passed, inner = self._inside.distance, result.passed, 0.0
         saw = {name: int(np.count_nonzero(flags)) for name, flags in result.seen.items()}

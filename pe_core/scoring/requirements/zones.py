@@ -140,11 +140,9 @@ class Zone:
         name: str,
         planes: dict[tuple[Any, ...], VehiclePlanes] | None = None,
     ) -> "PlacedZone":
-        """Return the zone round a vehicle, for the requirement of a name.
-
-        `planes` caches the vehicle's planes, for several zones. `InputError` when there is no
-        vehicle, a plane is not found, or the zone has no extent.
-        """
+        """Return the zone round a vehicle, for the requirement of a name. `planes` caches the
+        vehicle's planes, for several zones. `InputError` when there is no vehicle, a plane is not
+        found, or the zone has no extent."""
         who = f"requirement {name!r}"
         if vehicle is None:
             raise InputError(who, "zone", "a study with a vehicle", "no [vehicle]")

@@ -209,12 +209,9 @@ def area_of(cells: GroundCells, blind: Flags) -> float:
 
 @dataclass(frozen=True, slots=True)
 class _Strip:
-    """The strip beside a side of the body's rectangle, as wide as the body.
-
-    `blind` (N, W) are the strip's blind cells, row by row from the body outwards. `distance` (N,)
-    is where each row begins, `across` (W,) where its cells are [m]. The body ends at `edge` [m]
-    along the `axis`.
-    """
+    """The strip beside a side of the body's rectangle, as wide as the body. `blind` (N, W) are the
+    strip's blind cells, row by row from the body outwards. `distance` (N,) is where each row
+    begins, `across` (W,) where its cells are [m]. The body ends at `edge` [m] along the `axis`."""
 
     blind: Flags
     distance: Floats
@@ -271,10 +268,8 @@ class _Strip:
 @dataclass(frozen=True, eq=False)
 class BlindSearch:
     """Ground that is searched for blind squares: squares with a margin, and the sensors on them.
-
-    `cells` are those of the result, `squares` the same and `margin` more on each side, `own`
-    (NX, NY) those of the squares with the vehicle over their centres.
-    """
+    `cells` are those of the result, `squares` the same and `margin` more on each side, `own` (NX,
+    NY) those of the squares with the vehicle over their centres."""
 
     cells: GroundCells
     squares: VisibleGroundCache

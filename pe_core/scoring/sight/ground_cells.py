@@ -253,10 +253,8 @@ def _moved(flags: Flags, steps: Ints) -> Flags:
 
 def outlines(values: Floats, level: float, x: Floats, y: Floats) -> tuple[Floats, ...]:
     """Return closed outlines (N, 2) of the region where a field is above a level, longest first.
-
     The field (NX, NY) is that at the middles of evenly spaced cells (x, y); outside of them it is
-    below the level. The region is on the left of each outline; the last point repeats the first.
-    """
+    below the level. The region is on the left of each outline; the last point repeats the first."""
     field = np.pad(values - level, 1, constant_values=-EDGE)
     xs, ys = _widened(x), _widened(y)
     rings = [_points_on(ring, field, xs, ys) for ring in chained(*_segments(field))]

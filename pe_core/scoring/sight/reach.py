@@ -74,11 +74,9 @@ class Reach(ShortRepr):
 
 @dataclass(frozen=True, slots=True)
 class Spokes:
-    """Voxels along bearings: `index` (V, 3), and the `ring` (V,) of each, R rings a bearing.
-
-    None is in the vehicle or beyond the space. `limit` (B,) is where the space ends; `mass` (B, R)
-    are the voxels of each ring and of those that it is smoothed with.
-    """
+    """Voxels along bearings: `index` (V, 3), and the `ring` (V,) of each, R rings a bearing. None
+    is in the vehicle or beyond the space. `limit` (B,) is where the space ends; `mass` (B, R) are
+    the voxels of each ring and of those that it is smoothed with."""
 
     bearings: Floats
     limit: Floats
@@ -190,11 +188,9 @@ class ReachLine:
 
 
 def reach_line(reach: Reach, distance: Floats) -> ReachLine:
-    """Return the line of distances (B,) of a reach, of the rig or of one sensor.
-
-    Reaches along bearings are smoothed with the weights 1 2 1, because beams make them ragged. A
-    reach by sectors has an arc for each sector.
-    """
+    """Return the line of distances (B,) of a reach, of the rig or of one sensor. Reaches along
+    bearings are smoothed with the weights 1 2 1, because beams make them ragged. A reach by sectors
+    has an arc for each sector."""
     at_least = ends_with_space(reach, distance)
     bearings = reach.bearings
     if reach.sector:

@@ -88,11 +88,9 @@ class TargetRule:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SampledObjects:
-    """Objects, sorted by scene, and their weights in the score.
-
-    `weights` (N,) sum to 1: classes share as in the prior, however many of each there are, and
-    focus weights multiply. `scenes` is the number of scenes.
-    """
+    """Objects, sorted by scene, and their weights in the score. `weights` (N,) sum to 1: classes
+    share as in the prior, however many of each there are, and focus weights multiply. `scenes` is
+    the number of scenes."""
 
     objects: Objects
     weights: Floats

@@ -12,10 +12,8 @@ SHARE_REACH = 0.5
 
 def ask(given: Given) -> QuestionStream:
     """Sample round by round, in the neighbourhood of the incumbent at the start of the round.
-
     Candidates are sampled uniformly in it, each coordinate clipped to its bounds; then the
-    neighbourhood shrinks.
-    """
+    neighbourhood shrinks."""
     schedule, rng = given.schedule, np.random.default_rng(given.seed)
     best, entropy = given.start, given.entropy
     total = len(schedule.scales) * schedule.candidates

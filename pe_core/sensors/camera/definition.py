@@ -208,10 +208,8 @@ class Aperture:
 @dataclass(frozen=True)
 class RoundAperture(Aperture):
     """A picture cut by the edge of the field, an ellipse of half axes `wide` and `high` [px].
-
-    Tangential distortion shifts the ellipse, differently on each side of the picture. An outline
-    is cut by the ellipse with the shift at the outline.
-    """
+    Tangential distortion shifts the ellipse, differently on each side of the picture. An outline is
+    cut by the ellipse with the shift at the outline."""
 
     lens: Lens
     wide: float
@@ -279,11 +277,9 @@ def _next(places: ImagePoints) -> ImagePoints:
 
 
 def _area_in_circle(places: ImagePoints) -> Floats:
-    """Area (V,) inside the unit circle, of outlines with corners (V, N) each.
-
-    Sums over the edges the triangle of edge and centre, cut by the circle: a sector where the edge
-    is outside the circle, a triangle where it is inside.
-    """
+    """Area (V,) inside the unit circle, of outlines with corners (V, N) each. Sums over the edges
+    the triangle of edge and centre, cut by the circle: a sector where the edge is outside the
+    circle, a triangle where it is inside."""
     a, b = places, _next(places)
     step = b[0] - a[0], b[1] - a[1]
     length = np.maximum(step[0] ** 2 + step[1] ** 2, 1e-300)

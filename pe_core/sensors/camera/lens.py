@@ -209,10 +209,8 @@ def edge_circle(lens: Lens, spokes: int = SPOKES) -> tuple[Floats, Floats]:
 
 def field_outline(lens: Lens, width: int, height: int, places: int) -> Floats:
     """(N, 3) unit directions, forward, left, up, on the border of the view, clockwise as seen.
-
     There are `places` of them along each side of the picture. Where the border of the picture is
-    outside the field, the edge of the field takes its place.
-    """
+    outside the field, the edge of the field takes its place."""
     share = np.arange(places) / places
     none, all_ = np.zeros(places), np.ones(places)
     right = np.concatenate([share, all_, 1.0 - share, none]) * width

@@ -181,11 +181,9 @@ def picture_occlusion(sensor: Sensor, vehicle: Vehicle | None) -> Occlusion:
 
 
 class PictureBins:
-    """Bins of a picture, CELLS by CELLS, with a flag where a triangle of the vehicle may be.
-
-    `axes` (3, 3) rotate from the camera's frame to the ground frame (`definition.axes_of`);
-    `triangles` (F, 3, 3) are corners relative to the camera, ground axes [m].
-    """
+    """Bins of a picture, CELLS by CELLS, with a flag where a triangle of the vehicle may be. `axes`
+    (3, 3) rotate from the camera's frame to the ground frame (`definition.axes_of`); `triangles`
+    (F, 3, 3) are corners relative to the camera, ground axes [m]."""
 
     def __init__(self, camera: Camera, axes: Floats, triangles: Floats) -> None:
         self._lens = lens = camera.projection

@@ -130,11 +130,9 @@ def _straight_faces(
 
 
 def _in_front(corners: Floats, front: NDArray[np.bool_]) -> tuple[Floats, Floats]:
-    """Starts and ends (P, 5, 3) of the edges of quadrilaterals, cut at depth `NEAREST_M`.
-
-    Edges behind the cut become points. The last edge joins the two points where the outline
-    crosses the cut.
-    """
+    """Starts and ends (P, 5, 3) of the edges of quadrilaterals, cut at depth `NEAREST_M`. Edges
+    behind the cut become points. The last edge joins the two points where the outline crosses the
+    cut."""
     ends, front_too = np.roll(corners, -1, axis=1), np.roll(front, -1, axis=1)
     run = ends[..., :1] - corners[..., :1]
     share = (NEAREST_M - corners[..., :1]) / np.where(run == 0.0, 1.0, run)
@@ -175,10 +173,8 @@ def _outlined(
     camera: Camera, axes: Floats, boxes: PlacedBoxes, which: Ints, axis: int, pieces: int
 ) -> tuple[Floats, ImagePoints]:
     """Area of faces in the picture and the field, with so many pieces an edge; their outlines.
-
     Positions beyond the edge of the field are moved outwards. So a straight piece between two of
-    them does not cross the picture, even if the edge of the face passes right behind the camera.
-    """
+    them does not cross the picture, even if the edge of the face passes right behind the camera."""
     aperture, lens = aperture_of(camera), camera.projection
     outline = face_points(boxes, which, axis, round_a_face(pieces))
     depth, left, up = np.moveaxis(along_camera(axes, boxes, which, outline), -1, 0)

@@ -68,11 +68,9 @@ class OcclusionFlags:
 
 
 class VoxelOcclusion:
-    """Classifies the voxels of a space: hidden by the vehicle, visible, or unsure.
-
-    `offsets` are the coordinates (n,) of the voxels' centres along each axis, from the camera,
-    ascending [m]; `corners` (4, 3) directions to the corners of the picture, or of a larger one.
-    """
+    """Classifies the voxels of a space: hidden by the vehicle, visible, or unsure. `offsets` are
+    the coordinates (n,) of the voxels' centres along each axis, from the camera, ascending [m];
+    `corners` (4, 3) directions to the corners of the picture, or of a larger one."""
 
     def __init__(self, offsets: list[Floats], seen: VisibleMesh, corners: Floats) -> None:
         self._offsets, self._seen, self._corners = offsets, seen, corners

@@ -117,12 +117,9 @@ def candidate_hits(tester: BoxTester) -> Iterator[BoxHits]:
 
 @dataclass(frozen=True, slots=True)
 class FanOcclusion:
-    """Beams of a fan that the vehicle occludes, by azimuth step.
-
-    `above` (A,) is the first channel above all of them, `farthest` (A,) the farthest end of one
-    [m], `cumulative` (A, C + 1) their number among the lowest channels, `flags` (A, C) which they
-    are.
-    """
+    """Beams of a fan that the vehicle occludes, by azimuth step. `above` (A,) is the first channel
+    above all of them, `farthest` (A,) the farthest end of one [m], `cumulative` (A, C + 1) their
+    number among the lowest channels, `flags` (A, C) which they are."""
 
     above: NDArray[np.int16]
     farthest: Floats
@@ -132,12 +129,9 @@ class FanOcclusion:
 
 @dataclass(frozen=True, slots=True)
 class FanBeams:
-    """The beams of one fan by channel and azimuth step.
-
-    `first` (C,) is the index of each channel's first beam, `position` (A,) that of an azimuth step
-    among a channel's beams (-1: the step has no beam). `range_unsure` (N,) flags the boxes of which
-    a part may be out of range.
-    """
+    """The beams of one fan by channel and azimuth step. `first` (C,) is the index of each channel's
+    first beam, `position` (A,) that of an azimuth step among a channel's beams (-1: the step has no
+    beam). `range_unsure` (N,) flags the boxes of which a part may be out of range."""
 
     first: Ints
     position: Ints

@@ -45,11 +45,9 @@ share of them; else for all, which saves the selection."""
 
 @dataclass(frozen=True, slots=True)
 class SlopeBounds:
-    """Bounds of the number of channels below a slope.
-
-    Bin k begins at ``low + k / scale``. `below` counts the channels surely below the bin's lower
-    edge, `upto` those that may be below its upper edge.
-    """
+    """Bounds of the number of channels below a slope. Bin k begins at ``low + k / scale``. `below`
+    counts the channels surely below the bin's lower edge, `upto` those that may be below its upper
+    edge."""
 
     low: float
     scale: float

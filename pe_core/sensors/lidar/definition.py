@@ -126,11 +126,9 @@ def _near_pairs(
 
 
 def cube_crossing(offsets: Floats, directions: Floats) -> tuple[Floats, Floats]:
-    """Return the distances (P,) at which rays from the origin enter and leave unit cubes.
-
-    `offsets` (P, 3) are the cubes' centres, in sides. The first distance is at least 0; it is not
-    below the second where the ray misses.
-    """
+    """Return the distances (P,) at which rays from the origin enter and leave unit cubes. `offsets`
+    (P, 3) are the cubes' centres, in sides. The first distance is at least 0; it is not below the
+    second where the ray misses."""
     components = without_zeros(directions)
     t0, t1 = (offsets - 0.5) / components, (offsets + 0.5) / components
     enter, leave = np.minimum(t0, t1), np.maximum(t0, t1)

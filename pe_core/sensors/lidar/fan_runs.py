@@ -30,11 +30,9 @@ AZIMUTH_MARGIN = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class ChannelSlopes:
-    """Slopes (C,) of channels, ascending, and bins that count those below a slope.
-
-    `codes` holds for each bin twice the number of channels below it, plus 1 where a channel may
-    lie in it. The first bin holds all slopes below the others, the last one all above.
-    """
+    """Slopes (C,) of channels, ascending, and bins that count those below a slope. `codes` holds
+    for each bin twice the number of channels below it, plus 1 where a channel may lie in it. The
+    first bin holds all slopes below the others, the last one all above."""
 
     slopes: Floats
     low: float

@@ -38,11 +38,9 @@ ONE = np.uint16(1)
 
 @dataclass(frozen=True, slots=True)
 class Paths:
-    """Beams clipped to the space, in voxels.
-
-    `origin` (3,) is the sensor's position, `directions` (B, 3) are without zeros; a beam leads from
-    `start` to `end` (B,). None starts nearer than `min_range`.
-    """
+    """Beams clipped to the space, in voxels. `origin` (3,) is the sensor's position, `directions`
+    (B, 3) are without zeros; a beam leads from `start` to `end` (B,). None starts nearer than
+    `min_range`."""
 
     origin: Floats
     directions: Floats
@@ -52,11 +50,9 @@ class Paths:
 
 
 class BeamGrid:
-    """Counts of beams through every voxel of a space, in 16 bits; they saturate at 65535.
-
-    The grid is padded by a voxel on each side for crossing points that rounding puts outside the
-    space, so no sweep has to test for them.
-    """
+    """Counts of beams through every voxel of a space, in 16 bits; they saturate at 65535. The grid
+    is padded by a voxel on each side for crossing points that rounding puts outside the space, so
+    no sweep has to test for them."""
 
     def __init__(self, space: PerceptionSpace) -> None:
         self.space = space
@@ -77,11 +73,9 @@ class BeamGrid:
     def add(
         self, origin: Sequence[float], directions: Floats, ends: Floats, min_range: float = 0.0
     ) -> None:
-        """Add the beams of one sensor at `origin` (3,) [m] to the counts.
-
-        `directions` (B, 3) are unit vectors, ground frame. A beam does not count in voxels that it
-        enters farther away than its end (B,), or leaves nearer than the minimum range [m].
-        """
+        """Add the beams of one sensor at `origin` (3,) [m] to the counts. `directions` (B, 3) are
+        unit vectors, ground frame. A beam does not count in voxels that it enters farther away than
+        its end (B,), or leaves nearer than the minimum range [m]."""
         paths = _clip(origin, directions, ends, self.space, min_range)
         self._saturable.append(_around(paths.origin, self._padded.shape))
         if min_range > 0.0:  # beams that are inside the space at their minimum range count there
@@ -224,11 +218,9 @@ class _Sweep:
 
 
 def _fixed_points(origin: Floats, along: Floats) -> Fixed:
-    """Origin (2, 1) plus `along` (2, B) in fixed point, raised by the padding; rounded down.
-
-    The origin's whole part is added last, so that a beam that begins a nudge from a voxel's corner
-    (`kind`) crosses the first plane in the cell of the definition.
-    """
+    """Origin (2, 1) plus `along` (2, B) in fixed point, raised by the padding; rounded down. The
+    origin's whole part is added last, so that a beam that begins a nudge from a voxel's corner
+    (`kind`) crosses the first plane in the cell of the definition."""
     whole = np.floor(origin)
     points = np.clip((origin - whole) + along, -MAX_ADVANCE, MAX_ADVANCE)
     fixed = np.floor(points * (1 << FRACTION_BITS)).astype(np.int64)

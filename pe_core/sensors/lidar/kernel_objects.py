@@ -160,11 +160,9 @@ def _count_traffic(
     scenes: Ints,
     unsorted_scenes: Ints,
 ) -> Ints:
-    """Count from blocks of runs, where the boxes of a scene occlude each other.
-
-    `scenes` (N,) holds the scene of each box. `others` are hits of boxes that have no runs: those
-    above, below or round the sensor. Their scenes, `unsorted_scenes`, are compared beam by beam.
-    """
+    """Count from blocks of runs, where the boxes of a scene occlude each other. `scenes` (N,) holds
+    the scene of each box. `others` are hits of boxes that have no runs: those above, below or round
+    the sensor. Their scenes, `unsorted_scenes`, are compared beam by beam."""
     counts = np.zeros(len(scenes), np.int64)
     hits, traffic = [others], dict[int, tuple[FanBeams, list[ChannelRuns]]]()
     for fan, block in blocks:

@@ -175,11 +175,9 @@ class LidarSample(SampleKernel):
 def recount_min_range(
     voxels: VoxelPoints, lidar: PlacedLidar, counts: NDArray[np.signedinteger], min_range: float
 ) -> NDArray[np.signedinteger]:
-    """Count again the voxels within the minimum range, beam by beam.
-
-    They are few, so the fast kernels ignore the minimum range, and this corrects their `counts`
-    (V,). Beams that leave a voxel, or end, nearer than `min_range` [m] do not count.
-    """
+    """Count again the voxels within the minimum range, beam by beam. They are few, so the fast
+    kernels ignore the minimum range, and this corrects their `counts` (V,). Beams that leave a
+    voxel, or end, nearer than `min_range` [m] do not count."""
     if min_range <= 0.0:
         return counts
     min_distance = min_range / lidar.side
@@ -242,11 +240,9 @@ class LidarGround(GroundKernel):
 
 
 def merged(x: Floats, y: Floats, first: Floats, last: Floats) -> tuple[Floats, ...]:
-    """Merge overlapping segments on one ray: channels of one azimuth of an upright LiDAR.
-
-    Segments (L,) lie from `first` to `last` times a direction (x, y) from the sensor. Returns fewer
-    such segments, along unit vectors.
-    """
+    """Merge overlapping segments on one ray: channels of one azimuth of an upright LiDAR. Segments
+    (L,) lie from `first` to `last` times a direction (x, y) from the sensor. Returns fewer such
+    segments, along unit vectors."""
     length = np.maximum(np.sqrt(x * x + y * y), MIN_LENGTH)
     x, y, first, last = x / length, y / length, first * length, last * length
     turned = y / (np.abs(x) + np.abs(y))  # rises with the azimuth where x > 0

@@ -119,11 +119,9 @@ class Lattice:
 
 
 def windows_of(center: Floats, half_axes: Sequence[Floats]) -> Windows:
-    """Return windows that hold cubes or boxes, in the sensor frame.
-
-    `center` (3, V) are their centres, `half_axes` their three half edges, (3,) or (3, V) each. A
-    window is all round where the sensor's axis may touch a box.
-    """
+    """Return windows that hold cubes or boxes, in the sensor frame. `center` (3, V) are their
+    centres, `half_axes` their three half edges, (3,) or (3, V) each. A window is all round where
+    the sensor's axis may touch a box."""
     x, y, z = center
     flat = np.sqrt(x * x + y * y)
     safe = np.maximum(flat, WINDOW_MARGIN)
@@ -152,11 +150,9 @@ def lattice_of(model: Lidar) -> Lattice:
 
 @dataclass(frozen=True, slots=True)
 class BeamBands:
-    """The beams of a pattern by band of elevation and azimuth.
-
-    `keys` (K,) are sorted, a band's number times `STRIDE` plus an azimuth; `beams` (K,) are their
-    indices. Each beam stands at its azimuth and a turn to both sides, so that no window wraps.
-    """
+    """The beams of a pattern by band of elevation and azimuth. `keys` (K,) are sorted, a band's
+    number times `STRIDE` plus an azimuth; `beams` (K,) are their indices. Each beam stands at its
+    azimuth and a turn to both sides, so that no window wraps."""
 
     keys: Floats
     beams: Ints

@@ -114,11 +114,9 @@ def _either(flags: Flags, one: SideLines, other: SideLines) -> SideLines:
 def upright_runs(
     fan: RotatedFan, boxes: PlacedBoxes, planar: PlanarBoxes, index: Ints
 ) -> Iterator[RunBlock]:
-    """Yield the runs of an upright LiDAR's fan, in the ground frame, through boxes.
-
-    `index` (M,) are boxes that the sensor is `beside`. Fast because each side costs two products
-    and a sum for a run, and a run two table look-ups.
-    """
+    """Yield the runs of an upright LiDAR's fan, in the ground frame, through boxes. `index` (M,)
+    are boxes that the sensor is `beside`. Fast because each side costs two products and a sum for a
+    run, and a run two table look-ups."""
     for block, column in fan.columns(planar.first[index], planar.last[index]):
         box = index[block]
         x, y = (np.take(w, column) for w in fan.rays)
@@ -221,11 +219,9 @@ def _inverse_distances(
 def tilted_runs(
     fan: RotatedFan, boxes: TiltedBoxes, spans: tuple[Floats, Floats], index: Ints
 ) -> Iterator[RunBlock]:
-    """Yield the runs of a tilted LiDAR's fan, in the sensor frame, through boxes.
-
-    `index` (M,) are boxes that the sensor is `outside` of, `spans` the first and last azimuths (N,)
-    of all boxes [rad]. Fast because each pair of sides costs two products and a sum for a run.
-    """
+    """Yield the runs of a tilted LiDAR's fan, in the sensor frame, through boxes. `index` (M,) are
+    boxes that the sensor is `outside` of, `spans` the first and last azimuths (N,) of all boxes
+    [rad]. Fast because each pair of sides costs two products and a sum for a run."""
     for block, column in fan.columns(spans[0][index], spans[1][index]):
         box, scale = index[block], fan.slopes.scale
         x, y = (np.take(w, column) for w in fan.rays)

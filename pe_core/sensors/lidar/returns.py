@@ -62,11 +62,9 @@ def share_of_points(offsets: Floats, objects: Objects | None = None) -> Floats:
 def expected_points(
     hits: tuple[Ints, Ints, Floats], objects: Objects, scenes: Ints, min_range: float
 ) -> Floats:
-    """Return the expected points (N,) on objects of beams that enter them.
-
-    `hits` (H,) each are box, beam, and the distance at which it enters [m]; `scenes` (N,): objects
-    of one scene take beams from each other. Below `LEAST` no point is expected, and it is 0.
-    """
+    """Return the expected points (N,) on objects of beams that enter them. `hits` (H,) each are
+    box, beam, and the distance at which it enters [m]; `scenes` (N,): objects of one scene take
+    beams from each other. Below `LEAST` no point is expected, and it is 0."""
     box, _, enter = hits
     fill, half = surfaces(objects)
     points = passed(*hits, scenes, fill[box]) * fill[box] * return_probability(enter, half[box])

@@ -42,10 +42,8 @@ class VoxelPoints:
 
     def offsets_float32(self, position: Floats) -> list[Singles]:
         """Return the centres seen from a position in single precision, an array (V,) an axis.
-
         Centres are exact in single precision. The position's whole part is subtracted first, so
-        that its fraction keeps its digits.
-        """
+        that its fraction keeps its digits."""
         whole = np.floor(position)
         fraction = (position - whole).astype(np.float32)
         return [
@@ -85,11 +83,9 @@ class PlacedLidar:
 def count_voxel_beams(
     voxels: VoxelPoints, lidar: PlacedLidar, saturation_count: int | None = None
 ) -> NDArray[np.signedinteger]:
-    """Count the beams (V,) through voxels that the vehicle does not occlude before.
-
-    A count of `saturation_count` or more need not be exact: any number from this up to the count
-    may be returned. Of a regular LiDAR by bounds, and beam by beam where these differ.
-    """
+    """Count the beams (V,) through voxels that the vehicle does not occlude before. A count of
+    `saturation_count` or more need not be exact: any number from this up to the count may be
+    returned. Of a regular LiDAR by bounds, and beam by beam where these differ."""
     lattice = lidar.lattice
     if lattice.slope_bounds is None:
         offsets = voxels.offsets(lidar.position)

@@ -64,10 +64,8 @@ def mode_signal(
     loss_db: Floats | None,
 ) -> Floats:
     """Return Pd (...,) of cells of `rcs` [m2] in directions at distances; 0 if not `counted`.
-
     `angles` are azimuths and elevations in the sensor frame [rad], `loss_db` the loss of covers one
-    way, None for none.
-    """
+    way, None for none."""
     reach = mode.reach(*angles)
     snr = signal_to_noise(rcs, distance, reach, radar.anchor, radar.attenuation_db_km)
     if loss_db is not None:
@@ -237,11 +235,9 @@ def measure_view(sensor: Sensor, view: ObjectView, fan: RayFan) -> Floats:
 def measure_columns(
     sensor: Sensor, columns: Floats, heights: Floats, side: float, fan: RayFan
 ) -> Floats:
-    """Return m (C, Z) of cubes in columns (C, 2) at heights (Z,) [m].
-
-    What depends on the column alone is computed once a column; so does the azimuth of a level
-    radar. Sums are in the order of `rotate` and `dot`: the same bits as of single cubes.
-    """
+    """Return m (C, Z) of cubes in columns (C, 2) at heights (Z,) [m]. What depends on the column
+    alone is computed once a column; so does the azimuth of a level radar. Sums are in the order of
+    `rotate` and `dot`: the same bits as of single cubes."""
     position = np.asarray(sensor.pose.position) + NUDGE_M
     x, y = (columns - position[:2]).T[:, :, None]
     z = heights - position[2]

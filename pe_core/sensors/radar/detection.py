@@ -117,11 +117,9 @@ def reflectivity_of(name: str, own: Mapping[str, Reflectivity]) -> Reflectivity:
 
 
 def cautious_reflectivity(name: str, own: Mapping[str, Reflectivity]) -> Reflectivity:
-    """Return the RCS of a class to a requirement.
-
-    The sensor's own figure or the median, or what 95 % of the measurements exceed where that is
-    less. A class without a figure sends no echo: nobody knows its RCS.
-    """
+    """Return the RCS of a class to a requirement. The sensor's own figure or the median, or what 95
+    % of the measurements exceed where that is less. A class without a figure sends no echo: nobody
+    knows its RCS."""
     found = own.get(name) or Reflectivity((MEDIAN_DBSM.get(name, NO_ECHO),))
     most = LOW_DBSM.get(name, math.inf)
     return Reflectivity(tuple(min(level, most) for level in found.dbsm), found.aspects)

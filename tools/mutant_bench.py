@@ -23,7 +23,16 @@ from pathlib import Path
 from py_compile import PycInvalidationMode
 
 ROOT = Path(__file__).resolve().parent.parent
-COPIED = ("pe_core", "pe_tools", "blend_assets", "benchmarks", "tests", "docs", "tools")
+COPIED = (
+    "pe_core",
+    "pe_tools",
+    "blend_assets",
+    "benchmarks",
+    "tests",
+    "docs",
+    "tools",
+    "examples/plugin",
+)
 PRODUCTION = ("pe_core", "pe_tools")
 PRELOADED = ("numpy", "numpy.testing", "pytest", "xdist.scheduler", "concurrent.futures.process")
 

@@ -1,6 +1,6 @@
 """What the add-on costs Blender's window, measured in a real one.
 
-    python -m tests.blender.measure_live [--suite sid] [--triangles 1000000] [CHECKOUT ...]
+    python -m benchmarks.live_window [--suite sid] [--triangles 1000000] [CHECKOUT ...]
 
 A Pandar64 of four sensors on the sedan is moved step by step, with *Live*, map, beams and blind
 ground on; first with the extension disabled, for Blender's own time. Then requirements are checked
@@ -26,7 +26,7 @@ import psutil
 from tests.blender.runner import Blender, Installed
 from tests.blender.stage import Stage
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 NAME = "bl_ext.user_default.perception_entropy"
 STEPS, STOPS, DONE_S = 40, 3, 900
 SET_UP = """

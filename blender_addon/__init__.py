@@ -4,6 +4,7 @@ import bpy
 
 from . import (
     best_so_far,
+    body_query,
     change_events,
     commands,
     consistency,
@@ -74,6 +75,7 @@ def stop() -> None:
     best_so_far.searches.clear()
     live.unregister()
     location_query.clear()
+    body_query.clear()
     where_map.clear()
     variant_pictures.clear()
     diagnostics.postpone_checks()

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 from . import engine_calls
 from .engine import advice, geometry, graphics, pe, sight, text
@@ -34,6 +35,20 @@ def outlook(study: pe.Study) -> advice.Outlook:
     return advice.outlook(study.sight(), study.rig)
 
 
+_beams: text.RecentCache[dict[str, Any]] = text.RecentCache()
+"""Caches of kernels by vehicle: a body that moves has no beam cast again."""
+
+
+def bodies_seen(
+    rig: pe.Rig,
+    vehicle: pe.Vehicle | None,
+    bodies: Sequence[advice.StandingBody],
+    model: pe.PerceptionModel,
+) -> tuple[advice.SeenBody, ...]:
+    """Return what a rig sees of test bodies."""
+    return advice.see_bodies(rig, vehicle, bodies, model, _beams.made(vehicle, dict))
+
+
 _layers = LayerCache()
 
 
@@ -51,4 +66,5 @@ def clear() -> None:
     global _layers
     _layers = LayerCache()
     _sight.clear()
+    _beams.clear()
     engine_calls.clear()

@@ -97,8 +97,10 @@ BODY_ITEMS = (
     ("cyclist", "Cyclist", "The track has to be confirmed"),
     ("car", "Car", "The track has to be confirmed"),
     (HIDES, "Only Hides", "It only hides others, as a parked car does"),
+    ("pole", "Pole", "A thin post"),
+    ("cone", "Cone", "A traffic cone"),
 )
-"""What an object is in stories of its own animation."""
+"""What an object is: which sensors see it, and in stories of its own animation."""
 BEFORE_MOVE = 0
 """What the live score is compared with; any other number is the key of a variant."""
 

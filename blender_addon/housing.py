@@ -123,13 +123,15 @@ def _circle(radius: float, height: float) -> Floats:
 
 KEY = "pe_housing"  # A mesh's own property: the model whose housing it is
 CREASE_RAD = math.radians(30.0)
-MATERIALS = {
+Look = tuple[tuple[float, float, float], float, float]
+"""Colour (linear RGB), metallic and roughness."""
+MATERIALS: dict[str, Look] = {
     "PE housing": ((0.50, 0.52, 0.55), 0.4, 0.45),
     "PE trim": ((0.035, 0.037, 0.04), 0.0, 0.5),
     "PE window": ((0.012, 0.016, 0.03), 0.0, 0.08),
     "PE ahead": ((0.02, 0.42, 0.46), 0.0, 0.5),
 }
-"""Colour (linear RGB), metallic and roughness, in the order of `shapes`."""
+"""In the order of `shapes`."""
 
 
 def measured_housing(model: str) -> bpy.types.Mesh | None:
@@ -169,12 +171,12 @@ def surface_mesh(name: str, surface: Surface) -> bpy.types.Mesh:
     return mesh
 
 
-def housing_material(name: str) -> bpy.types.Material:
-    """Return one of the housings' materials, with the same colour in the solid view."""
+def housing_material(name: str, look: Look | None = None) -> bpy.types.Material:
+    """Return a material, with the same colour in the solid view; by default one of housings."""
     material = bpy.data.materials.get(name)
     if material is not None:
         return material
-    colour, metallic, roughness = MATERIALS[name]
+    colour, metallic, roughness = look or MATERIALS[name]
     material = bpy.data.materials.new(name)
     if bpy.app.version < (5, 0):
         material.use_nodes = True

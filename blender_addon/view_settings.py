@@ -204,6 +204,9 @@ class ViewSettings:
         True, "Where?", "Colour the body by the figure that the rig has with one more sensor there"
     )
     show_labels: bool = _switch(True, "Names", "Write each sensor's name beside it")
+    show_bodies: bool = _switch(
+        True, "Test Bodies", "Write beside each test body which sensors see it, and with how much"
+    )
     show_inset: bool = _switch(
         False, "Picture in View", "Show what the selected sensor sees in a corner of the 3D view"
     )

@@ -12,6 +12,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from . import (
+    body_query,
     bridge,
     change_events,
     consistency,
@@ -37,6 +38,7 @@ AFTER_STEP = (
     sensor_cache.invalidate,
     vehicle_cache.shared.invalidate,
     session.on_restored,
+    body_query.schedule,
     change_events.note_change,
 )
 """After a step of undo or redo: any object may be another one."""
@@ -47,6 +49,7 @@ EVENTS: dict[str, tuple[Function, ...]] = {
         inset.note_change,
         change_events.note_if_changed,
         session.follow_update,
+        body_query.note_update,
         scheduler.note_selection,
     ),
     "frame_change_post": (vehicle_cache.invalidate_if_updated, change_events.note_if_changed),
@@ -62,6 +65,7 @@ EVENTS: dict[str, tuple[Function, ...]] = {
         diagnostics.clear,
         result_staleness.clear,
         location_query.clear,
+        body_query.clear,
         where_map.clear,
         variant_pictures.clear,
         scheduler.clear,
@@ -74,6 +78,7 @@ EVENTS: dict[str, tuple[Function, ...]] = {
         consistency.after_load,
         change_events.note_change,
         draw_handler.clear,
+        body_query.schedule,
         scheduler.clear,
         scheduler.schedule,
     ),
@@ -88,6 +93,7 @@ LISTENERS: tuple[tuple[signals.Signal, tuple[signals.Listener, ...]], ...] = (
             sensor_cache.invalidate,
             bridge.sync_own_sensors,
             change_events.note_change,
+            body_query.schedule,
             scheduler.schedule,
             housing.update_housings,
         ),
@@ -100,6 +106,7 @@ LISTENERS: tuple[tuple[signals.Signal, tuple[signals.Listener, ...]], ...] = (
             upright.on_moving,
             consistency.repair_scenes,
             diagnostics.postpone_checks,
+            body_query.schedule,
             scheduler.on_moving,
         ),
     ),
@@ -112,6 +119,7 @@ LISTENERS: tuple[tuple[signals.Signal, tuple[signals.Listener, ...]], ...] = (
             session.on_idle,
             diagnostics.schedule_checks,
             location_query.query_again,
+            body_query.schedule,
             where_map.discard_outdated,
             scheduler.on_idle,
         ),

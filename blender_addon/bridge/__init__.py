@@ -91,6 +91,7 @@ from .sensor_records import (
     write_records,
 )
 from .time import (
+    body_place,
     clear_stale_stories,
     confirmation_of,
     frame_rate,
@@ -131,7 +132,13 @@ from .variants import (
     variant_dict,
     variant_named,
 )
-from .vehicle import layers_of, vehicle_from_collection, visible_members
+from .vehicle import (
+    SURROUNDINGS,
+    in_surroundings,
+    layers_of,
+    vehicle_from_collection,
+    visible_members,
+)
 from .view_camera import (
     CAMERA_FROM_SENSOR,
     look_back,

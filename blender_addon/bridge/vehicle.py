@@ -14,6 +14,8 @@ from .scene_settings import as_typed
 RESIDUAL = "pe_residual"
 """Mesh attribute with what single precision leaves out of the points of an imported vehicle."""
 VEHICLE = "Vehicle"
+SURROUNDINGS = "pe_surroundings"
+"""Own property of the collection with what stands round the vehicle: never part of it."""
 
 
 class VehiclePart(NamedTuple):
@@ -51,8 +53,8 @@ def vehicle_from_collection(
 
 
 def visible_members(collection: Collection, layer: ViewLayer) -> set[Object]:
-    """Return the visible objects of a collection and of its children."""
-    if collection.hide_render:
+    """Return the visible objects of a collection and of its children, without surroundings."""
+    if collection.hide_render or collection.get(SURROUNDINGS):
         return set()
     members = {
         obj
@@ -60,6 +62,11 @@ def visible_members(collection: Collection, layer: ViewLayer) -> set[Object]:
         if obj.visible_get(view_layer=layer) and not obj.hide_render
     }
     return members.union(*(visible_members(child, layer) for child in collection.children))
+
+
+def in_surroundings(obj: Object) -> bool:
+    """Whether an object belongs to the surroundings of the vehicle."""
+    return any(each.get(SURROUNDINGS) for each in obj.users_collection)
 
 
 def layers_of(layer: LayerCollection, collection: Collection) -> list[LayerCollection]:

@@ -18,6 +18,7 @@ from . import (
     running_job,
     shortcuts,
     suggest,
+    surroundings,
     upright,
     variants,
     where,

@@ -204,8 +204,7 @@ def _render(
     before, _rendering = overlay.show_overlays, True
     overlay.show_overlays = False
     try:
-        given = view.window.scene, pose, size, not sensor_pictures.TAKES_SRGB
-        around = partial(surroundings.draw_around, *given)
+        around = partial(surroundings.draw_around, pose, size, not sensor_pictures.TAKES_SRGB)
         camera.render(view, size, camera_from_ground, projection(model), around)
     finally:
         overlay.show_overlays, _rendering = before, False

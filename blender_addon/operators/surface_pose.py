@@ -160,7 +160,8 @@ def vehicle_center(vehicle: bpy.types.Collection | None) -> Vector:
 
 def is_part(obj: bpy.types.Object) -> bool:
     """Whether an object may be a part of a vehicle."""
-    return obj.type == "MESH" and not bridge.mounted_on_sensor(obj)
+    is_mesh = obj.type == "MESH" and not bridge.in_surroundings(obj)
+    return is_mesh and not bridge.mounted_on_sensor(obj)
 
 
 def _axes_looking_along(normal: Vector) -> Matrix:

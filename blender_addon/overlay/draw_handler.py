@@ -12,7 +12,7 @@ import gpu
 import numpy as np
 from mathutils import Matrix
 
-from .. import bridge, engine_process, vehicle_cache, viewport
+from .. import body_query, bridge, engine_process, vehicle_cache, viewport
 from ..engine import graphics, pe
 from . import labels, scheduler, strip, surroundings, wipe
 from .batches import Batches
@@ -86,7 +86,7 @@ def draw() -> None:
     scene = context.scene.name
     eye = _eye(context)
     if eye is not None:
-        surroundings.draw_around(context.scene, eye, context.region)
+        surroundings.draw_around(eye, context.region)
     now = _seconds(context.scene)
     wanted = [
         (layer, _by_side(context, names, uploaded(scene, layer, names, now)))
@@ -139,6 +139,8 @@ def draw_text() -> None:
     if wiped:
         line = wipe.line_px(context)
         wipe.draw_line(context, line, _names_of_both(context.scene))
+    if context.scene.perception_entropy.view.show_bodies:
+        written += body_query.labels(context.scene, context.active_object)
     for layer, name in visible:
         item = shown_of(scene, layer)[name]
         tags = item.shape.at(now).labels
@@ -149,8 +151,6 @@ def draw_text() -> None:
             drawn = strip.draw_strip(context, below, now, OUT_OF_DATE if old else "")
             viewport.reserve_plate(region, viewport.STRIP, drawn)
     eye = _eye(context)
-    if eye is not None:
-        written += surroundings.labels_around(context.scene, eye)
     taken: list[viewport.PlateBox] = []
     if context.scene.perception_entropy.view.show_legend:
         found = (_legend(scene, layer, name) for layer, name in visible)

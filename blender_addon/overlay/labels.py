@@ -40,14 +40,23 @@ def draw_labels(
         if place is None:
             continue
         size = (STRONG_SIZE if label.strong else SMALL) * scale
-        width, height = viewport.text_size(label.text, size)
+        lines = label.text.split("\n")
+        extents = [viewport.text_size(line, size) for line in lines]
+        width, row = max(extent[0] for extent in extents), 1.35 * size
         x, y = place.x - width / 2.0, place.y + RISE * scale
-        box = (x - pad, y - pad, x + width + pad, y + height + pad)
-        if any(graphics.boxes_overlap(box, other) for other in taken):
+        height = extents[0][1] + row * (len(lines) - 1)
+        for _ in lines:  # a label of several lines is lifted over what it would cover
+            box = (x - pad, y - pad, x + width + pad, y + height + pad)
+            over = [each for each in taken if graphics.boxes_overlap(box, each)]
+            if not over or len(lines) == 1:
+                break
+            y = max(each[3] for each in over) + pad + 1.0
+        if over:
             continue
         taken.append(box)
         viewport.fill_box(box, LABEL_PLATE)
-        viewport.draw_text(label.text, x, y, size, label.color)
+        for number, line in enumerate(reversed(lines)):
+            viewport.draw_text(line, x, y + number * row, size, label.color)
 
 
 def draw_legends(

@@ -2,7 +2,7 @@
 
 from bpy.types import Context, PropertyGroup, UILayout
 
-from .. import location_query, where_map
+from .. import body_query, location_query, where_map
 from ..diagnostics import explanation
 from ..language import draw_label
 from ..operators import suggest
@@ -69,6 +69,19 @@ def draw_offers(
         ).number = number
 
 
+@panel("Surroundings", closed=False)
+def surroundings(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
+    """A road and test bodies round the vehicle, and which sensors see each body"""
+    layout.operator("pe.surroundings", icon="WORLD")
+    for name, body in body_query.seen(context.scene).items():
+        column = layout.column(align=True)
+        chosen = column.operator("pe.select_part", text=f"{name}: {body.summary}", translate=False)
+        chosen.name = name
+        if context.active_object == context.scene.objects[name]:
+            for each in body.seeing:
+                draw_part_row(column, each.name, each.text)
+
+
 PART_SHARE, NARROW_PART_SHARE = 0.5, 0.3
 
 
@@ -110,4 +123,4 @@ def draw_part_row(layout: UILayout, name: str, *figures: str, header: bool = Fal
         draw_label(cell, text)
 
 
-CLASSES = (explain, breakdown)
+CLASSES = (explain, surroundings, breakdown)

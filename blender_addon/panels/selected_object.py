@@ -2,7 +2,7 @@
 
 from bpy.types import Context, Object, PropertyGroup, UILayout
 
-from ..bridge import holder_of
+from ..bridge import holder_of, in_surroundings
 from ..language import draw_label, shown
 from ..properties import AXIS_LABELS
 from .layout import draw_declared, draw_sentence, is_simple, panel
@@ -124,7 +124,9 @@ def data_sheet(layout: UILayout, _settings: PropertyGroup, context: Context) -> 
 
 def _part_is_shown(context: Context) -> bool:
     obj = context.active_object
-    return obj is not None and obj.type != "EMPTY" and not obj.perception_entropy.is_sensor
+    if obj is None or obj.type == "EMPTY" or in_surroundings(obj):
+        return False
+    return not obj.perception_entropy.is_sensor
 
 
 @panel("Vehicle Part", simple=True, closed=False, poll=_part_is_shown)

@@ -220,7 +220,8 @@ class PE_ObjectSettings(GroundPose, CurveFields, SheetFields, ScanFields, Proper
 
     body: menu(
         "Test Body",
-        "What this object is in a story of its own animation; its size is that of the object",
+        "What this object is: the 3D view says which sensors see such a body there. In a story of "
+        "its own animation its size is that of the object",
         BODY_ITEMS,
         update=changed,
     )

@@ -74,6 +74,10 @@ def add_explain_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--at", type=float, nargs="+", metavar=("X Y", "Z"), help=about)
     about = "with --at: say which small move, or one more sensor, would end the blind ground there"
     parser.add_argument("--suggest", action="store_true", help=about)
+    about = "with --at: a test body there (child, adult, cyclist, car, pole, cone ...): m by sensor"
+    parser.add_argument("--body", metavar="NAME", help=about)
+    about = "with --body: its heading, to the left (0)"
+    parser.add_argument("--heading", type=float, default=0.0, metavar="DEG", help=about)
     about = "class whose reach is told (pedestrian)"
     parser.add_argument("--class", dest="class_name", metavar="NAME", help=about)
     parser.add_argument("--json", action="store_true", help="print JSON")
@@ -90,6 +94,13 @@ def add_compare_options(parser: argparse.ArgumentParser) -> None:
 
 def explain(study: Study, args: argparse.Namespace) -> Answer:
     """Describe a study's score and warnings; with ``--at``, query one location instead."""
+    if args.body is not None:
+        if args.at is None:
+            raise InputError("command line", "--body", "--at X Y, where it stands", "none")
+        standing = advice.StandingBody(args.body, args.at, args.heading)
+        (body,) = advice.see_bodies(study.rig, study.vehicle, (standing,), study.model)
+        print_vehicle(study)
+        return _answer({"body": body.to_dict()}, list(body.text), args.json)
     if args.at is not None:
         parts = (study.rig, study.space, study.prior, study.vehicle, args.at, study.model)
         place = advice.ask_place(*parts)

@@ -21,4 +21,4 @@ from .sensor_images import BODY_NEAR, NO_ECHO, RANGES, camera_of, even_angles, f
 from .sensor_images import hidden_lines, lidar_of, range_colors
 from .simplify import simplified
 from .surface_map import FORBIDDEN, colored_surface
-from .surroundings import Surroundings, surroundings
+from .surroundings import DASH_M, GAP_M, LANE_M, LINE_M, STRONG_EVERY, surroundings

@@ -1,20 +1,15 @@
-"""What a camera's picture shows around the vehicle: ground, sky, a road's lanes, test bodies. It
-gives a picture of a vehicle alone its scale. It is drawn only: no part of a study or a scene."""
+"""What a camera's picture shows around the vehicle: ground, sky, a road's lanes. It gives a picture
+of a vehicle alone its scale. It is drawn only: no part of a study or a scene."""
 
 import math
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from pe_core.base.arrays import Floats
-from pe_core.geometry.poses import Pose
-from pe_core.scoring.requirements import BODIES, Body
 
-from .colors import Rgba, with_alpha
-from .primitives import LayerShape, Primitives, Tag
-
-CornerPair = tuple[Floats, Floats]
+from .colors import Rgba
+from .primitives import LayerShape, Primitives
 
 BELOW_M = -0.02  # Height of the ground: a floor that the scene has at 0 hides it
 FAR_M, SKY_M, SEGMENTS = 400.0, 130.0, 72
@@ -39,76 +34,13 @@ LANE_M, LINE_M, ROAD_M = 3.5, 0.12, 150.0
 DASH_M, GAP_M = 3.0, 6.0
 PAINT: Rgba = (0.92, 0.92, 0.90, 0.95)
 
-STANDING: tuple[tuple[str, float, float, Rgba], ...] = (
-    ("car", 20.0, 0.0, (0.45, 0.66, 0.86, 1.0)),
-    ("cyclist", 10.0, -14.0, (0.52, 0.78, 0.55, 1.0)),
-    ("adult", 5.0, 16.0, (0.94, 0.68, 0.36, 1.0)),
-)  # Test bodies: name, distance from the sensor [m], bearing to the left [deg], colour
-SHADES = (0.78, 0.62, 1.0)  # Brightness of sides along x, of those along y, and of the top
 
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Surroundings:
-    """The surroundings of a sensor: `ground`, which is behind all else, and `bodies` on it."""
-
-    ground: LayerShape
-    bodies: LayerShape
-
-
-def surroundings(eye: Pose, vehicle: CornerPair | None = None) -> Surroundings:
-    """Return what a camera at a pose has around it; no test body stands in the vehicle's bounds.
-    Test bodies stand where the camera looks; if it looks straight down, where its top is."""
-    x, y = eye.position[:2]
+def surroundings(x: float, y: float) -> LayerShape:
+    """Return what a camera above a place on the ground has around it."""
     circles = [(_circle(x, y, radius, BELOW_M), color) for radius, color in GROUND]
     bands = [_band(a[0], b[0], (a[1], b[1])) for a, b in pairwise(circles)]
     sky = _band(circles[-1][0], _circle(x, y, FAR_M, SKY_M), (HORIZON, ZENITH))
-    ground = LayerShape(faces=Primitives.joined([*bands, sky, _lanes()]), thin=_grid(x, y))
-    ahead, up = eye.ground_from_sensor[:, 0], eye.ground_from_sensor[:, 2]
-    along = ahead if math.hypot(ahead[0], ahead[1]) > 1e-3 else -ahead[2] * up
-    heading = math.atan2(along[1], along[0])
-    faces, lines, labels = [], [], []
-    for name, distance, bearing_deg, color in STANDING:
-        bearing = heading + math.radians(bearing_deg)
-        foot = np.array([x + distance * math.cos(bearing), y + distance * math.sin(bearing)])
-        body = BODIES[name]
-        if vehicle is not None:
-            (low, high), half = (corner[:2] for corner in vehicle), body.largest / 2.0
-            if (foot + half > low).all() and (foot - half < high).all():
-                continue
-        corners = _corners(body, foot, heading)
-        faces.append(_sides(corners, color))
-        edges = [(a, b) for a in range(8) for b in range(a + 1, 8) if (a ^ b) in (1, 2, 4)]
-        dark = with_alpha(tuple(0.35 * value for value in color[:3]), 0.9)
-        lines.append(Primitives.of(corners[np.array(edges)], dark))
-        top = (float(foot[0]), float(foot[1]), body.low + body.size[2])
-        labels.append(Tag(f"{name}, {distance:g} m", top, color))
-    bodies = LayerShape(
-        faces=Primitives.joined(faces), thin=Primitives.joined(lines), labels=tuple(labels)
-    )
-    return Surroundings(ground, bodies)
-
-
-def _corners(body: Body, foot: Floats, heading: float) -> Floats:
-    """Return the corners (8, 3) of a body's box; bits of their numbers are x, y and z."""
-    length, width, height = body.size
-    corners = np.array([*np.ndindex(2, 2, 2)], float) * [length, width, height]
-    corners -= [length / 2.0, width / 2.0, -body.low]
-    cosine, sine = math.cos(heading), math.sin(heading)
-    turned = corners.copy()
-    turned[:, 0] = foot[0] + cosine * corners[:, 0] - sine * corners[:, 1]
-    turned[:, 1] = foot[1] + sine * corners[:, 0] + cosine * corners[:, 1]
-    return turned
-
-
-def _sides(corners: Floats, color: Rgba) -> Primitives:
-    """Return the sides of a box as shaded triangles."""
-    quads = {0: ((0, 1, 3, 2), (4, 6, 7, 5)), 1: ((0, 4, 5, 1), (2, 3, 7, 6)), 2: ((1, 5, 7, 3),)}
-    parts = []
-    for axis, sides in quads.items():
-        shade = with_alpha(tuple(SHADES[axis] * value for value in color[:3]), color[3])
-        for a, b, c, d in sides:
-            parts.append(Primitives.of(corners[[a, b, c, a, c, d]], shade))
-    return Primitives.joined(parts)
+    return LayerShape(faces=Primitives.joined([*bands, sky, _lanes()]), thin=_grid(x, y))
 
 
 def _circle(x: float, y: float, radius: float, z: float) -> Floats:

@@ -37,7 +37,7 @@ sensor_cache: bridge
 engine_calls: engine
 analysis_calls: engine engine_calls overlay
 own_jobs: engine
-film: engine
+film: bridge engine
 engine_process: analysis_calls engine overlay
 vehicle_cache: bridge engine
 change_events: sensor_cache signals vehicle_cache
@@ -46,6 +46,7 @@ viewport: language
 result_staleness: bridge sensor_cache signals vehicle_cache
 diagnostics: analysis_calls bridge engine engine_process sensor_cache signals vehicle_cache
 location_query: bridge engine engine_process sensor_cache signals vehicle_cache
+body_query: analysis_calls bridge choices engine engine_process sensor_cache vehicle_cache viewport
 where_map: bridge engine signals
 housing: engine sensor_cache sensor_kinds
 library:
@@ -60,23 +61,23 @@ overlay.snapshot: best_so_far bridge choices engine live location_query overlay 
     vehicle_cache view_settings where_map
 overlay.scheduler: analysis_calls engine engine_process overlay overlay.snapshot sensor_cache
     viewport
-overlay.surroundings: engine overlay vehicle_cache viewport
-overlay.draw_handler: bridge engine engine_process overlay overlay.scheduler
+overlay.surroundings: engine overlay viewport
+overlay.draw_handler: body_query bridge engine engine_process overlay overlay.scheduler
     overlay.surroundings vehicle_cache viewport
-operators: best_so_far bridge choices diagnostics engine engine_calls engine_process film housing
-    language library live location_query overlay overlay.surroundings own_jobs properties
-    result_staleness sensor_cache sensor_kinds signals translation_context
+operators: best_so_far body_query bridge choices diagnostics engine engine_calls engine_process
+    film housing language library live location_query overlay overlay.surroundings own_jobs
+    properties result_staleness sensor_cache sensor_kinds signals translation_context
     variant_pictures vehicle_cache view_settings viewport where_map
-panels: bridge choices diagnostics engine language live location_query operators properties
-    sensor_cache sensor_kinds where_map
+panels: body_query bridge choices diagnostics engine language live location_query operators
+    properties sensor_cache sensor_kinds where_map
 commands: bridge engine film result_staleness
-wiring: bridge change_events consistency diagnostics engine_process housing live location_query
-    operators overlay.draw_handler overlay.scheduler result_staleness sensor_cache signals
-    variant_pictures vehicle_cache viewport where_map
+wiring: body_query bridge change_events consistency diagnostics engine_process housing live
+    location_query operators overlay.draw_handler overlay.scheduler result_staleness sensor_cache
+    signals variant_pictures vehicle_cache viewport where_map
 __main__: __init__ commands engine
-__init__: best_so_far change_events commands consistency diagnostics engine_process language
-    library live location_query operators overlay.draw_handler panels preferences_panel properties
-    sensor_cache translation_context variant_pictures vehicle_cache where_map wiring
+__init__: best_so_far body_query change_events commands consistency diagnostics engine_process
+    language library live location_query operators overlay.draw_handler panels preferences_panel
+    properties sensor_cache translation_context variant_pictures vehicle_cache where_map wiring
 """
 """What each module or package may import. What stands below a package is part of it, unless it has
 a line of its own."""

@@ -55,6 +55,7 @@ def window(rig, monkeypatch):
     region = SimpleNamespace(as_pointer=lambda: 1)
     monkeypatch.setattr(draw_handler.viewport, "is_lower_left", lambda _context: False)
     context = SimpleNamespace(scene=rig, space_data=space, region_data=look, region=region)
+    context.active_object = None
     monkeypatch.setattr(draw_handler, "bpy", SimpleNamespace(context=context, app=bpy.app))
     monkeypatch.setattr(draw_handler, "gpu", card)
     monkeypatch.setattr(draw_handler, "Batches", card)

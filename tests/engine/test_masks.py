@@ -1,4 +1,4 @@
-"""Pictures: ego masks, ranges and surroundings, held to rays; the PNG files they go into."""
+"""Pictures: ego masks and ranges, held to rays; the PNG files they go into."""
 
 import importlib
 import json
@@ -12,11 +12,8 @@ import pytest
 import pe_core as pe
 from pe_core import catalog
 from pe_core.catalog import load
-from pe_core.scoring.requirements import BODIES
 from pe_core.sensors import BrownConrady, Camera, FTheta, KannalaBrandt, Lidar, range_picture
 from pe_core.sensors.field_of_view import FREE
-from pe_tools.graphics import surroundings
-from pe_tools.graphics.surroundings import STANDING
 from pe_tools.outputs import scene_files
 
 TRIANGLES = np.array(
@@ -182,32 +179,6 @@ def test_things_end_beams_unless_something_is_before_them():
     assert picture.distance[0] == pytest.approx([math.inf, 5.0, 1.0, math.inf])
     assert not picture.occluded.any()
     assert range_picture(sensor, WALL, pe.Vehicle(boxes[1])).occluded[0].tolist()[2]
-
-
-def eye(position, rotation=(0, 0, 0)):
-    return pe.Pose.from_degrees(position, rotation)
-
-
-@pytest.mark.parametrize("rotation", [(0, 0, 0), (0, 35, 140), (10, -5, -90), (0, 90, 30)])
-def test_bodies_of_the_requirements_stand_at_5_10_and_20_metres(rotation):
-    """On the ground, as large as they are, ahead of where the sensor looks."""
-    found = surroundings(eye((1.0, -2.0, 1.4), rotation)).bodies
-    assert sorted(distance for _, distance, *_ in STANDING) == [5.0, 10.0, 20.0]
-    heading = math.radians(rotation[2])
-    corners = found.thin.points.reshape(len(STANDING), -1, 3)
-    for (name, distance, bearing, _), points, tag in zip(
-        STANDING, corners, found.labels, strict=True
-    ):
-        low, high = points.min(axis=0), points.max(axis=0)
-        body = BODIES[name]
-        assert (low[2], high[2]) == pytest.approx((body.low, body.low + body.size[2]))
-        away = np.array(tag.place[:2]) - (1.0, -2.0)
-        assert math.hypot(*away) == pytest.approx(distance)
-        turned = math.atan2(away[1], away[0]) - heading - math.radians(bearing)
-        assert math.remainder(turned, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-6)
-        diagonal = np.hypot(*(high - low)[:2])
-        assert diagonal <= math.sqrt(2.0) * math.hypot(*body.size[:2]) + 1e-6
-        assert f"{distance:g} m" in tag.text
 
 
 def chunks(png):

@@ -3,7 +3,7 @@
 from .bodies import BODIES, Body
 from .checker import CheckStep, RequirementChecker, checkable
 from .criteria import Criterion, Requirement, Under, checked_requirements
-from .definition import body_met, sees
+from .definition import body_met, placed, sees
 from .planes import VehiclePlanes
 from .verdict import (
     FARTHEST_M,

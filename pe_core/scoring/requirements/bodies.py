@@ -224,6 +224,14 @@ BODIES: Mapping[str, Body] = MappingProxyType(
                 headings=_ALONG,
                 source="smallest small car of Euro NCAP Low Speed Collisions v1.1, App. A",
             ),
+            Body("pole", (0.05, 0.05, 0.91), is_round=True, source="the pole of `pole_ring`"),
+            Body(
+                "cone",
+                (0.2, 0.2, 0.45),
+                is_round=True,
+                class_name="cone",
+                source="cylinder in the cone of the road prior: 0.4 m wide and 0.9 m high",
+            ),
         )
     }
 )

@@ -1,4 +1,5 @@
 """Objects as targets: sampled from the prior, placed in scenes, and the score of rigs on them."""
 
 from .object_evaluator import ObjectEvaluator
+from .object_metric import FusedObjects
 from .object_sampling import OBJECTS, SampledObjects, TargetRule, sample_objects

@@ -1,0 +1,43 @@
+"""The road and the test bodies round the vehicle: drawn, grabbed and counted, never scored."""
+
+import json
+
+import bpy
+
+from blender_addon import body_query
+from blender_addon.panels.score_details import surroundings
+from tests.addon import scenes
+from tests.addon.command_line import pe_here, run_here
+from tests.addon.layouts import Window, drawn
+
+
+def test_a_grabbed_body_is_counted_as_pe_does_and_nothing_else_notices(car, tmp_path):
+    scenes.add_sensor("eye", "Camera 60 deg", location=(2.0, 0.0, 1.0))
+    before, objects = scenes.study(), set(bpy.data.objects)
+    assert bpy.ops.pe.surroundings() == {"FINISHED"}
+    car.perception_entropy.vehicle.children.link(bpy.data.collections["Surroundings"])
+    assert len(scenes.study().vehicle.triangles) == len(before.vehicle.triangles)
+    assert {"child", "adult", "cyclist", "car", "pole", "cone"} == set(body_query.seen(car))
+
+    child = car.objects["child"]
+    child.location, child.rotation_euler.z = (9.1, 0.7, 0.0), 0.3
+    bpy.context.view_layer.update()
+    body_query.query(car, scenes.depsgraph())
+    body = body_query.seen(car)["child"]
+    assert [each.name for each in body.seeing] == ["eye", "roof"]
+    (label,) = (each for each in body_query.labels(car, child) if each.text.startswith("child"))
+    assert label.text.split("\n")[1:] == [f"{each.name}: {each.text}" for each in body.seeing]
+    told = drawn(surroundings, **vars(Window(car, child))).texts("label")
+    assert {each.text for each in body.seeing} <= set(told)
+
+    path, standing = tmp_path / "car.blend", body.standing
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    asked = ("--at", *map(repr, standing.place), "--heading", repr(standing.heading), "--body")
+    inside = run_here(path, "explain", *asked, "child", "--json")
+    assert run_here(path, "export", "-o", tmp_path / "study").returncode == 0
+    outside = pe_here("explain", tmp_path / "study" / "study.toml", *asked, "child", "--json")
+    assert inside.stdout == outside.stdout and inside.returncode == outside.returncode == 0
+    assert json.loads(inside.stdout)["body"] == body.to_dict()
+
+    assert bpy.ops.pe.surroundings() == {"FINISHED"}
+    assert len(bpy.data.objects) == len(objects) and not body_query.seen(bpy.context.scene)

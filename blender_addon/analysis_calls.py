@@ -44,7 +44,7 @@ def bodies_seen(
     vehicle: pe.Vehicle | None,
     bodies: Sequence[advice.StandingBody],
     model: pe.PerceptionModel,
-) -> tuple[advice.SeenBody, ...]:
+) -> tuple[advice.BodySight, ...]:
     """Return what a rig sees of test bodies."""
     return advice.see_bodies(rig, vehicle, bodies, model, _beams.made(vehicle, dict))
 

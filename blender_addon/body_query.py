@@ -19,7 +19,7 @@ MAX_LINES = 4
 SEEN = graphics.with_alpha(graphics.VIEWPORT.words, 1.0)
 UNSEEN = graphics.with_alpha(graphics.VIEWPORT.occluded, 1.0)
 
-_seen: dict[str, dict[str, advice.SeenBody]] = {}
+_seen: dict[str, dict[str, advice.BodySight]] = {}
 """By the scene's and the object's name."""
 
 
@@ -47,7 +47,7 @@ def query(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
         return
     vehicle = vehicle_cache.shared.read(scene, depsgraph).vehicle
 
-    def deliver(found: tuple[advice.SeenBody, ...]) -> None:
+    def deliver(found: tuple[advice.BodySight, ...]) -> None:
         _seen[name] = dict(zip(bodies, found, strict=True))
         viewport.redraw_editors()
 
@@ -67,7 +67,7 @@ def query(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
         )
 
 
-def seen(scene: bpy.types.Scene) -> dict[str, advice.SeenBody]:
+def seen(scene: bpy.types.Scene) -> dict[str, advice.BodySight]:
     """Return what the sensors see of the bodies that are still there, by the object's name."""
     found = _seen.get(scene.name, {})
     return {name: each for name, each in found.items() if name in scene.objects}

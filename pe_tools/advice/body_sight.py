@@ -60,7 +60,7 @@ class SensorOnBody:
 
 
 @dataclass(frozen=True, slots=True)
-class SeenBody:
+class BodySight:
     """What a rig sees of a body. `ap` is that of all sensors fused, by the curve of the body's
     class, 0 to 1; None where there is no such curve. `sensors` are in the rig's order."""
 
@@ -109,7 +109,7 @@ def see_bodies(
     bodies: Sequence[StandingBody],
     model: PerceptionModel | None = None,
     kernel_caches: dict[str, Any] | None = None,
-) -> tuple[SeenBody, ...]:
+) -> tuple[BodySight, ...]:
     """Return what a rig sees of bodies, each alone with the vehicle, as objects are measured.
 
     `kernel_caches` are those of the sensors' kernels on that vehicle, for the next call.
@@ -128,5 +128,5 @@ def see_bodies(
                 pass
         units = ((s.name, kind_named(s.kind, s.name).unit) for s in rig)
         sensors = tuple(SensorOnBody(name, rounded(m[name][0]), unit) for name, unit in units)
-        found.append(SeenBody(standing, ap, sensors))
+        found.append(BodySight(standing, ap, sensors))
     return tuple(found)

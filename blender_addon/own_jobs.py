@@ -68,9 +68,10 @@ class ExportJob(jobs.Job):
         if made is not None and not self.stopped:
             self.written = self._write(made)
 
-    def stop(self) -> None:
+    def stop(self) -> bool:
         """End at once, and write nothing."""
         self.drop()
+        return super().stop()
 
 
 def scene_job(

@@ -1,7 +1,7 @@
 """Jobs: one operator, a row a job. The engine's process runs it; without a window it runs at once.
 
 A row says what to make from the scene and what to do with the result. Esc stops a job, which keeps
-the best so far; Esc once more discards all changes.
+and analyses the best so far; Esc again skips the analysis, once more discards all changes.
 """
 
 from collections.abc import Callable
@@ -148,7 +148,7 @@ class JobOperator(OperatorMixin):
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
-        """Show how far the job is; Esc stops it, Esc once more discards all changes."""
+        """Show how far the job is; Esc ends its parts one by one, then discards all changes."""
         running = running_job.current
         if running is None:  # it was ended from outside
             return {"CANCELLED"}
@@ -156,7 +156,8 @@ class JobOperator(OperatorMixin):
         if event.type == "ESC" and event.value == "PRESS" and not event.is_repeat:
             running.stop()
             if not running.ended:
-                if self.task.place is not None and scene is not None:
+                is_new = self.take_back is None
+                if is_new and self.task.place is not None and scene is not None:
                     with bridge.as_drawn(scene):
                         self.take_back = self.task.place(scene, running.seen)
                 running.show(context)
@@ -389,7 +390,8 @@ CHECK = JobRow(
 
 @operator("Stop", unless=lambda _: "" if running_job.current is None else None, options=INTERNAL)
 def cancel(context: bpy.types.Context) -> None:
-    """Stop the search, keep the best placement so far. Pressed again: all changes are discarded"""
+    """Stop the search, keep the best placement so far. Pressed again: without its analysis; once
+    more: all changes are discarded"""
     job = running_job.current
     if job is not None:
         job.stop()

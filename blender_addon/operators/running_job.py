@@ -53,11 +53,10 @@ class RunningJob(jobs.WatchedJob):
         self.ended, self.error = True, error
 
     def stop(self) -> None:
-        """Stop the job and keep the best so far; called again, keep nothing."""
-        if self.seen.stopped:
+        """End the part of the job that runs; called once more than it has parts, keep nothing."""
+        if not self.seen.stop():
             self.seen.drop()
             self._take(None)  # the window waits for nothing
-        self.seen.stop()
         engine_process.cancel(TOPIC)
 
     @property
@@ -79,7 +78,9 @@ class RunningJob(jobs.WatchedJob):
     @property
     def on_escape(self) -> str:
         """What Esc does now."""
-        return "Discard All Changes" if self.seen.stopped else "Stop"
+        if self.seen.parts_left < 1:
+            return "Discard All Changes"
+        return "Skip Analysis" if self.seen.parts_left < self.seen.parts else "Stop"
 
     def show_soon(self, context: bpy.types.Context) -> None:
         """Draw the progress again, if some time has passed since the last time."""

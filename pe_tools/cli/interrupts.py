@@ -1,4 +1,4 @@
-"""Signals that end a run: the first one stops the job gracefully, the second one exits."""
+"""Signals that end a run: the first ones end its parts gracefully, the next one exits."""
 
 import os
 import signal
@@ -78,15 +78,15 @@ class Received:
 
 
 @contextmanager
-def stop_at_first(stop: Callable[[], None]) -> Iterator[Received]:
-    """Call `stop` at the first Ctrl-C, SIGTERM or SIGHUP; raise `Interrupted` at the second."""
+def stop_at_first(stop: Callable[[], object]) -> Iterator[Received]:
+    """Call `stop` at Ctrl-C, SIGTERM and SIGHUP; raise `Interrupted` at the second one, or later
+    where `stop` says that there was something left to stop."""
     received = Received()
 
     def handler(signum: int, _frame: object) -> None:
-        if received.signum is not None:
+        is_first, received.signum = received.signum is None, received.signum or signum
+        if not (stop() or is_first):
             raise Interrupted(signum)
-        received.signum = signum
-        stop()
 
     with _handled(_numbers(), handler):
         yield received

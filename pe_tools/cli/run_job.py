@@ -91,9 +91,9 @@ def _carried_out(
     more: Sequence[More],
 ) -> Answer:
     """Run a job, keep its results, and return what is printed with the exit status. The first
-    Ctrl-C, SIGTERM or SIGHUP stops the job: the best so far is scored and kept. The second one ends
-    at once and keeps it as it was saved. Where results cannot be written, a line on stderr says so,
-    and the status is 1."""
+    Ctrl-C, SIGTERM or SIGHUP stops a search: the best so far is scored, analysed and kept. The
+    second one ends the analysis; the next ends at once, with the best as it was saved. Where
+    results cannot be written, a line on stderr says so, and the status is 1."""
     if (report := job.study.prior.report(job.study.space)) is not None:  # of labelled boxes
         tell(str(report))
     print_vehicle(job.study)

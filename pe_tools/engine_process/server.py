@@ -6,7 +6,7 @@ import pickle
 import threading
 import traceback
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from multiprocessing.connection import Connection
 from typing import Any
@@ -27,19 +27,19 @@ class _RunningRequest:
     arguments: tuple[Any, ...]
     numbers: dict[int, int]
     running: Any = None
-    cancels: int = 0
+    cancels: list[bool] = field(default_factory=list)
 
-    def cancel(self) -> None:
-        """Have a job end at its next step."""
-        self.cancels += 1
+    def cancel(self, drop: bool) -> None:
+        """Have a job end at its next step, with what it has found unless it is dropped."""
+        self.cancels.append(drop)
         if hasattr(self.running, "cancel"):
-            self.running.cancel()
+            self.running.cancel(drop)
 
     def steps(self) -> Iterator[tuple[str, Any]]:
         """Run it; yield the steps of a job, and the result."""
         self.running = self.function(*self.arguments)
-        for _ in range(self.cancels if hasattr(self.running, "cancel") else 0):
-            self.running.cancel()
+        for drop in self.cancels if hasattr(self.running, "cancel") else ():
+            self.running.cancel(drop)
         yield from steps_of(self.running)
 
 
@@ -66,7 +66,7 @@ class _Lane(threading.Thread):
                 self._waiting.pop(topic, None)
             for call in (self._waiting.get(topic), self._running):
                 if call is not None and call.topic == topic:
-                    call.cancel()
+                    call.cancel(drop)
 
     def run(self) -> None:
         """Run calls until the process ends."""

@@ -190,11 +190,11 @@ class FrontJob(Job):
             named[number] = replace(named[number], name=", ".join(parts))
         return named
 
-    def stop(self) -> None:
+    def stop(self) -> bool:
         """Stop the search; keep the design under search and the front so far."""
-        super().stop()
         if self._inner is not None:
             self._inner.stop()
+        return super().stop()
 
     def drop(self) -> None:
         """Cancel the job; discard its results."""
@@ -383,7 +383,7 @@ class _DesignJob(OptimizeJob):
     """The search of one design, with the evaluators and the workers that all designs share."""
 
     SEARCHING = "optimizing"
-    analyses = False
+    analyses, parts = False, 1
 
     def __init__(self, study: Study, parent: FrontJob) -> None:
         super().__init__(study, parent.workers)

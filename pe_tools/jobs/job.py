@@ -101,7 +101,7 @@ class Outcome(Tabular):
         Journal of the search, from which a stopped search resumes.
     robustness : Robustness or None
         How the entropy of start and result changes under mounting errors and failures; None, as all
-        that is analysed after a search, where it was stopped before.
+        that is analysed after a search, where that was skipped.
     verdicts : tuple of Verdict
         On the requirements of `study`, in its order.
     conditions : ConditionTable or None
@@ -262,6 +262,7 @@ class Job:
         Number of threads and processes; all processors by default.
     """
 
+    parts = 1  # What stops end one by one: a search is followed by its analysis
     shown: tuple[str, ...] = ()  # Attributes that a driver looks at while the job runs
     kept: tuple[str, ...] = ()  # Attributes that a new job of the same study resumes from
 
@@ -269,6 +270,7 @@ class Job:
         self.study, self.workers = study, workers
         self.outcome: Outcome | None = None
         self.stopped = self.dropped = False
+        self.parts_left = self.parts
         self.executor: Executor | None = None
         """Evaluates the candidates of searches; by default processes on this machine."""
         self.notes: tuple[Advice, ...] = ()
@@ -299,10 +301,12 @@ class Job:
             bar.close()
         return self.outcome
 
-    def stop(self) -> None:
-        """Stop the search early; score and keep the best placement so far. Before the first score
-        is complete there is nothing to keep: the job ends and `outcome` stays None."""
-        self.stopped = True
+    def stop(self) -> bool:
+        """End the part that runs: a search, whose best placement so far is scored, kept and
+        analysed, or its analysis. Return whether there was such a part. Before the first score is
+        complete there is nothing to keep: the job ends and `outcome` stays None."""
+        self.stopped, self.parts_left = True, self.parts_left - 1
+        return self.parts_left >= 0
 
     def drop(self) -> None:
         """Cancel the job and discard its results: `outcome` stays None."""

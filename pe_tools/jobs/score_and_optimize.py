@@ -109,7 +109,9 @@ class OptimizeJob(Job):
         Where the independent descents of the search ended (`Step.ends`).
     """
 
-    shown, kept = ("history", "_ended", "evaluations"), ("journal",)
+    parts = 2
+    shown = ("history", "_ended", "evaluations", "stopped", "parts_left")
+    kept = ("journal",)
     analyses = True  # Whether the result is analysed after the search
 
     def __init__(
@@ -178,13 +180,15 @@ class OptimizeJob(Job):
         if first is None:
             return
         yield from self._search()
-        stopped = self.stopped
+        yield self._progress  # a driver keeps the best so far before it is scored
+        stopped, self.parts_left = self.stopped, min(self.parts_left, 1)
+        self.stopped = self.parts_left < 1
         last, best = yield from self._better_of(first)
         looking = self._about("scoring the result", last.value)
         warnings = yield from self._warnings(best, last.score, looking)
         rigs = [self.study.rig, *([best.rig] if best is not self.study else [])]
         figures = yield from self._figures(rigs, looking)
-        # A stop, before it or while it runs, ends what follows: the result does not wait for it.
+        # A further stop ends what follows: the result does not wait for it.
         analysing = replace(looking, stage="analysing")
         found = yield from self._beside(lambda _: self._robustness(best), analysing)
         verdicts = (yield from self._verdicts(best, analysing, to_the_end=False)) or ()

@@ -49,9 +49,9 @@ class JobRun:
             kept = {name: getattr(self._job, name) for name in self._job.kept}
         return JobStep(progress, shown, kept)
 
-    def cancel(self) -> None:
-        """Stop the job; called again, drop it."""
-        (self._job.drop if self._job.stopped else self._job.stop)()
+    def cancel(self, drop: bool) -> None:
+        """Stop the job, or drop it."""
+        (self._job.drop if drop else self._job.stop)()
 
 
 class WatchedJob:

@@ -72,10 +72,12 @@ def test_a_job_that_the_engine_runs_tells_how_it_ended(car):
     assert running.ended and isinstance(running.error, pe.InputError)
     assert running.progress.fraction == 0.5
     running = running_job.RunningJob(context, job, "outcome")
-    running.stop()
-    assert running.seen.stopped and not running.ended
-    running.stop()
-    assert running.seen.dropped and running.ended, "the window waits for nothing"
+    told = [running.on_escape]
+    while not running.ended:
+        assert not running.seen.dropped
+        running.stop()
+        told.append(running.on_escape)
+    assert running.seen.dropped and len(set(told)) == 3, "the window waits for nothing"
 
 
 def test_result_goes_stale_and_comes_back(car):
@@ -194,14 +196,29 @@ def test_a_sensor_that_something_holds_is_reported_before_the_work(car, hold, mo
     assert bpy.ops.pe.score() == {"FINISHED"}
 
 
-def test_a_second_stop_leaves_all_as_it_was(car):
+@pytest.mark.parametrize("stops", [1, 2])
+def test_esc_keeps_the_best_with_its_analysis_and_esc_again_without(car, stops):
+    task = jobs.OPTIMIZE.read(Window(car))
+    run, analysed = pe_jobs.JobRun(task.job), stops == 1
+    for step in run:
+        if step.progress.stage == "optimizing" and step.progress.evaluations >= 8:
+            for _ in range(stops):
+                run.cancel(drop=False)
+            stops = 0
+    assert task.job.outcome.stopped
+    jobs.OPTIMIZE.finish(car, task, task.job.outcome, task.job)
+    stored = car.perception_entropy.result
+    assert scenes.study().rig["roof"].pose == task.job.best.rig["roof"].pose
+    assert bool(stored.robustness("rise")) is analysed
+
+
+def test_a_dropped_search_leaves_all_as_it_was(car):
     before = scenes.study().rig["roof"].pose
     task = jobs.OPTIMIZE.read(Window(car))
     run = pe_jobs.JobRun(task.job)
     for step in run:
         if step.progress.evaluations >= 8:
-            run.cancel()
-            run.cancel()
+            run.cancel(drop=True)
     with pytest.raises(declared.Stopped):
         jobs.OPTIMIZE.finish(car, task, task.job.outcome, task.job)
     assert scenes.study().rig["roof"].pose == before and not car.perception_entropy.has_result

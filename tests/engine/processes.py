@@ -37,6 +37,15 @@ def score(self, rig, **options):
 Evaluator.score = score
 """
 """The n-th full score never ends."""
+ANALYSE = (
+    "",
+    (
+        "import threading\n"
+        "from pe_tools.jobs import score_and_optimize\n"
+        "score_and_optimize.robustness = lambda *_: threading.Event().wait()\n"
+    ),
+)
+"""Whether the analysis of a search never ends."""
 RUN = "from pe_tools.__main__ import main; main()"
 
 
@@ -57,8 +66,8 @@ def pe(*arguments):
 class Command:
     """A running ``pe``; its stderr is read as it comes."""
 
-    def __init__(self, *arguments, hang_in_score=0, **options):
-        script = FEW_ERRORS + TELL_ALL + HANG.format(nth=hang_in_score) + RUN
+    def __init__(self, *arguments, hang_in_score=0, hangs=False, **options):
+        script = FEW_ERRORS + TELL_ALL + HANG.format(nth=hang_in_score) + ANALYSE[hangs] + RUN
         options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options}
         self.process = subprocess.Popen(
             [sys.executable, "-c", script, *map(str, arguments)], cwd=ROOT, text=True, **options

@@ -219,20 +219,25 @@ def test_a_search_whose_process_is_killed_goes_on_where_it_was(engine):
 
 
 def test_a_stopped_search_keeps_the_best_and_a_dropped_one_nothing(engine):
-    for presses in (1, 2):
+    for presses in (1, 2, 3):
         watched = WatchedJob(OptimizeJob(small_search()))
         pressed = []
 
         def step(watched=watched, pressed=pressed, presses=presses):
             if watched.seen.evaluations >= 2 and not pressed:
                 pressed.append(presses)
-                for _ in range(presses):
+                for _ in range(min(presses, 2)):
                     engine.cancel("job")
+                if presses == 3:
+                    engine.drop("job")
 
         got = run(engine, watched, step)
         settled(engine)
         assert pressed
-        assert (got[0] is None) if presses == 2 else got[0].stopped
+        if presses == 3:
+            assert not got
+        else:
+            assert got[0].stopped and (got[0].robustness is None) is (presses == 2)
 
 
 def test_a_cancel_is_not_lost_with_the_process_that_was_told(engine):

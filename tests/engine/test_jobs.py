@@ -3,6 +3,8 @@
 import csv
 import json
 import threading
+import time
+from dataclasses import replace
 
 import pytest
 
@@ -69,30 +71,50 @@ def test_stop_while_the_result_is_scored_cuts_nothing_short():
     assert job.outcome.after.entropy < job.outcome.before.entropy
 
 
-@pytest.mark.parametrize("when", ["optimizing", "analysing"])
+@pytest.mark.parametrize("when", [("optimizing",) * 2, ("optimizing", "analysing"), ("analysing",)])
 def test_a_stop_ends_the_analysis_and_the_result_does_not_wait_for_it(when, monkeypatch):
-    """Before it begins, or while it runs for as long as it likes."""
-    goes_on = threading.Event()
+    """Before it begins, or while it runs for as long as it likes; the search was stopped or not."""
+    goes_on, left = threading.Event(), list(when)
     monkeypatch.setattr(score_and_optimize, "robustness", lambda *_: goes_on.wait(60.0))
     job = pt.OptimizeJob(study())
     for progress in job:
-        if progress.stage == when and progress.evaluations >= 20:
-            job.stop()
+        while left and progress.stage == left[0] and progress.evaluations >= 20:
+            left.pop(0)
+            assert job.stop()
+    assert not left and not job.stop(), "there is nothing more to stop"
     assert not goes_on.is_set() and job.outcome.robustness is None
-    assert job.outcome.stopped is (when == "optimizing")
+    assert job.outcome.stopped is ("optimizing" in when)
     assert job.outcome.after.entropy <= job.outcome.before.entropy
     assert pt.result_dict(job.outcome)["entropy"] == job.outcome.after.entropy
     goes_on.set()
 
 
-def test_stop_keeps_the_best_so_far():
-    job = pt.OptimizeJob(study())
-    for progress in job:
-        if progress.evaluations >= 20:
+def test_stop_keeps_the_best_so_far_at_once_and_analyses_it(monkeypatch):
+    given, stopped_at, goes_on = study(), [], threading.Event()
+    goals = replace(given.search.goals, sensitivity="full")
+    job = pt.OptimizeJob(replace(given, search=replace(given.search, goals=goals)))
+    entropy = pe.Evaluator.entropy
+
+    def slow(self, *args, **kwargs):
+        if stopped_at or job.evaluations < 20:
+            return entropy(self, *args, **kwargs)
+        goes_on.wait(60.0)  # a candidate that takes a minute
+        return entropy(self, *args, **kwargs)
+
+    monkeypatch.setattr(pe.Evaluator, "entropy", slow)
+    for _ in job:
+        if job.evaluations >= 20 and not stopped_at:
+            stopped_at.append(time.monotonic())
             job.stop()
+        elif len(stopped_at) == 1:
+            stopped_at.append(time.monotonic())
+            best = job.best
     outcome = job.outcome
+    assert stopped_at[1] - stopped_at[0] < 0.2 and not goes_on.is_set()
     assert outcome.stopped and 20 <= outcome.evaluations <= 22
-    assert outcome.after.entropy <= outcome.before.entropy
+    assert outcome.after.entropy <= outcome.before.entropy and outcome.study.rig is best.rig
+    assert outcome.robustness is not None and outcome.sensitivity.endings.examined
+    goes_on.set()
 
 
 def test_a_placement_that_only_flatters_the_sample_is_not_taken(monkeypatch):

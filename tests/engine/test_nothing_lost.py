@@ -59,20 +59,33 @@ def entropy_of(path):
 SIGNALS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 
 
-def test_the_first_signal_evaluates_and_keeps_the_best(study, out):
+def test_the_first_signal_evaluates_keeps_and_analyses_the_best(study, out):
     with Command("optimize", "--no-review", study, "-o", out, *ENDLESS) as command:
         command.wait_for_better()
         command.send(signal.SIGHUP)
         assert command.end() == SIGNALS[signal.SIGHUP]
     data = result(out)
     assert data["stopped"] and data["after"]["entropy"] <= data["before"]["entropy"]
+    assert data["robustness"] is not None
 
 
-def test_the_second_signal_ends_at_once_with_the_best_kept(study, out):
+def test_the_second_signal_ends_the_analysis(study, out):
+    with Command("optimize", "--no-review", study, "-o", out, *ENDLESS, hangs=True) as command:
+        command.wait_for_better()
+        command.send(signal.SIGINT)
+        command.wait_for_stage("analysing")  # it would analyse for ever
+        command.send(signal.SIGTERM)
+        assert command.end() == SIGNALS[signal.SIGINT]
+    data = result(out)
+    assert data["stopped"] and "robustness" not in data and data["sensitivity"] is None
+
+
+def test_the_third_signal_ends_at_once_with_the_best_kept(study, out):
     with Command("optimize", "--no-review", study, "-o", out, *ENDLESS, hang_in_score=2) as command:
         command.wait_for_better()
         command.send(signal.SIGINT)
         command.wait_for_stage("scoring the result")  # it would wait there for ever
+        command.send(signal.SIGHUP)
         command.send(signal.SIGTERM)
         assert command.end() == SIGNALS[signal.SIGTERM]
     assert entropy_of(out / "study.toml") < entropy_of(study)

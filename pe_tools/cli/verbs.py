@@ -17,7 +17,7 @@ from pe_core.search.payload import keep_freed_memory
 from pe_core.study import load_study
 from pe_core.version import WEBSITE, __version__
 
-from ..jobs import front_study, read_search
+from ..jobs import read_search
 from . import exchange_verbs, run_job
 from .check_verb import add_check_options, add_requirements_verb, check
 from .command import (
@@ -144,7 +144,7 @@ def _run_job(args: argparse.Namespace) -> Answer:
     if args.study is not None:
         study = load_study(args.study)
     elif resume is not None:
-        study = front_study(resume) or read_search(resume).study
+        study = read_search(resume).study
     else:
         args.usage_error("expected STUDY, or --resume DIR")
     return run_job.run_study(with_options(study, args), args)

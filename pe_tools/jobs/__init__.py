@@ -2,10 +2,10 @@
 
 from .check_job import Checked, CheckJob
 from .checkpoint import SAVE_EVERY_S, BegunSearch, Checkpoint, FrontCheckpoint, checkpoint_of
-from .checkpoint import front_study, read_front_search, read_search, resume
+from .checkpoint import read_search, resume
 from .folder import FileSet, check_files, prepare_folder
 from .front_files import FRONT_JSON, FRONT_NAMES, FRONT_PAGE, front_dict, write_front
-from .front_job import FRONT_SEARCH, FrontJob, FrontJournals, has_front
+from .front_job import FrontJob, FrontJournals, has_front
 from .job import HistoryRow, Job, Outcome, Progress, StartEnd, best_so_far
 from .results import SearchState, add_to_result, condition_lines, files_of_other_runs, placements
 from .results import result_dict, result_names, runners_up, write_outcome

@@ -24,6 +24,7 @@ from pe_core.search import (
 from pe_core.search.build_figures import SUMS
 from pe_core.search.goals import AP, ENTROPY, PRICE
 from pe_core.study.condition_table import is_by_ap
+from pe_core.study.file_names import SEARCH
 from pe_core.study.requirement_search import constraints_of, feasible_first, is_infeasible
 from pe_core.study.study import Study
 
@@ -54,9 +55,6 @@ EVALUATIONS_A_VARIABLE, LEAST_EVALUATIONS = 25, 60
 """Evaluations of one point of the front where the study has no budget."""
 
 
-FRONT_SEARCH = "front_search.json"  # The checkpoint of a front
-
-
 class FrontJournals:
     """The journals of several searches, by the name of each; `known` are of an interrupted run."""
 
@@ -70,7 +68,7 @@ class FrontJournals:
 
     def begin(self, name: str) -> Journal:
         """Return the journal of a search that begins; it continues a known one."""
-        self._journals[name] = Journal(self._known.get(name, ()), FRONT_SEARCH)
+        self._journals[name] = Journal(self._known.get(name, ()), SEARCH)
         return self._journals[name]
 
     @property

@@ -269,6 +269,7 @@ class Job:
     def __init__(self, study: Study, workers: int | None = None) -> None:
         self.study, self.workers = study, workers
         self.outcome: Outcome | None = None
+        self.inputs: dict[str, Any] | None = None
         self.stopped = self.dropped = False
         self.parts_left = self.parts
         self.executor: Executor | None = None

@@ -172,7 +172,9 @@ def write_outcome(
         writers[HISTORY] = text.encode(errors="backslashreplace")
         for name, each in runners_up(outcome).items():
             writers[name] = study_text(each).encode()
-        writers[SEARCH] = SearchState(outcome.start, outcome.inputs).to_bytes(outcome.evaluated)
+        writers[SEARCH] = SearchState(outcome.start, outcome.inputs).to_bytes(
+            {"": outcome.evaluated}
+        )
     add_to_result(data, folder, writers, unwanted=set(BESIDE_RESULT) - set(later))
     return data
 
@@ -253,17 +255,12 @@ def _line(row: ConditionScore) -> str:
     )
 
 
-SEARCH_KIND = "search"
-
-
-def state_head(kind: str, study: Study) -> dict[str, Any]:
-    """Return what the state files of all kinds begin with: program, version, and the study."""
-    head = {PROGRAM: kind, "version": __version__, "study_sha256": fingerprint(study)}
-    return {**head, "study": study_text(study)}
+Journals = Mapping[str, Iterable[EvaluatedRig]]
+"""Entries of journals by the names of their searches; empty: that of a job with one search."""
 
 
 class SearchState:
-    """The state of a search, which is saved in its folder while the search runs. `inputs` is the
+    """The state of a job's searches, which is saved in its folder while they run. `inputs` is the
     provenance at the beginning of the search, if file names have changed since."""
 
     def __init__(self, study: Study, inputs: dict[str, Any] | None = None) -> None:
@@ -272,21 +269,33 @@ class SearchState:
     @cached_property
     def _head(self) -> dict[str, Any]:
         """The constant part of the state: cached, because it is expensive for a large mesh."""
-        inputs = self._inputs or inputs_of(self._study)
-        return {**state_head(SEARCH_KIND, self._study), "inputs": inputs}
+        return {
+            PROGRAM: "search",
+            "version": __version__,
+            "study_sha256": fingerprint(self._study),
+            "study": study_text(self._study),
+            "inputs": self._inputs or inputs_of(self._study),
+        }
 
-    def to_bytes(self, entries: Iterable[EvaluatedRig]) -> bytes:
+    def to_bytes(self, journals: Journals) -> bytes:
         """Return the content of the state file."""
-        return json.dumps({**self._head, "evaluated": list(entries)}, ensure_ascii=False).encode()
+        rows = {name: list(entries) for name, entries in journals.items()}
+        return json.dumps({**self._head, "journals": rows}, ensure_ascii=False).encode()
 
     def save(
-        self, folder: Path, best: Study, entries: Iterable[EvaluatedRig], *, meshes: bool = True
+        self,
+        folder: Path,
+        study: Study,
+        journals: Journals,
+        *,
+        own: bool = True,
+        other: bool = True,
     ) -> None:
-        """Write state and best placement into a folder. Without `meshes`, mesh and other files of
-        the study are in the folder already. The folder stays unchanged after an `InputError`: it
+        """Write the state into a folder, with the file of a study (`own`), such as the best so far,
+        and the `other` files that it names. The folder stays unchanged after an `InputError`: it
         cannot be written, or this program did not write one of the files in it."""
         with FileSet(prepare_folder(folder)) as files:
-            for name, write in study_writers(best, STUDY).items():
-                if meshes or name == STUDY:
+            for name, write in study_writers(study, STUDY).items():
+                if own if name == STUDY else other:
                     files.add(name, write)
-            files.add(SEARCH, self.to_bytes(entries))
+            files.add(SEARCH, self.to_bytes(journals))

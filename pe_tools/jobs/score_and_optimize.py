@@ -5,7 +5,7 @@ from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigEvaluator
@@ -123,7 +123,6 @@ class OptimizeJob(Job):
     ) -> None:
         super().__init__(study, workers)
         self.before, self.journal = before, journal or Journal()
-        self.inputs: dict[str, Any] | None = None
         self.round = 0
         self.history: list[HistoryRow] = []
         self.evaluations = 0

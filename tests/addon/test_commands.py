@@ -60,7 +60,7 @@ def check_resumed(blend: Path, folder: Path) -> None:
     """The search goes on from a state that a kill would leave, to the same result."""
     whole, begun = without_run(folder / "result.json"), jobs.read_search(folder)
     state = jobs.SearchState(begun.study, begun.inputs)
-    state.save(folder, begun.study, begun.evaluated[:5])
+    state.save(folder, begun.study, {"": begun.evaluated[:5]})
     answer = run_here(blend, "optimize", "--no-review", *FAST, "--resume", folder)
     assert answer.returncode == 0, answer.stderr
     assert complaints(answer) == ["pe: going on after 5 placements"]

@@ -10,6 +10,7 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_core.search import EvaluatedRig
+from pe_core.study import SEARCH
 from pe_tools import advice, jobs
 from pe_tools.cli import run_job, verbs
 from pe_tools.cli.front_text import front_summary
@@ -224,7 +225,7 @@ def test_an_interrupted_front_goes_on_to_the_same_bits(tmp_path, capsys):
     whole = json.loads(capsys.readouterr().out)
     kept = json.loads((out / "front.json").read_text())
     assert whole["kind"] == "front" and {**whole, "run": 0} == {**kept, "run": 0}
-    state = json.loads((out / jobs.FRONT_SEARCH).read_text())
+    state = json.loads((out / SEARCH).read_text())
     names = list(state["journals"])
     cut = {n: rows[: len(rows) // (k + 1)] for k, (n, rows) in enumerate(state["journals"].items())}
     assert len(names) == 3 and all(cut.values())
@@ -238,12 +239,12 @@ def test_an_interrupted_front_goes_on_to_the_same_bits(tmp_path, capsys):
     resumed["inputs"]["study"]["vehicle"] = whole["inputs"]["study"]["vehicle"]
     assert {**resumed, "run": 0} == {**whole, "run": 0}
     assert "going on after" in told.err
-    assert json.loads((out / jobs.FRONT_SEARCH).read_text()) == state
+    assert json.loads((out / SEARCH).read_text()) == state
     assert verbs.main(["optimize", file, "--seed", "5", "--resume", str(out)]) == 1
-    assert "front_search.json: study: expected the study and the" in capsys.readouterr().err
-    (out / jobs.FRONT_SEARCH).write_text("{}")
+    assert "search.json: study: expected the study and the" in capsys.readouterr().err
+    (out / SEARCH).write_text("{}")
     assert verbs.main(["optimize", file, "--resume", str(out)]) == 1
-    assert "expected the checkpoint of a front" in capsys.readouterr().err
+    assert "expected the state of a search" in capsys.readouterr().err
 
 
 CHOICES = Path(__file__).parents[2] / "blend_assets" / "choices"

@@ -143,7 +143,7 @@ def test_a_kill_at_any_moment_loses_at_most_a_round(path, tmp_path, out):
 def begun_in(folder, **changes):
     """Leave the state of a search in a folder, with other words in it."""
     study = a_study()
-    SearchState(study).save(folder, study, ())
+    SearchState(study).save(folder, study, {"": ()})
     data = json.loads((folder / SEARCH).read_text("utf-8")) | changes
     (folder / SEARCH).write_text(json.dumps(data))
     return folder
@@ -157,11 +157,11 @@ def begun_in(folder, **changes):
         ({"study": 3}, "file: expected the state of a search"),
         ({"study": "a = 1"}, "sensor: expected at least one [[sensor]], found none"),
         ({"study_sha256": "0"}, "study: expected unchanged files beside the study, found"),
-        ({"evaluated": [[1.0, "a"], [1, 2]]}, "evaluated[1]: expected an entropy, a digest"),
-        ({"evaluated": [[math.nan, "a"]]}, "file: expected valid JSON, found NaN"),
-        ({"evaluated": [[1.0, "\ud800"]]}, "file: expected valid JSON, found half a"),
+        ({"journals": {"": [[1.0, "a"], [1, 2]]}}, "evaluated[1]: expected an entropy, a digest"),
+        ({"journals": {"": [[math.nan, "a"]]}}, "file: expected valid JSON, found NaN"),
+        ({"journals": {"": [[1.0, "\ud800"]]}}, "file: expected valid JSON, found half a"),
         ({"inputs": {"study": "\udfff"}}, "file: expected valid JSON, found half a surrogate"),
-        ({"evaluated": None}, "evaluated[0]: expected an entropy, a digest, found None"),
+        ({"journals": {"": None}}, "evaluated[0]: expected an entropy, a digest, found None"),
     ],
 )
 def test_a_state_that_is_none_is_refused_in_one_line(out, changes, complaint, capsys):

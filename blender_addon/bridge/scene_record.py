@@ -28,13 +28,13 @@ from .scene_settings import (
     values_of,
     write_values,
 )
-from .search_goals import goals_of_sensors, with_starts
 from .sensor_records import (
     ModelOption,
     SensorRecord,
     bounds_of,
     record_of_object,
     record_of_sensor,
+    records_of,
     rig_of,
 )
 from .time import time_of
@@ -142,7 +142,7 @@ def record_of_scene(
         model=perception_of(settings),
         targets=targets_of(settings),
         **values_of(settings, pe.Study),
-        search=with_starts(search_of(settings, is_choice=is_choice), scene),
+        search=_with_starts(search_of(settings, is_choice=is_choice), scene),
         selection=pe.Selection(**values_of(settings, pe.Selection))
         if is_choice
         else pe.Selection(),
@@ -165,7 +165,7 @@ def study_of(record: SceneRecord) -> pe.Study:
         free={sensor.name: unlocked_axes(sensor.free, sensor.locked) for sensor in counted},
         limits=_limits(counted, mounting),
         mounting=mounting,
-        goals=goals_of_sensors(record.search.goals, counted, mounting),
+        goals=_goals_of_sensors(record.search.goals, counted, mounting),
     )
     return pe.Study(
         rig,
@@ -188,6 +188,35 @@ def _limits(
     """Return bounds by sensor; a sensor in a slot, or one that follows another, has none."""
     own = {r.name: bounds_of(r) for r in records if not mounting.unbounded(r.name)}
     return {name: bounds for name, bounds in own.items() if bounds}
+
+
+def _with_starts(settings: pe.Search, scene: Scene) -> pe.Search:
+    """Return the settings of a search with the scene's other variants as starts, if they are on."""
+    own = scene.perception_entropy
+    if not own.start_variants:
+        return settings
+    starts = [
+        search.Start(row.name, {record.name: record.pose for record in records_of(row)})
+        for row in own.variants
+        if row.key != own.variant_key
+    ]
+    goals = replace(settings.goals, starts=(*settings.goals.starts, *starts))
+    return replace(settings, goals=goals)
+
+
+def _goals_of_sensors(
+    goals: search.Goals, records: Sequence[SensorRecord], mounting: pe.Mounting
+) -> search.Goals:
+    """Return goals for these sensors: which of them stay, and starts without the others."""
+    names = {record.name for record in records}
+    followers = {pair[1] for pair in mounting.pairs}
+    followers |= {name for group in mounting.groups for name in group[1:]}
+    fixed = [r.name for r in records if r.stays and r.name not in followers]
+    starts = [
+        search.Start(start.name, {n: pose for n, pose in start.poses.items() if n in names})
+        for start in goals.starts
+    ]
+    return replace(goals, fixed=fixed, starts=starts)
 
 
 def check_scene(scene: Scene) -> None:

@@ -18,12 +18,10 @@ from . import (
     search_panels,
     selected_object,
     sensor_lists,
-    sensor_menus,
     variant_panels,
 )
 
 CLASSES = (
-    *sensor_menus.CLASSES,
     *sensor_lists.CLASSES,
     *main.CLASSES,
     *selected_object.CLASSES,
@@ -45,7 +43,7 @@ PLACES: tuple[tuple[str, Callable[..., None]], ...] = (
     ("VIEW3D_HT_header", overlay_popover.draw_in_header),
     ("TOPBAR_MT_file_export", main.draw_export),
     ("TOPBAR_MT_file_import", main.draw_import),
-    ("VIEW3D_MT_add", sensor_menus.draw_add_menu),
+    ("VIEW3D_MT_add", menus.draw_add_menu),
     ("VIEW3D_MT_object", menus.draw_object_menu),
     ("VIEW3D_MT_object_context_menu", menus.draw_context_menu),
     ("OUTLINER_MT_object", menus.draw_context_menu),

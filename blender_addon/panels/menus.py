@@ -1,7 +1,33 @@
-"""Entries in Blender's own menus: Object, its right click, and the Outliner's; F3 searches them."""
+"""Entries in Blender's own menus: Add, Object, its right click and the Outliner's; F3 searches."""
 
 import bpy
 from bpy.types import Context, UILayout
+
+from ..language import shown
+from ..operators import offers
+
+
+class PE_MT_add(bpy.types.Menu):
+    """Sensors at the 3D cursor, or on the roof; or placed by pointing"""
+
+    bl_idname = "PE_MT_add"
+    bl_label = "Perception"
+
+    def draw(self, _context: Context) -> None:
+        for offer in offers():
+            add = self.layout.operator(
+                "pe.add_sensor", text=shown(offer.label), icon="ADD", translate=False
+            )
+            add.model = offer.usual
+        self.layout.separator()
+        self.layout.operator_context = "INVOKE_DEFAULT"
+        self.layout.operator("pe.search_sensor", text="Search...", icon="VIEWZOOM")
+
+
+def draw_add_menu(menu: bpy.types.Menu, context: Context) -> None:
+    """Add (Shift A), in Object Mode."""
+    if context.mode == "OBJECT":
+        menu.layout.menu(PE_MT_add.bl_idname, icon="OUTLINER_OB_CAMERA")
 
 
 class PE_MT_object(bpy.types.Menu):
@@ -60,4 +86,4 @@ def draw_context_menu(menu: bpy.types.Menu, context: Context) -> None:
         layout.operator("pe.place_sensor", icon="RESTRICT_SELECT_OFF")
 
 
-CLASSES = (PE_MT_object,)
+CLASSES = (PE_MT_add, PE_MT_object)

@@ -1,6 +1,6 @@
 """What the design variables of one sensor mean: a pose in a box, on a surface, or in a slot.
 
-A domain has `variables`, its design variables, and `start`, their values where the search starts.
+A domain has `variables`, its design variables along `axes`, and `start`, their values at the start.
 `placed` maps values to a pose. It also returns the values after rounding, or after projection onto
 the surface: the search continues from these. `snap_to_mount` finds a pose on a mount to start from.
 """
@@ -162,24 +162,24 @@ class BoxDomain:
 
     def __init__(self, pose: Pose, bounds: Mapping[str, Bounds]) -> None:
         values, self._pose = pose_values(pose), pose
-        self._axes = tuple(axis for axis in AXES if axis in bounds)
-        self.variables = tuple(variable_of(axis, bounds[axis]) for axis in self._axes)
-        self.start = tuple(values[axis] for axis in self._axes)
+        self.axes = tuple(axis for axis in AXES if axis in bounds)
+        self.variables = tuple(variable_of(axis, bounds[axis]) for axis in self.axes)
+        self.start = tuple(values[axis] for axis in self.axes)
 
     def placed(self, values: Sequence[float]) -> tuple[Pose, tuple[float, ...]]:
         """Return the pose at these coordinates, rounded."""
-        if not self._axes:
+        if not self.axes:
             return self._pose, ()
-        moved = pose_values(self._pose) | dict(zip(self._axes, values, strict=True))
+        moved = pose_values(self._pose) | dict(zip(self.axes, values, strict=True))
         pose = pose_from_values(moved)
         rounded_values = pose_values(pose)
-        return pose, tuple(rounded_values[axis] for axis in self._axes)
+        return pose, tuple(rounded_values[axis] for axis in self.axes)
 
 
 class SlotDomain:
     """One of a list of poses; its variable is a share from 0 to 1 of the list."""
 
-    variables = (DesignVariable(0.0, 1.0, SHARE),)
+    axes, variables = ("slot",), (DesignVariable(0.0, 1.0, SHARE),)
 
     def __init__(self, who: str, mount: SlotMount, pose: Pose) -> None:
         self._slots = mount.slots
@@ -216,10 +216,11 @@ class SurfaceDomain:
     ) -> None:
         self.mount, self.surface = mount, surface
         self._standoff_point = standoff_point(mount, housing)
-        self._axes = tuple(axis for axis in AXES[3:] if axis in bounds)
+        self._angle_axes = tuple(axis for axis in AXES[3:] if axis in bounds)
+        self.axes = *POSITION_AXES, *self._angle_axes
         sides = zip(*(corner.tolist() for corner in surface.bounds), strict=True)
         variables = [variable_of(axis, side) for axis, side in zip("xyz", sides, strict=True)]
-        variables += [variable_of(axis, bounds[axis]) for axis in self._axes]
+        variables += [variable_of(axis, bounds[axis]) for axis in self._angle_axes]
         self.variables = tuple(variables)
         foot, face = surface.closest(self.base(pose))
         normal = surface.outward(face)
@@ -228,7 +229,7 @@ class SurfaceDomain:
             frame = frame_of(mount.orientation, normal)
             rpy = rpy_from_matrix(rotate(frame.T, pose.ground_from_sensor.T).T)
         self._angles = dict(zip(AXES[3:], rpy, strict=True))
-        self.start = (*foot.tolist(), *(self._angles[axis] for axis in self._axes))
+        self.start = (*foot.tolist(), *(self._angles[axis] for axis in self._angle_axes))
         if not anywhere:
             self._check_start(who, pose, bounds, foot, normal)
 
@@ -240,7 +241,7 @@ class SurfaceDomain:
         """Return the pose at the closest point of the surface, and that point."""
         foot, face = self.surface.closest(np.array(values[:3]))
         normal = self.surface.outward(face)
-        angles = {**self._angles, **dict(zip(self._axes, values[3:], strict=True))}
+        angles = {**self._angles, **dict(zip(self._angle_axes, values[3:], strict=True))}
         rpy = [angles[axis] for axis in AXES[3:]]
         pose = pose_on(self.mount, foot, normal, rpy, self._standoff_point)
         return pose, (*foot.tolist(), *values[3:])
@@ -256,7 +257,7 @@ class SurfaceDomain:
             pose, _ = self.placed(self.start)
             expected = f"a start on its mount, such as {pose_text(pose)}"
             raise InputError(who, "position", expected, pose_text(start))
-        for axis in self._axes:
+        for axis in self._angle_axes:
             low, high = bounds[axis]
             if not low - START_TURN <= self._angles[axis] <= high + START_TURN:
                 expected = f"bounds around the start, {degrees_text(self._angles[axis])}"

@@ -135,8 +135,9 @@ class Candidate:
 class Parametrization:
     """The design variables of a search, and the rigs that vectors of them stand for.
 
-    `variables` are in the rig's order of sensors; one that follows another has none. `blocks` has
-    the positions in the vector of each sensor's variables, `models` the names of their models.
+    `variables` are in the rig's order of sensors; one that follows another has none. `positions`
+    has the sensor and the axis ("slot" of a list) of each; `blocks` has the positions in the vector
+    of each sensor's variables, `models` the names of their models.
     `start` is the rig as it is, `rules` what no placement may break.
 
     `InputError` when a sensor, a part or a mount does not exist, a start is outside its bounds or
@@ -158,6 +159,7 @@ class Parametrization:
         self._domains = {each.name: _domain(each, space, surfaces) for each in free}
         self.variables = tuple(v for domain in self._domains.values() for v in domain.variables)
         self.blocks = tuple(_blocks(self._domains.values()))
+        self.positions = [(n, axis) for n, domain in self._domains.items() for axis in domain.axes]
         moved = (name for name, domain in self._domains.items() if domain.variables)
         self.models = tuple(rig[name].model.name for name in moved)
         vector = tuple(value for domain in self._domains.values() for value in domain.start)

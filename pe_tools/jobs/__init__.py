@@ -1,6 +1,6 @@
 """Jobs that score and optimize studies, their checkpoints, and the files of their results."""
 
-from .check_job import Checked, CheckJob
+from .check_job import Checked, CheckJob, SuggestJob
 from .checkpoint import SAVE_EVERY_S, BegunSearch, Checkpoint, FrontCheckpoint, checkpoint_of
 from .checkpoint import read_search, resume
 from .folder import FileSet, check_files, prepare_folder
@@ -13,7 +13,6 @@ from .score_and_optimize import OptimizeJob, ScoreJob
 from .searched_figure import SearchedFigure, searched_figure, searched_on
 from .stopping import scatter_text, stop_text, sureness_lines
 from .study_export import export_study, fingerprint, study_text, study_writers
-from .suggest_job import SuggestJob
 from .trade_off import Design, TradeOff, design_study
 from .watched_job import JobRun, JobStep, WatchedJob
 from .where_job import PLACE_FIGURES, PlaceFigure, PlaceMap, WhereJob

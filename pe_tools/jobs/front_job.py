@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import AbstractContextManager, ExitStack, nullcontext
 from dataclasses import replace
 from functools import cached_property
 
@@ -206,10 +206,12 @@ class FrontJob(Job):
             self._possible = len(wanted)
             if len(wanted) > ALL_SEARCHED_UP_TO:
                 wanted = yield from self._screened()
+            search = self._search_points if self._several else self._search_once
             for number, picks in enumerate(wanted):
                 if self.stopped:
                     break
-                yield from self._search_design(picks, number / len(wanted), 1.0 / len(wanted))
+                share = number / len(wanted), 1.0 / len(wanted)
+                yield from self._kept(picks, search(picks, *share))
         if not self._found and self._errors:
             raise next(iter(self._errors.values()))
         self.is_done = True
@@ -231,10 +233,6 @@ class FrontJob(Job):
         above = dict(zip(evaluated, above_front(figures), strict=True))
         near = [picks for picks in evaluated if above[picks] <= margin]
         return sorted(near, key=lambda p: (above[p], self._found[p][0].price, p))
-
-    def _search_design(self, picks: Picks, done: float, share: float) -> Iterator[Progress]:
-        search = self._search_points if self._several else self._search_once
-        yield from self._kept(picks, search(picks, done, share))
 
     def _kept(
         self, picks: Picks, search: Generator[Progress, None, list[Design]]
@@ -390,9 +388,8 @@ class _DesignJob(OptimizeJob):
     def _evaluator_of(self, samples: int) -> RigEvaluator:
         return self.evaluators.searching(samples)
 
-    @contextmanager
-    def _candidate_workers(self) -> Iterator[ExecutorSource]:
-        yield self._parent.helpers(self._objectives)
+    def _candidate_workers(self) -> AbstractContextManager[ExecutorSource]:
+        return nullcontext(self._parent.helpers(self._objectives))
 
     def look(self) -> Iterator[Progress]:
         """Search without scoring the start and the result."""

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Generator, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import cached_property
 from typing import NamedTuple
@@ -64,19 +64,14 @@ class ScoreJob(Job):
         figures = yield from self._figures([self.study.rig], seeing)
         verdicts = yield from self._verdicts(self.study, Progress("checking", 1.0, score.entropy))
         table = yield from self._conditions(self.study, Progress("conditions", 0.0, score.entropy))
-        if (
-            warnings is None
-            or figures is None
-            or verdicts is None
-            or (self.study.conditions and table is None)
-        ):
+        if self.dropped:
             return
         self.outcome = Outcome(
             "score",
             *(self.study, self.study, score, score),
             seconds=self.seconds,
-            warnings=(*warnings, *condition_warnings(table)),
-            verdicts=verdicts,
+            warnings=(*(warnings or ()), *condition_warnings(table)),
+            verdicts=verdicts or (),
             conditions=table,
             figures=(figures[0], figures[0]) if figures else None,
         )
@@ -310,13 +305,10 @@ class OptimizeJob(Job):
                 best = min(range(len(ended)), key=lambda k: self.ends[k].entropy)
                 self.history = self._ended = ended[best]
 
-    @contextmanager
-    def _candidate_workers(self) -> Iterator[ExecutorSource]:
-        """Yield what evaluates candidates of the search and of its analysis."""
+    def _candidate_workers(self) -> AbstractContextManager[ExecutorSource]:
+        """Return what evaluates candidates of the search and of its analysis."""
         models = (sensor.model for sensor in self.study.rig)
-
-        with candidate_workers(self, self._objectives, models) as helpers:
-            yield helpers
+        return candidate_workers(self, self._objectives, models)
 
     def _search_from(
         self, rig: Rig, objectives: list[Objective], watch: StopWatch, share: tuple[float, float]

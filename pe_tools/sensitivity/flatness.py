@@ -204,8 +204,9 @@ class Neighbourhood:
         self._leaders = {
             each.name: each.leader for each in followers(rig, space.mounting, space.vehicle)
         }
-        self._variables = {pair: number for number, pair in enumerate(self._positions())}
-        self._broken_here = self._broken(rig)
+        pairs = self._parametrization.positions
+        self._variables = {pair: number for number, pair in enumerate(pairs)}
+        self._broken_here = self._parametrization.broken(rig)
 
     def status(self, sensor: str, axis: str) -> str:
         """Return what the search does with an axis of a sensor. "free", "fixed", "linked" (it
@@ -222,7 +223,7 @@ class Neighbourhood:
         """Return the constraints that forbid a step of one sensor alone; none: it is allowed."""
         # The rules that a rig breaks and the placement does not, in their order.
         rig = lone_move(self.rig, step)
-        broken = self._broken(rig) - self._broken_here
+        broken = self._parametrization.broken(rig) - self._broken_here
         rules = [rule.text for rule in self._parametrization.rules if rule.text in broken]
         held = self._held(step)
         if held.startswith("mount"):
@@ -253,22 +254,6 @@ class Neighbourhood:
         variable = self._parametrization.variables[number]
         within = variable.low - SLACK <= vector[number] <= variable.high + SLACK
         return "" if within else f"bounds of {axis} of {sensor!r}"
-
-    def _broken(self, rig: Rig) -> frozenset[str]:
-        return self._parametrization.broken(rig)
-
-    def _positions(self) -> Iterator[tuple[str, str]]:
-        """Yield sensor and axis of each design variable, in the order of the vector."""
-        for name in (sensor.name for sensor in self.rig if sensor.name not in self._leaders):
-            bounds, mount = self._space.bounds.get(name, {}), self._space.mounting.mount_of(name)
-            axes: tuple[str, ...] = ("slot",)
-            if name in self._space.fixed:
-                axes = ()
-            elif mount is None:
-                axes = tuple(axis for axis in AXES if axis in bounds)
-            elif isinstance(mount, SurfaceMount):
-                axes = (*POSITION_AXES, *(axis for axis in AXES[3:] if axis in bounds))
-            yield from ((name, axis) for axis in axes)
 
 
 def active_constraints(

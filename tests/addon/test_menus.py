@@ -6,7 +6,7 @@ import bpy
 
 from blender_addon.engine import catalog, kinds
 from blender_addon.operators import add_sensor
-from blender_addon.panels import menus, overlay_popover, sensor_menus
+from blender_addon.panels import menus, overlay_popover
 from tests.addon import layouts, scenes
 
 
@@ -44,11 +44,11 @@ def test_a_right_click_offers_what_fits_the_object(addon):
 
 
 def test_sensors_are_in_blender_s_menu_add_and_the_view_in_its_header(car):
-    menu = layouts.drawn(sensor_menus.PE_MT_add)
+    menu = layouts.drawn(menus.PE_MT_add)
     assert menu.texts("operator") == [*(kind.label for kind in kinds.KINDS.values()), "Search..."]
     for mode, entries in (("OBJECT", ["PE_MT_add"]), ("EDIT_MESH", [])):
         layout = layouts.Layout()
-        sensor_menus.draw_add_menu(SimpleNamespace(layout=layout), SimpleNamespace(mode=mode))
+        menus.draw_add_menu(SimpleNamespace(layout=layout), SimpleNamespace(mode=mode))
         assert layout.texts("menu") == entries
     items = add_sensor._menu_items(SimpleNamespace(kind="lidar"), bpy.context)
     assert [each[0] for each in items] == catalog.names("lidar")

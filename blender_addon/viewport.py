@@ -38,12 +38,12 @@ _gradients: dict[tuple[Rgba, ...], gpu.types.GPUBatch] = {}
 _plates: dict[int, dict[str, PlateBox]] = {}
 
 
-def redraw_editors(kind: str = "VIEW_3D") -> None:
-    """Have every editor of a kind redrawn, in every window; all 3D views by default."""
+def redraw_editors() -> None:
+    """Have every 3D view redrawn, in every window."""
     for manager in bpy.data.window_managers:
         for window in manager.windows:
             for area in window.screen.areas:
-                if area.type == kind:
+                if area.type == "VIEW_3D":
                     area.tag_redraw()
 
 

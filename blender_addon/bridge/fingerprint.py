@@ -56,11 +56,6 @@ def fingerprint(
     return Fingerprint(states, repr(rest))
 
 
-def signature(scene: Scene, shape: str = "", sensors: Sequence[Object] | None = None) -> str:
-    """Return the fingerprint as a text."""
-    return fingerprint(scene, shape, sensors).text
-
-
 def _sensor_state(obj: Object, visible: bool) -> SensorState:
     if not visible:
         return ()

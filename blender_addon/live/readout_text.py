@@ -119,10 +119,10 @@ def change_text(row: search.FigureOfMerit, values: Sequence[float]) -> tuple[str
     return ARROW.join([*(text.split(" ")[0] for text in before), now]), sense
 
 
-def change_of(by: float | None, digits: int, *, lower_is_better: bool = False) -> ReadoutLine:
+def change_of(by: float | None, digits: int) -> ReadoutLine:
     """Return "(+1.2)" as a gain or a loss; nothing where the change is 0 in these digits."""
     text = "" if by is None else f"{by:+.{digits}f}"
     if by is None or not text.strip("+-0."):
         return ()
-    sense = BETTER if (by < 0.0) == lower_is_better else WORSE
+    sense = BETTER if by >= 0.0 else WORSE
     return (TextPiece(f"({text.replace('-', MINUS)})", sense),)

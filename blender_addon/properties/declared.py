@@ -1,7 +1,6 @@
 """Blender properties of settings that the engine declares: name, tooltip, range, unit and menu."""
 
 import math
-from collections.abc import Iterable
 from typing import Any, NamedTuple, cast
 
 from bpy.props import (
@@ -75,29 +74,21 @@ def _kind_of(
 
 
 def group_of(
-    cls: Any,
-    names: Iterable[str] = (),
-    *,
-    prefix: str = "",
-    own: dict[str, dict[str, Any]] | None = None,
-    **more: Any,
+    cls: Any, *, prefix: str = "", own: dict[str, dict[str, Any]] | None = None, **more: Any
 ) -> Any:
     """Return a mixin of a property group: all settings of a dataclass that the panel shows.
 
-    `names`: Only these settings; all by default.
     `prefix`: Before the properties' names.
     `own`: As of `property_of`, for single settings by their names.
     `**more`: As of `property_of`, for each of them.
     """
-    declared = studies.settings_of(cls)
-    chosen = [declared[name] for name in names or declared]
     return mixin(
         cls.__name__,
         {
             f"{prefix}{each.panel.property or each.name}": property_of(
                 each, **more | (own or {}).get(each.name, {})
             )
-            for each in chosen
+            for each in studies.settings_of(cls).values()
             if each.panel is not None
         },
     )

@@ -84,11 +84,11 @@ def names(kind: str | None = None) -> list[str]:
     return [e.name for e in entries().values() if kind in (None, e.kind)]
 
 
-def matching(typed: str, kind: str | None = None) -> list[str]:
+def matching(typed: str) -> list[str]:
     """Return the names equal to the typed text, or else those that contain it; case is ignored. A
     single result is unambiguous: only ``"Hesai QT128C2X"`` contains ``"QT128"``."""
     wanted = typed.strip().casefold()
-    containing = [name for name in names(kind) if wanted in name.casefold()] if wanted else []
+    containing = [name for name in names() if wanted in name.casefold()] if wanted else []
     exact = [name for name in containing if name.casefold() == wanted]
     return exact or containing
 

@@ -71,7 +71,7 @@ def test_impossible_focus_is_one_line_that_names_it(car, message):
         with pytest.raises(RuntimeError) as refused:
             operator()
         assert str(refused.value).strip() == f"Error: {line}"
-    assert not car.perception_entropy.has_result and bridge.signature(car)
+    assert not car.perception_entropy.has_result and bridge.fingerprint(car).text
 
 
 def test_labelled_boxes(scene, labels):
@@ -85,10 +85,10 @@ def test_labelled_boxes(scene, labels):
 
 def test_boxes_are_part_of_the_signature_when_they_are_used(scene):
     settings = scene.perception_entropy
-    road = bridge.signature(scene)
+    road = bridge.fingerprint(scene).text
     settings.boxes = "a.csv"
-    assert bridge.signature(scene) == road
+    assert bridge.fingerprint(scene).text == road
     settings.prior = "boxes"
-    first = bridge.signature(scene)
+    first = bridge.fingerprint(scene).text
     settings.boxes = "b.csv"
-    assert len({road, first, bridge.signature(scene)}) == 3
+    assert len({road, first, bridge.fingerprint(scene).text}) == 3

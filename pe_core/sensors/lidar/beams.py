@@ -56,16 +56,9 @@ class BeamField(ShortRepr):
         return Occlusion(len(self.ends), sum(by_part.values()), by_part)
 
 
-def beam_field(
-    sensor: Sensor, vehicle: Vehicle | None, directions: Floats | None = None
-) -> BeamField:
-    """Cast all beams of a LiDAR against a vehicle; None: every beam ends at its maximum range.
-
-    `directions` (B, 3) are the beams' in the ground frame, where the caller has them already.
-    """
-    if directions is None:
-        directions = beam_directions(sensor)
-    max_range = lidar_of(sensor).max_range
+def beam_field(sensor: Sensor, vehicle: Vehicle | None) -> BeamField:
+    """Cast all beams of a LiDAR against a vehicle; None: every beam ends at its maximum range."""
+    directions, max_range = beam_directions(sensor), lidar_of(sensor).max_range
     if vehicle is None:
         return BeamField(directions, np.full(len(directions), max_range), max_range)
     hits = vehicle.first_hit(sensor.pose.position, directions, sensor.model.sees_through_glass)

@@ -17,8 +17,8 @@ from .ground import difference_map, fitted_bounds, ground_map, painted_samples, 
 from .kinds import beam_budget, drawing_of, footprint_faces, footprint_lines, ring_lines
 from .png import as_bytes, png_bytes
 from .primitives import ColorKey, GroundSheet, LayerShape, Primitives, Tag, boxes_overlap, polyline
-from .sensor_images import BODY_NEAR, NO_ECHO, RANGES, camera_of, even_angles, field_colors
-from .sensor_images import hidden_lines, lidar_of, range_colors
+from .sensor_images import BODY_NEAR, NO_ECHO, RANGES, even_angles, field_colors
+from .sensor_images import hidden_lines, range_colors
 from .simplify import simplified
 from .surface_map import FORBIDDEN, colored_surface
 from .surroundings import DASH_M, GAP_M, LANE_M, LINE_M, STRONG_EVERY, surroundings

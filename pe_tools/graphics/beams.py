@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from pe_core.base.arrays import Floats, Ints
 from pe_core.scene import Sensor, Vehicle, rotate
 from pe_core.sensors import Lidar
+from pe_core.sensors.lidar.model import lidar_of
 
 from .primitives import Primitives
-from .sensor_images import lidar_of
 
 PREVIEW_BEAMS, MAX_BEAMS = 12_000, 1_500_000
 """Maximum number of beams that are cast for a preview while the sensor moves, and when idle."""

@@ -9,11 +9,12 @@ import numpy as np
 
 from pe_core.base.arrays import Floats
 from pe_core.scene import Sensor
+from pe_core.sensors.camera.model import camera_of
 
 from .beams import BeamChoice, ChannelMode, cast, free_lines, shown_beams
 from .colors import VIEWPORT, Palette, Rgba, with_alpha
 from .primitives import Primitives, fan, polyline
-from .sensor_images import camera_of, field_faces, field_footprint, field_lines
+from .sensor_images import field_faces, field_footprint, field_lines
 
 PLACES = 16  # Along each side of the picture
 MARK_SIDE = 0.06  # Half the width of the mark that says up, in lengths of the view

@@ -1,14 +1,14 @@
 """What single sensors see: ranges of a LiDAR, pixels that the body hides, fields of radars."""
 
 import math
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pe_core.base.arrays import Floats
 from pe_core.scene import Sensor, Vehicle
-from pe_core.sensors import Camera, FieldPicture, Lidar, Radar, RangePicture, Ultrasonic, kind_of
+from pe_core.sensors import FieldPicture, Radar, RangePicture, Ultrasonic, kind_of
 
 from .colors import VIRIDIS, Palette, Scale, on_scale, with_alpha
 from .primitives import Primitives, polyline
@@ -26,16 +26,6 @@ ARC_POINTS = 33  # Azimuths of an arc; one of them is the middle
 FACE_ALPHA, EDGE_ALPHA = 0.10, 0.55
 """How strong a field's area, and the arcs above and below it, are beside its middle arc."""
 LEAST_M, MOST_M = 0.1, 30.0  # Detections at the ends of the colour scale, which is logarithmic
-
-
-def lidar_of(sensor: Sensor) -> Lidar:
-    """Return the model of a sensor that is a LiDAR."""
-    return cast(Lidar, sensor.model)
-
-
-def camera_of(sensor: Sensor) -> Camera:
-    """Return the model of a sensor that is a camera."""
-    return cast(Camera, sensor.model)
 
 
 def range_colors(picture: RangePicture, far_m: float) -> NDArray[np.float32]:

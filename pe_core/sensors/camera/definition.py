@@ -34,7 +34,6 @@ rules. So they agree wherever the origin of the ground frame is:
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,7 +43,7 @@ from ...geometry.poses import Pose, dot, rotation_matrix
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle, VisibleMesh
 from .lens import Lens
-from .model import Camera
+from .model import Camera, camera_of
 
 TURN_DEG = 360.0
 ANGLE_DECIMALS = 11
@@ -375,7 +374,7 @@ def _beyond(camera: Camera, square: Floats) -> Mask:
 
 def count_pixels(sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None) -> Floats:
     """Return the pixels (V,) that cubes with centres (V, 3) and a side [m] cover: m of voxels."""
-    camera, position = cast(Camera, sensor.model), sensor.pose.position
+    camera, position = camera_of(sensor), sensor.pose.position
     offsets = offsets_of(centers, position, side)
     exact = clipped_pixel_area if camera.projection.is_straight else bent_pixel_area
     area = exact(camera, axes_of(sensor.pose), offsets, side)

@@ -8,7 +8,7 @@ block is tested, then all squares of the blocks along the edge.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,7 +42,7 @@ from .definition import (
     out_of_range,
 )
 from .grid_areas import BentPlanes, CameraPlanes
-from .model import Camera, PictureBins, picture_occlusion
+from .model import Camera, PictureBins, camera_of, picture_occlusion
 from .object_definition import BoxImages, along_camera, box_images, visible_share
 from .sample_areas import bent_pixel_areas, pixel_areas
 
@@ -68,7 +68,7 @@ class CameraGrid(GridKernel):
 
     def prepare(self, sensor: Sensor) -> ReadyCamera:
         """Prepare the measurement: the vehicle seen from the camera, and half spaces."""
-        camera, seen = cast(Camera, sensor.model), _seen(self._vehicle, sensor)
+        camera, seen = camera_of(sensor), _seen(self._vehicle, sensor)
         kind = CameraPlanes if camera.projection.is_straight else BentPlanes
         return ReadyCamera(sensor, kind(camera, sensor.pose, self._space, seen))
 
@@ -89,7 +89,7 @@ class CameraGrid(GridKernel):
 
 def sampled_pixels(sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None) -> Floats:
     """Return the areas (V,) of cubes with centres (V, 3), equal to the definition [px]."""
-    camera, seen = cast(Camera, sensor.model), _seen(vehicle, sensor)
+    camera, seen = camera_of(sensor), _seen(vehicle, sensor)
     areas = pixel_areas if camera.projection.is_straight else bent_pixel_areas
     return areas(camera, sensor.pose, centers, side, seen)
 
@@ -127,7 +127,7 @@ class PostVisibility:
     """Tests which posts a camera sees."""
 
     def __init__(self, sensor: Sensor, view: GroundView) -> None:
-        self._camera, self._view = cast(Camera, sensor.model), view
+        self._camera, self._view = camera_of(sensor), view
         self._position, self._axes = np.asarray(sensor.pose.position), axes_of(sensor.pose)
         self._seen = _seen(view.vehicle, sensor)
         self._shadow: PictureBins | None = None
@@ -206,7 +206,7 @@ class CameraObjects(ObjectKernel):
 
     def measure(self, sensor: Sensor) -> Floats:
         """Measure the objects with a camera; equal to the definition."""
-        objects, camera, axes = self._view.objects, cast(Camera, sensor.model), axes_of(sensor.pose)
+        objects, camera, axes = self._view.objects, camera_of(sensor), axes_of(sensor.pose)
         boxes = PlacedBoxes.of(objects, sensor.pose.position)
         which = np.flatnonzero(_may_be_visible(camera, axes, boxes, self._balls))
         images = box_images(camera, axes, boxes.take(which))
@@ -221,7 +221,7 @@ class CameraObjects(ObjectKernel):
         self, sensor: Sensor, axes: Floats, boxes: PlacedBoxes, which: Ints, images: BoxImages
     ) -> Floats:
         """Visible share of the images of boxes `which`."""
-        view, camera = self._view, cast(Camera, sensor.model)
+        view, camera = self._view, camera_of(sensor)
         seen = _seen(view.vehicle, sensor)
         image = images.some(shown := np.flatnonzero(images.area > 0.0))
         by_vehicle = np.full(len(image.area), seen is not None)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from .definition import axes_of, count_pixels, is_ranged, out_of_range
 from .kernels import CameraGrid, CameraGround, CameraObjects, sampled_pixels
 from .lens import COEFFICIENT, FOCAL, LENSES, PLACE, FTheta, Lens, Pinhole
 from .lens import FOV as LENS_FOV
-from .model import FOV, PIXELS, Camera, picture_occlusion, picture_patch, picture_rays
+from .model import FOV, PIXELS, Camera, camera_of, picture_occlusion, picture_patch, picture_rays
 from .object_definition import box_images, count_object_pixels
 
 LENS_KEYS = frozenset({"fx", "fy", "cx", "cy", "distortion", "fov_deg"})
@@ -143,14 +143,14 @@ def figures(camera: Camera) -> list[str]:
 def image_widths(sensor: Sensor, objects: Objects) -> Floats:
     """Measure how wide (N,) the images are in the picture, whatever hides them [px]."""
     boxes = PlacedBoxes.of(objects, sensor.pose.position)
-    found = box_images(cast("Camera", sensor.model), axes_of(sensor.pose), boxes)
+    found = box_images(camera_of(sensor), axes_of(sensor.pose), boxes)
     return np.maximum(found.high - found.low, 0.0)[:, 0]
 
 
 def missed(sensor: Sensor, center: Floats, side: float) -> str:
     """Return one of: out of range, out of view."""
     offset = np.asarray(center)[None] - np.asarray(sensor.pose.position)
-    out = out_of_range(cast("Camera", sensor.model), offset)[0]
+    out = out_of_range(camera_of(sensor), offset)[0]
     return OUT_OF_RANGE if out else OUT_OF_VIEW
 
 

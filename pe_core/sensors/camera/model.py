@@ -136,9 +136,14 @@ class Camera(SensorModel):
         return float(angles.sum())
 
 
+def camera_of(sensor: Sensor) -> Camera:
+    """Return the model of a sensor that is a camera."""
+    return cast("Camera", sensor.model)
+
+
 def picture_rays(sensor: Sensor, most: int) -> Floats:
     """(R, 3) unit directions, ground frame, through a regular raster of at most `most` pixels."""
-    camera = cast(Camera, sensor.model)
+    camera = camera_of(sensor)
     size = max(1.0, math.sqrt(camera.width * camera.height / most))
     across = min(max(1, math.floor(camera.width / size)), most)
     down = max(1, min(math.floor(camera.height / size), most // across))

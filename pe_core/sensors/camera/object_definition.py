@@ -19,7 +19,6 @@ Then rays to points on the box's sides decide, if these are in the picture and i
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,7 +41,7 @@ from .definition import (
     out_of_range,
     round_a_face,
 )
-from .model import Camera
+from .model import Camera, camera_of
 
 ImagedFaces = tuple[Ints, Floats, ImagePoints]
 """Boxes (P,), the area (P,) of a face of each, and points (P, K) that bound its image [px]."""
@@ -303,7 +302,7 @@ def count_object_pixels(
     sensor: Sensor, objects: Objects, vehicle: Vehicle | None, traffic: bool
 ) -> Floats:
     """(N,) pixels of each object's image that are in the picture and not occluded."""
-    camera, axes = cast(Camera, sensor.model), axes_of(sensor.pose)
+    camera, axes = camera_of(sensor), axes_of(sensor.pose)
     boxes = PlacedBoxes.of(objects, sensor.pose.position)
     images = box_images(camera, axes, boxes)
     area = images.area

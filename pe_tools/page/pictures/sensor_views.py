@@ -15,6 +15,8 @@ import pe_core as pe
 from pe_core import scene
 from pe_core import sensors as kinds
 from pe_core.base.arrays import Floats
+from pe_core.sensors.camera.model import camera_of
+from pe_core.sensors.lidar.model import lidar_of
 
 from ... import graphics
 from ..markup import number, signed
@@ -74,7 +76,7 @@ def _parameter_figure(sensor: pe.Sensor, _vehicle: pe.Vehicle | None) -> ViewFig
 
 def camera_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> ViewFigure:
     """Return a camera's image with a caption."""
-    camera = graphics.camera_of(sensor)
+    camera = camera_of(sensor)
     lens = camera.projection.model.replace("_", " ")
     alt = f"Image of {sensor.name}: persons on the left and cars on the right"
     caption = f"{camera.width} × {camera.height} px, {lens} lens, rendered through this lens."
@@ -83,7 +85,7 @@ def camera_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> ViewFigure:
 
 def lidar_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> ViewFigure:
     """Return a LiDAR's range image with its key and a caption."""
-    lidar = graphics.lidar_of(sensor)
+    lidar = lidar_of(sensor)
     alt = f"Ranges of {sensor.name} by azimuth: persons left of ahead and cars right of it"
     drawing = lidar_picture(sensor, vehicle).svg(alt) + range_key(lidar.max_range)
     min_range = f"{number(lidar.min_range, 1)} to " if lidar.min_range >= 0.1 else ""
@@ -97,12 +99,12 @@ def lidar_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> ViewFigure:
 def camera_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> LabelledPicture:
     """Return the image of a camera with persons and cars in front of it."""
     rays, scale = ray_camera(sensor)
-    figures = reference_figures(sensor, graphics.camera_of(sensor).hfov / 2.0, vehicle)
+    figures = reference_figures(sensor, camera_of(sensor).hfov / 2.0, vehicle)
     solids = [] if vehicle is None else [painted_vehicle(vehicle)]
     road = RayScene([*solids, *(target.painted for target in figures)], vehicle is not None)
     image = render(rays, road, _road_environment(sensor))
     png = graphics.png_bytes(graphics.as_bytes(image))
-    lens, labels = graphics.camera_of(sensor).projection, []
+    lens, labels = camera_of(sensor).projection, []
     for target in figures:  # labels are above heads and roofs, where these are in the image
         offset = np.subtract(target.top, sensor.pose.position)[None]
         ahead, left, up = scene.rotate(sensor.pose.ground_from_sensor.T, offset).T
@@ -115,7 +117,7 @@ def camera_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> LabelledPic
 
 def ray_camera(sensor: pe.Sensor) -> tuple[RayCamera, float]:
     """Return the rays of a camera's image, reduced to the page's size, and the scale of it."""
-    camera = graphics.camera_of(sensor)
+    camera = camera_of(sensor)
     scale = min(1.0, MAX_WIDTH / camera.width, MAX_HEIGHT / camera.height)
     width, height = (max(1, round(n * scale)) for n in (camera.width, camera.height))
     across, down = camera.width / width, camera.height / height
@@ -161,7 +163,7 @@ def _road_environment(sensor: pe.Sensor) -> Environment:
 
 def lidar_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> LabelledPicture:
     """Return the ranges of a LiDAR with persons and cars in front of it."""
-    lidar = graphics.lidar_of(sensor)
+    lidar = lidar_of(sensor)
     half = min(FIGURES_RAD, (lidar.horizontal_fov[1] - lidar.horizontal_fov[0]) / 2.0)
     figures = reference_figures(sensor, half, vehicle)
     joint = None

@@ -255,7 +255,7 @@ def _line(row: ConditionScore) -> str:
     )
 
 
-Journals = Mapping[str, Iterable[EvaluatedRig]]
+EntriesOfSearches = Mapping[str, Iterable[EvaluatedRig]]
 """Entries of journals by the names of their searches; empty: that of a job with one search."""
 
 
@@ -277,7 +277,7 @@ class SearchState:
             "inputs": self._inputs or inputs_of(self._study),
         }
 
-    def to_bytes(self, journals: Journals) -> bytes:
+    def to_bytes(self, journals: EntriesOfSearches) -> bytes:
         """Return the content of the state file."""
         rows = {name: list(entries) for name, entries in journals.items()}
         return json.dumps({**self._head, "journals": rows}, ensure_ascii=False).encode()
@@ -286,7 +286,7 @@ class SearchState:
         self,
         folder: Path,
         study: Study,
-        journals: Journals,
+        journals: EntriesOfSearches,
         *,
         own: bool = True,
         other: bool = True,

@@ -14,6 +14,8 @@ demo: .venv/run.stamp  ## better places for a LiDAR and a camera on a sedan: a p
 
 # Tests start more than a hundred processes: each would compile the engine anew if none may keep it.
 test: export PYTHONDONTWRITEBYTECODE =
+# Its threads wait busily for each other, and no test computes what they would make faster.
+test: export OPENBLAS_NUM_THREADS = 1
 test: .venv/dev.stamp  ## run all tests; ARGS="tests/engine -k prior" for some
 	@$(PYTHON_VENV) -m pytest $(ON_ALL_PROCESSORS) $(or $(ARGS),tests)
 

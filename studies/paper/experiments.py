@@ -100,10 +100,10 @@ FULL = Effort(
 )
 """The paper's schedule, scored on the whole grid."""
 QUICK = Effort(
-    samples=32_768,
-    candidates=16,
-    search_samples=8_192,
-    pilot_candidates=16,
+    samples=16_384,
+    candidates=6,
+    search_samples=4_096,
+    pilot_candidates=4,
     seeds=(0,),
     rows=WITH_ROAD_PRIOR,
     starts=("roof", "diagonal", "front"),

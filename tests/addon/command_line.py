@@ -17,7 +17,7 @@ from tests.limits import HANG_S
 
 ROOT = Path(__file__).resolve().parents[2]
 FAST = (
-    *("--samples", "4096", "--search-samples", "4096"),
+    *("--samples", "1024", "--search-samples", "1024"),
     *("--method", "random", "--candidates", "2", "--seed", "3"),
 )
 

@@ -1,13 +1,14 @@
 """What the add-on's modules may import, held against every import."""
 
 import ast
-import functools
+import graphlib
 import itertools
 import re
 from pathlib import Path
 
 import blender_addon
 from blender_addon import engine
+from tests.engine.source_trees import imported, nodes_of, tree_of
 
 ROOT = Path(blender_addon.__file__).parent
 PACKAGE = "blender_addon"
@@ -110,29 +111,9 @@ def unit_of(name):
     return max(units, key=len, default=name)
 
 
-@functools.cache
-def nodes_of(source):
-    """Every node of a source's syntax tree; parsed once however many tests ask."""
-    return tuple(ast.walk(ast.parse(source)))
-
-
-def imports(name, path):
-    """Yield the full name of everything a file imports, inside functions too: modules and names."""
-    package = [PACKAGE, *([] if name == "__init__" else name.split("."))]
-    if path.name != "__init__.py":
-        package = package[:-1]
-    for node in nodes_of(path.read_text("utf-8")):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            start = package[: len(package) - node.level + 1] if node.level else []
-            module = [*start, *(node.module.split(".") if node.module else [])]
-            yield from (".".join([*module, alias.name]) for alias in node.names)
-
-
-def imported_files(name, path):
+def imported_files(path, root=ROOT.parent):
     """Yield the names of the add-on's own files that a file imports."""
-    for full in imports(name, path):
+    for full in imported(path, root):
         top, _, inner = full.partition(".")
         if top == PACKAGE:
             while inner and inner not in FILES:
@@ -142,9 +123,7 @@ def imported_files(name, path):
 
 def edges():
     """All (from, to) between lines of the table."""
-    pairs = {
-        (unit_of(n), unit_of(to)) for n, path in FILES.items() for to in imported_files(n, path)
-    }
+    pairs = {(unit_of(n), unit_of(to)) for n, path in FILES.items() for to in imported_files(path)}
     return {(a, b) for a, b in pairs if a != b}
 
 
@@ -166,33 +145,29 @@ def test_the_page_has_a_row_for_each_line_of_the_table():
 
 
 def test_arrows_point_one_way():
-    left = {unit: set(to) for unit, to in ALLOWED.items()}
-    while left:
-        leaves = {unit for unit, to in left.items() if not to & set(left)}
-        assert leaves, f"a circle among {sorted(left)}"
-        left = {unit: to for unit, to in left.items() if unit not in leaves}
+    graphlib.TopologicalSorter(ALLOWED).prepare()
 
 
 def test_imports_are_seen_wherever_they_stand(tmp_path):
     """The test above is worth what it sees: inside functions, and by every way to write them."""
-    path = tmp_path / "job.py"
+    path = tmp_path / PACKAGE / "operators" / "job.py"
+    path.parent.mkdir(parents=True)
     path.write_text(
         "from .. import result_staleness as s, bridge\n"
         "from ..overlay import draw_handler\n"
         "def f():\n    from . import running_job\n    import blender_addon.overlay.labels\n"
     )
-    found = list(imported_files("operators.job", path))
     expected = ["result_staleness", "bridge", "overlay.draw_handler"]
     expected += ["operators.running_job", "overlay.labels"]
-    assert found == expected
-    (tmp_path / "__init__.py").write_text("from .rig import x\nfrom ..engine import pe\n")
-    found = list(imported_files("bridge", tmp_path / "__init__.py"))
-    assert found == ["bridge.rig", "engine"]
+    assert list(imported_files(path, tmp_path)) == expected
+    face = path.with_name("__init__.py")
+    face.write_text("from .job import x\nfrom ..engine import pe\n")
+    assert list(imported_files(face, tmp_path)) == ["operators", "engine"]
 
 
 def packages_imported(name):
     """The top-level packages that a file imports."""
-    return {full.partition(".")[0] for full in imports(name, FILES[name])}
+    return {full.partition(".")[0] for full in imported(FILES[name])}
 
 
 def test_the_bridge_is_taken_by_its_face():
@@ -200,7 +175,7 @@ def test_the_bridge_is_taken_by_its_face():
         f"{name}: {to}"
         for name, path in FILES.items()
         if unit_of(name) != "bridge"
-        for to in imported_files(name, path)
+        for to in imported_files(path)
         if to.startswith("bridge.")
     ]
     assert not offenders
@@ -245,16 +220,16 @@ ARRAY_TYPES = {"Flags", "Floats", "Ints", "Singles"}
 """Types of arrays: every module's annotations name them."""
 
 
-def beside_the_faces(source):
+def beside_the_faces(tree):
     """Yield what a source takes from the engine that no room shows."""
     taken = {
         alias.asname or alias.name: alias.name
-        for node in nodes_of(source)
+        for node in nodes_of(tree)
         if isinstance(node, ast.ImportFrom) and node.module == "engine"
         for alias in node.names
     }
     yield from set(taken.values()) - set(rooms()) - ARRAY_TYPES
-    for node in nodes_of(source):
+    for node in nodes_of(tree):
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
             room = rooms().get(taken.get(node.value.id))
             if room is not None and node.attr not in public_names(room):
@@ -265,11 +240,11 @@ def test_only_the_faces_of_rooms_are_used():
     offenders = {
         name: found
         for name, path in FILES.items()
-        if (found := sorted(beside_the_faces(path.read_text("utf-8"))))
+        if (found := sorted(beside_the_faces(tree_of(path))))
     }
     assert not offenders
 
 
 def test_the_rule_of_faces_catches_what_goes_deeper():
     source = "from .engine import pe, bogus\npe.Study, pe.nothing_of_the_kind\n"
-    assert sorted(beside_the_faces(source)) == ["bogus", "pe_core.nothing_of_the_kind"]
+    assert sorted(beside_the_faces(ast.parse(source))) == ["bogus", "pe_core.nothing_of_the_kind"]

@@ -23,6 +23,7 @@ def finished(work):
 
 
 def test_what_a_search_cost_is_stored_and_shown(car):
+    car.perception_entropy.score_samples = car.perception_entropy.search_samples = 1024
     expected = finished(pt.OptimizeJob(scenes.study()))
     assert bpy.ops.pe.optimize() == {"FINISHED"}
     settings = car.perception_entropy

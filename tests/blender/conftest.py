@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.blender.runner import Blender, Installed, output_of
-from tests.blender.stage import TOOLS, Stage
+from tests.blender.stage import TOOLS, WIDTH, Stage
 from tests.limits import HANG_S
 from tests.needed import unavailable
 
@@ -73,9 +73,13 @@ bpy.context.preferences.view.smooth_view = 0
 
 QUICK_SCORE = """
 window.scene.perception_entropy.score_samples = 16_384
+space = area.spaces.active
+for each in ("floor", "axis_x", "axis_y", "outline_selected", "relationship_lines", "cursor"):
+    setattr(space.overlay, "show_" + each, False)
+space.shading.light, space.shading.show_object_outline = "FLAT", False
 bpy.ops.ed.undo_push(message="before the test")
 """
-"""What is scored is no subject of a windowed test, but that it is."""
+"""Few samples, and of the view's own decoration nothing: software draws it, pixel by pixel."""
 
 
 class SharedWindow:
@@ -92,7 +96,7 @@ class SharedWindow:
     def begin(self) -> Stage:
         """Return the window, showing the file as it was saved."""
         if self._stage is None:
-            self._stage = Stage(self._new_folder())
+            self._stage = Stage(self._new_folder(), WIDTH)
             self._stage.open(self._installed, self._blend)
             self._stage.do(PLAIN_DRAWING)
         else:

@@ -20,7 +20,8 @@ from tests.blender.runner import Installed
 from tests.limits import patience
 
 TOOLS = ("Xvfb", "xdotool", "import")
-WIDTH, HEIGHT = 1600, 900
+WIDTH, HEIGHT = 1120, 900
+"""Of a test's window: software draws it, pixel by pixel."""
 STARTUP = Path(__file__).resolve().parent / "inside_window.py"
 
 SCREEN_TIMEOUT_S = 20
@@ -49,8 +50,8 @@ STEPS = 14
 class Stage:
     """One screen with one Blender on it; call `close` whatever happened."""
 
-    def __init__(self, folder: Path):
-        self.folder = folder
+    def __init__(self, folder: Path, width: int = 1600):
+        self.folder, self.width = folder, width
         self.log = folder / "window.log"
         self._processes: list[subprocess.Popen] = []
         self._env: dict[str, str] = {}
@@ -61,7 +62,7 @@ class Stage:
         self._env = {"DISPLAY": self._start_screen(), "LIBGL_ALWAYS_SOFTWARE": "1"}
         blender = installed.blender
         command = [blender.command, *installed.START, "--window-geometry", "0", "0"]
-        command += [str(WIDTH), str(HEIGHT), str(blend)]
+        command += [str(self.width), str(HEIGHT), str(blend)]
         command += ["--python-exit-code", "3", "--python", str(STARTUP), "--", str(self.folder)]
         self._processes.append(process.start(command, self.log, {**blender.env, **self._env}))
         self.wait_for(lambda: (self.folder / "ready.json").exists(), READY_TIMEOUT_S, "its window")
@@ -111,7 +112,7 @@ class Stage:
 
     def point_at_view(self) -> None:
         """Move the mouse into the 3D view, where keys are the scene's."""
-        self._move(WIDTH // 3, HEIGHT - HEIGHT // 5)
+        self._move(self.width // 3, HEIGHT - HEIGHT // 5)
 
     def key(self, *names: str) -> None:
         """Press keys by their X names: ``Return``, ``ctrl+z``."""
@@ -306,7 +307,7 @@ class Stage:
     def _start_screen(self) -> str:
         """Start an X server on a display that is free, by its own choice."""
         reader, writer = os.pipe()
-        command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", f"{WIDTH}x{HEIGHT}x24"]
+        command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", f"{self.width}x{HEIGHT}x24"]
         command += ["-nolisten", "tcp"]
         server = process.start(command, self.folder / "screen.log", pass_fds=[writer])
         self._processes.append(server)

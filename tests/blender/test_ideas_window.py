@@ -1,12 +1,23 @@
-"""Variants and a place asked about, in a real window: by clicks and keys alone."""
+"""Variants, a place asked about and what mends it, in a real window: by clicks and keys alone."""
 
 from tests.blender.stage import HEIGHT, WIDTH
 
 EFFECT_TIMEOUT_S = 120
 ANSWER_TIMEOUT_S = 90
+OFFERS = (
+    "__import__('bl_ext.user_default.perception_entropy.where_map', fromlist=['offers'])"
+    ".offers.get(bpy.context.window_manager.windows[0].scene.name)"
+)
+BLIND = (0.4, 1.7, 0.0)
+PROMISED = f"""
+own = {OFFERS}.found
+kept["number"] = [each.added for each in own].index(True)
+kept["at"] = [list(each.rig[each.moved[0]].pose.position) for each in own]
+kept["moved"] = [each.moved[0] for each in own]
+"""
 
 
-def test_save_move_come_back_and_ask_the_ground_by_clicks(window, screenshots):
+def test_save_move_come_back_ask_the_ground_and_mend_what_is_blind_by_clicks(window, screenshots):
     start = window.state["places"]
     window.press_until(
         "pe.save_variant", lambda: window.state["variants"] == ["Variant"], "a variant"
@@ -41,12 +52,27 @@ def test_save_move_come_back_and_ask_the_ground_by_clicks(window, screenshots):
     first = window.state["answer"]
     assert "up: seen by" in first[0]
     assert any(name in line for line in first for name in window.state["sensors"])
-    window.click(WIDTH // 2, HEIGHT - HEIGHT // 6)  # it goes on asking
+    window.click(*window.place_of(BLIND))  # it goes on asking
     window.wait_for(lambda: window.state["answer"] != first, ANSWER_TIMEOUT_S, "another answer")
     window.screenshot(screenshots / "window_place.png")
-
+    window.wait_until(f"{OFFERS} and {OFFERS}.found", EFFECT_TIMEOUT_S)
+    second = window.state["answer"]
     window.point_at_view()
     window.key("Escape")
-    second = window.state["answer"]
-    assert second != first
+    window.screenshot(screenshots / "window_suggest.png")
+    assert window.state["answer"] == second != first
+
+    before, told = window.state["sensors"], window.do(PROMISED)
+    words = f"number={told['number']}" if told["number"] else ""  # else the first button
+    window.press("pe.take_suggestion", words)
+    window.wait_for(
+        lambda: len(window.state["sensors"]) == len(before) + 1, EFFECT_TIMEOUT_S, "the sensor"
+    )
+    (added,) = set(window.state["sensors"]) - set(before)
+    place = zip(window.state["places"][added], told["at"][told["number"]], strict=False)
+    assert max(abs(a - b) for a, b in place) < 1e-4
+    window.screenshot(screenshots / "window_suggest_taken.png")
+    window.point_at_view()
+    window.key("ctrl+z")
+    window.wait_for(lambda: window.state["sensors"] == before, EFFECT_TIMEOUT_S, "undo")
     assert "Traceback" not in window.log.read_text()

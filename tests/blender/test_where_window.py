@@ -1,5 +1,7 @@
 """*Where?* in a real window: colours on the body, and a click that places the sensor."""
 
+from tests.blender.stage import WIDTH
+
 EFFECT_TIMEOUT_S, PLACES_TIMEOUT_S = 60, 150
 FOUND = (
     "__import__('bl_ext.user_default.perception_entropy.where_map', fromlist=['maps'])"
@@ -16,9 +18,10 @@ kept["point"], kept["at"] = list(seen.point), list(seen.pose.position)
 
 def test_the_body_is_coloured_and_a_click_places_the_sensor(window, screenshots):
     before = window.state["sensors"]
+    window.do('bpy.context.window_manager.operator_properties_last("pe.where").places = 400')
     window.press("pe.where")
     window.settle()
-    window.point_at(1330, 213)  # the dialog's title: over a field Return would edit it
+    window.point_at(WIDTH - 270, 213)  # the dialog's title: over a field Return would edit it
     window.mouse("key", "Return")
     window.wait_until(f"{FOUND} and {FOUND}.error is not None", PLACES_TIMEOUT_S)
     window.screenshot(screenshots / "window_where.png", aside=False)

@@ -23,3 +23,21 @@ def tree_of(path: Path) -> ast.Module:
 def modules_of(folder: Path) -> tuple[Path, ...]:
     """The Python files below a folder, in order."""
     return tuple(sorted(folder.rglob("*.py")))
+
+
+@cache
+def nodes_of(tree: ast.AST) -> tuple[ast.AST, ...]:
+    """Every node of a syntax tree; walked once however many tests ask."""
+    return tuple(ast.walk(tree))
+
+
+def imported(path: Path, root: Path = ROOT):
+    """Full dotted names of all that a file imports, inside functions too."""
+    package = path.relative_to(root).parts[:-1]
+    for node in nodes_of(tree_of(path)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            start = package[: len(package) - node.level + 1] if node.level else ()
+            module = [*start, *(node.module.split(".") if node.module else [])]
+            yield from (".".join([*module, alias.name]) for alias in node.names)

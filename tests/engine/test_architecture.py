@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 import pe_core
-from tests.engine.source_trees import modules_of, tree_of
+from tests.engine.source_trees import imported, modules_of, nodes_of, tree_of
 
 CHECKOUT = Path(pe_core.__file__).parent.parent
 ROOMS = {
@@ -103,24 +103,6 @@ def files(*packages):
 def nodes(path):
     """Every node of a file's syntax tree."""
     return nodes_of(tree_of(path))
-
-
-@functools.cache
-def nodes_of(tree):
-    """Every node of a syntax tree; walked once however many tests ask."""
-    return tuple(ast.walk(tree))
-
-
-def imported(path, root=CHECKOUT):
-    """Full dotted names of all that a file imports, inside functions too."""
-    package = path.relative_to(root).parts[:-1]
-    for node in nodes(path):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            start = package[: len(package) - node.level + 1] if node.level else ()
-            module = [*start, *(node.module.split(".") if node.module else [])]
-            yield from (".".join([*module, alias.name]) for alias in node.names)
 
 
 def room_of(path, root=CHECKOUT):

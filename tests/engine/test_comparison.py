@@ -34,10 +34,17 @@ def score(entropy, coverage=0.5, own=None, sample="one", stderr=0.03):
 
 @pytest.mark.parametrize(
     "studies, degrees, factor",
-    [(1, 15, 2.1314), (2, 15, 2.1314), (3, 15, 2.6937), (6, 15, 3.4837), (2, 31, 2.0395)],
+    [
+        (1, 15, 2.1314),
+        (2, 15, 2.1314),
+        (3, 15, 2.6937),
+        (6, 15, 3.4837),
+        (2, 31, 2.0395),
+        (1, 4, 2.7764),
+    ],
 )
 def test_the_factor_is_student_s_t_shared_by_all_pairs(studies, degrees, factor):
-    """Tables of t: two-sided, 5 % divided by 1, 1, 3, 15 and 1 pairs."""
+    """Tables of t: two-sided, 5 % divided by 1, 1, 3, 15, 1 and 1 pairs."""
     assert sure_factor(studies, degrees) == pytest.approx(factor, abs=2e-3)
 
 

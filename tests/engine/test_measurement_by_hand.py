@@ -7,6 +7,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.sensors import LIDAR as LIDAR_KIND
+from pe_core.sensors import kind_of
 from pe_core.sensors.camera.definition import frustum_distance
 from pe_core.sensors.camera.sample_areas import pixel_areas
 from tests.engine import shapes
@@ -263,6 +264,8 @@ def test_what_kinds_of_sensors_have_in_common():
     rig = pe.Rig([pe.Sensor(n, m) for n, m in zip("abcd", models, strict=True)])
     groups = [[s.name for s in members] for members in rig.groups.values()]
     assert groups == [["a", "b"], ["c"], ["d"]]
+    ahead = pe.catalog.load("Hesai ATX")
+    assert kind_of(ahead).summary(ahead) == "250 channels, 120 x 20 deg, 230 m"
 
 
 LIDAR = {"kind": "lidar", "elevations_deg": [-10, 0.5], "azimuth_step_deg": 0.7, "max_range_m": 80}

@@ -78,9 +78,12 @@ def test_a_camera_looks_along_its_own_minus_z_with_y_up(scene):
     assert wide == pytest.approx(math.radians(70.0))
 
 
-def test_the_vehicle_s_triangles_are_all_there(scene):
+def test_the_vehicle_s_triangles_and_rear_axle_are_there(scene):
     document, data = scene
     body = next(m for m in document["meshes"] if m["name"] == "body")["primitives"][0]
+    assert document["materials"][body["material"]]["name"] == "body"
+    _, axle = in_world(document)["Grp_Rear_Axle_Center"]
+    assert OURS_FROM_GLTF @ axle == pytest.approx((-1.3, 0.0, 0.32))
     corners = []
     for key, kind, width in (
         (body["attributes"]["POSITION"], "<f4", 3),

@@ -6,11 +6,16 @@ import json
 import runpy
 import sys
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import SimpleNamespace
 from unittest import mock
 
 import pytest
+
+from pe_core import InputError
+from pe_core.search.key_figures import KeyFigures
+from studies import results_file
 
 ROOT = Path(__file__).parents[2]
 
@@ -42,11 +47,23 @@ def numbers(data):
     return [data] if isinstance(data, (int, float)) and not isinstance(data, bool) else []
 
 
-@pytest.fixture(scope="session")
-def quick(tmp_path_factory):
-    """The folder, the data and the run of ``python -m studies.paper --quick``."""
-    folder = tmp_path_factory.mktemp("reproduction")
-    run = study("paper", "--quick", "--output", folder)
+def no_figures(*_):
+    """In place of key figures, which take longer than a short search, and which no study reads."""
+    raise InputError("space", "z", "the ground", "none")
+
+
+def quick_run(name, folder):
+    """The folder, the data and the run of a study's ``--quick``, its tasks in this process."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(results_file, "Processes", lambda _: ThreadPoolExecutor(1))
+        patch.setattr(KeyFigures, "of_rig", no_figures)
+        run = study(name, "--quick", "--output", folder)
     assert run.returncode == 0, run.stdout + run.stderr
     data = json.loads((folder / "results.json").read_text("utf-8"))
     return SimpleNamespace(folder=folder, data=data, run=run)
+
+
+@pytest.fixture(scope="module")
+def quick(request, tmp_path_factory):
+    """The quick run of the study that the module names."""
+    return quick_run(request.module.STUDY, tmp_path_factory.mktemp("quick"))

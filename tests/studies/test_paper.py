@@ -18,6 +18,7 @@ from tests.studies.conftest import ROOT, numbers, study
 
 DOCS = ROOT / "docs" / "reproduction"
 COMMITTED = json.loads((DOCS / "results.json").read_text("utf-8"))
+STUDY = "paper"
 PRIORS = ("road", "uniform", "highway")
 
 

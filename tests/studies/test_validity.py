@@ -2,7 +2,6 @@
 
 import json
 import math
-from types import SimpleNamespace
 
 import pytest
 
@@ -13,15 +12,7 @@ from studies.published.scores import CLEAN, DEGREES, RADIANS, box_triangles, pap
 from studies.published.tasks import QUICK, plan
 from tests.studies.conftest import ROOT, study
 
-
-@pytest.fixture(scope="session")
-def quick(tmp_path_factory):
-    """The folder, the data and the run of ``python -m studies.published --quick``."""
-    folder = tmp_path_factory.mktemp("validity")
-    run = study("published", "--quick", "--output", folder)
-    assert run.returncode == 0, run.stdout + run.stderr
-    data = json.loads((folder / "results.json").read_text("utf-8"))
-    return SimpleNamespace(folder=folder, data=data, run=run)
+STUDY = "published"
 
 
 def test_placements_are_the_published_ones():

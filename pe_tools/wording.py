@@ -2,7 +2,7 @@
 here for the texts."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from typing import Any
 
 from pe_core.scoring.requirements import Reason, VerdictSummary
@@ -45,14 +45,13 @@ def joined(texts: Sequence[str]) -> str:
     return f"{', '.join(texts[:-1])} and {texts[-1]}"
 
 
-def aligned(table: Sequence[Sequence[str]], texts: int | None = None) -> list[str]:
-    """Return rows of cells as lines: the first `texts` columns (default: all) to the left. Other
-    columns are to the right."""
+def aligned(table: Sequence[Sequence[str]], figures: Container[int] = ()) -> list[str]:
+    """Return rows of cells as lines: columns of `figures` to the right, all others to the left."""
     widths = [max(map(len, column)) for column in zip(*table, strict=True)]
     lines = []
     for cells in table:
         each = enumerate(zip(cells, widths, strict=True))
-        padded = (c.ljust(w) if texts is None or k < texts else c.rjust(w) for k, (c, w) in each)
+        padded = (c.rjust(w) if k in figures else c.ljust(w) for k, (c, w) in each)
         lines.append("  ".join(padded).rstrip())
     return lines
 

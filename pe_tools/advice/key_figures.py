@@ -10,7 +10,7 @@ from pe_core.scoring.score import FAR_M, NEAR_M, Score
 from pe_core.search.build_figures import ALONE, BUILD_FIGURES
 from pe_core.search.goals import PRICE
 from pe_core.search.key_figures import KeyFigures
-from pe_tools.wording import percent
+from pe_tools.wording import aligned, percent
 
 from .mount_checks import occluded_shares
 from .summary import SIDES, Outlook
@@ -89,15 +89,7 @@ def sensor_rows(
 
 def sensor_table(rows: Sequence[SensorRow]) -> list[str]:
     """Return rows as aligned lines of text under a header."""
-    table = [SENSOR_COLUMNS, *(row.cells for row in rows)]
-    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-    return [
-        "  ".join(
-            cell.rjust(width) if k == 1 else cell.ljust(width)
-            for k, (cell, width) in enumerate(zip(cells, widths, strict=True))
-        ).rstrip()
-        for cells in table
-    ]
+    return aligned([SENSOR_COLUMNS, *(row.cells for row in rows)], (1,))
 
 
 def loss_text(loss: float | None) -> str:

@@ -17,7 +17,8 @@ from pe_core.scoring.score import (
     PartScore,
     Score,
 )
-from pe_core.scoring.sight import BLIND_TO_M, BlindGround, Reach, Sight, VisibleShares, shown_end
+from pe_core.scoring.sight import BlindGround, Reach, Sight, VisibleShares, shown_end
+from pe_core.search.key_figures import blind_height
 from pe_tools.wording import percent
 
 from .advice import Advice
@@ -109,10 +110,8 @@ class Outlook:
 def outlook(sight: Sight, rig: Rig, class_name: str | None = None) -> Outlook:
     """Compute the outlook of a rig; for the class of the reach see `class_of`."""
     name = class_of(sight.prior, class_name)
-    height = max(BLIND_TO_M, sight.space.z[0])
-    return Outlook(
-        sight.expected_ap(rig), sight.shares(rig), sight.reach(rig, name), sight.blind(rig, height)
-    )
+    seen = sight.expected_ap(rig), sight.shares(rig), sight.reach(rig, name)
+    return Outlook(*seen, sight.blind(rig, blind_height(sight)))
 
 
 def class_of(prior: Prior, name: str | None) -> str:

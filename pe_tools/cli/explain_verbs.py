@@ -47,7 +47,8 @@ def comparison(names: Sequence[str], rows: Sequence[ComparedRow]) -> list[str]:
         if own:
             table.append([title, *[""] * len(heads)])
         table += [[f"  {row_name(r)}", *(_cell(r, k) for k in range(len(heads)))] for r in own]
-    return [*aligned(table, 1), f"{BEST} best; in brackets the difference to {heads[0]}"]
+    lines = aligned(table, range(1, len(table[0])))
+    return [*lines, f"{BEST} best; in brackets the difference to {heads[0]}"]
 
 
 def row_name(row: ComparedRow) -> str:

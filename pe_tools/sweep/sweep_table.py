@@ -100,7 +100,7 @@ def table_lines(rows: Sequence[SweepRow], kind: str) -> list[str]:
         best = BEST if row.ap is not None and row.ap == highest else " "
         aps = [_figure(row.ap_before), f"{_figure(row.ap)}{best}"] * (highest is not None)
         table.append([*named, *before, entropy, coverage, *aps])
-    return aligned(table, texts)
+    return aligned(table, range(texts, len(table[0])))
 
 
 def _figure(value: float | None) -> str:

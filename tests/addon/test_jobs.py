@@ -14,12 +14,7 @@ from blender_addon.engine import pe
 from blender_addon.operators import declared, jobs, running_job
 from blender_addon.panels import main
 from tests.addon import layouts, scenes
-
-
-def finished(work):
-    for _ in work:
-        pass
-    return work.outcome
+from tests.engine.processes import finished
 
 
 def test_what_a_search_cost_is_stored_and_shown(car):

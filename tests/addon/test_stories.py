@@ -15,16 +15,10 @@ from blender_addon.engine import exchange, jobs, outputs, page, pe, text
 from blender_addon.operators import compare_variants
 from blender_addon.panels import main
 from tests.addon import layouts, scenes
+from tests.engine.processes import finished
 
 PUCK = "Velodyne VLP-16 Puck"
 CAMERA = "Camera 60 deg"
-
-
-def finished(job):
-    """Run a job to its end; return its outcome."""
-    for _ in job:
-        pass
-    return job.outcome
 
 
 def without_run(data: dict) -> dict:

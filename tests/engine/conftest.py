@@ -8,10 +8,13 @@ from types import SimpleNamespace
 
 import pytest
 
+import pe_core as pe
+import pe_tools as pt
 from pe_core.base.errors import InputError
 from pe_core.base.plugins import GROUP
 from pe_tools.advice import KeyFigures
 from pe_tools.outputs import scene_outputs
+from tests.engine import shapes
 from tests.few_errors import few_errors
 
 __all__ = ["few_errors"]
@@ -48,6 +51,24 @@ def no_key_figures(monkeypatch):
         raise InputError("space", "z", "the ground", "none")
 
     monkeypatch.setattr(KeyFigures, "of_rig", none)
+
+
+@pytest.fixture
+def study(tmp_path):
+    """A study file of a LiDAR on a box car, whose place and pitch a short search may change."""
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
+    search = pe.Search(
+        {"roof": ("x", "z", "pitch")}, {}, 3, 2048, pe.Schedule(candidates=4), method="random"
+    )
+    path = tmp_path / "car.toml"
+    pt.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search), path)
+    return path
+
+
+@pytest.fixture
+def out(tmp_path):
+    """A folder for results that is not there yet."""
+    return tmp_path / "out"
 
 
 CHECKOUT = Path(__file__).parents[2]

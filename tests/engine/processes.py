@@ -63,6 +63,13 @@ def pe(*arguments):
     return SimpleNamespace(returncode=status, stdout=out.getvalue(), stderr=err.getvalue() + said)
 
 
+def finished(job):
+    """Drive a job to its end; return its outcome."""
+    for _ in job:
+        pass
+    return job.outcome
+
+
 class Command:
     """A running ``pe``; its stderr is read as it comes."""
 

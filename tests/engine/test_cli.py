@@ -8,20 +8,7 @@ from pathlib import Path
 import pytest
 
 import pe_core as pe
-import pe_tools as pt
 from pe_tools.cli.verbs import main
-from tests.engine import shapes
-
-
-@pytest.fixture
-def study(tmp_path):
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
-    search = pe.Search(
-        {"roof": ("x", "z", "pitch")}, {}, 3, 2048, pe.Schedule(candidates=5), method="random"
-    )
-    path = tmp_path / "car.toml"
-    pt.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search), path)
-    return path
 
 
 def test_score_prints_what_a_person_wants_to_know(study, capsys):

@@ -19,6 +19,7 @@ from pe_tools.jobs import front_dict, result_dict
 from pe_tools.page import ReportContext
 from pe_tools.page.sections.score import sensitivity as sensitivity_section
 from tests.engine import shapes
+from tests.engine.processes import finished as driven
 from tests.review.conftest import html_of
 
 pytestmark = pytest.mark.usefixtures("few_errors")
@@ -43,10 +44,7 @@ def study(goals=None, names=("roof",), **more):
 
 
 def finished(given, workers=1, **more):
-    job = pt.OptimizeJob(given, workers, **more)
-    for _ in job:
-        pass
-    return job.outcome
+    return driven(pt.OptimizeJob(given, workers, **more))
 
 
 def ap_of(given, rig):

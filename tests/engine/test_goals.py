@@ -16,6 +16,7 @@ from pe_tools.cli.terminal import summary
 from pe_tools.cli.verbs import parser
 from pe_tools.jobs import HistoryRow, best_so_far, result_dict, stopping
 from tests.engine import shapes
+from tests.engine.processes import finished as driven
 
 pytestmark = pytest.mark.usefixtures("few_errors", "no_key_figures")
 
@@ -32,10 +33,7 @@ def study(goals=None, names=("roof",), **search):
 
 
 def finished(given, **more):
-    job = pt.OptimizeJob(given, 1, **more)
-    for _ in job:
-        pass
-    return job.outcome
+    return driven(pt.OptimizeJob(given, 1, **more))
 
 
 @pytest.fixture(scope="module")
@@ -92,8 +90,7 @@ def test_a_search_that_races_tells_within_what_another_seed_would_end(plain):
     """Its descents share nothing but their start; a short search has no race."""
     assert plain.seed_scatter is None and result_dict(plain)["seed_scatter"] is None
     job = pt.OptimizeJob(study(evaluations=320), 1)
-    for _ in job:
-        pass
+    driven(job)
     assert len(job.descents) == 4 and min(job.descents) >= job.history[-1].entropy
     scatter = stopping.APART * stdev(job.descents)
     assert job.outcome.seed_scatter == pytest.approx(scatter, abs=1e-9) and scatter > 0.0

@@ -11,6 +11,7 @@ import trimesh
 import pe_core as pe
 import pe_tools as pt
 from pe_core.base.notebook import ShortRepr, Tabular
+from tests.engine.processes import finished
 from tests.engine.shapes import box_car
 
 SPACE = pe.PerceptionSpace((-10, 10), (-6, 6), (0, 2), 0.5)
@@ -70,17 +71,11 @@ def test_a_study_with_a_grid_is_written_and_read_to_the_bit(tmp_path, by_height)
     again = pe.load_study(tmp_path / "car.toml")
     assert again.prior == one.prior and hash(again.prior.grid) == hash(one.prior.grid)
     assert again.evaluator().entropy(again.rig) == one.evaluator().entropy(one.rig)
-    pt.write_outcome(job := done(pt.ScoreJob(again)), tmp_path / "results")
+    pt.write_outcome(job := finished(pt.ScoreJob(again)), tmp_path / "results")
     assert (tmp_path / "results" / "prior.npy").is_file() and job.after.entropy
     (tmp_path / again.prior.grid.file).unlink()
     with pytest.raises(pe.InputError):
         pe.save_study(again, tmp_path / "other.toml")
-
-
-def done(job):
-    for _ in job:
-        pass
-    return job.outcome
 
 
 def test_a_scene_of_trimesh_is_a_vehicle_with_its_parts_in_place():
@@ -125,7 +120,7 @@ def values():
     sight = one.sight()
     grid = pe.Prior.from_grid(np.ones((40, 24)), SPACE)
     boxes = pe.Boxes.of([("car", 5.0, 0.0, 0.75, 4.5, 1.8, 1.5, 0.0)] * 50)
-    outcome = done(pt.ScoreJob(one))
+    outcome = finished(pt.ScoreJob(one))
     step = next(pe.optimize(height, one.rig, one.search_space()))
     seen = sight.ground(one.rig), sight.blind(one.rig), sight.reach(one.rig, "car")
     area = pe.MountArea(car().triangles)

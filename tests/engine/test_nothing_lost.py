@@ -13,7 +13,6 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_tools import jobs
-from tests.engine import shapes
 from tests.engine.processes import ROOT, Command
 from tests.limits import HANG_S
 
@@ -22,22 +21,6 @@ if sys.platform == "win32":
 pytestmark = pytest.mark.usefixtures("heeded_signals")
 ENDLESS = ("--candidates", 100_000)
 SHORT = ("--candidates", 4)
-
-
-@pytest.fixture
-def study(tmp_path):
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
-    search = pe.Search(
-        {"roof": ("x", "z", "pitch")}, {}, 3, 2048, pe.Schedule(candidates=4), method="random"
-    )
-    path = tmp_path / "car.toml"
-    pt.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search), path)
-    return path
-
-
-@pytest.fixture
-def out(tmp_path):
-    return tmp_path / "out"
 
 
 def result(folder):

@@ -27,6 +27,7 @@ from pe_core.study.suggestion import BLIND_SPOT, SAMPLES, mended, suggestions, w
 from pe_tools import advice
 from pe_tools.jobs import result_dict
 from tests.engine import shapes
+from tests.engine.processes import finished
 
 BEHIND = Zone(x=("rear + 0.6", "rear + 1.6"), y=(-0.6, 0.6), step=0.3)
 AHEAD = replace(BEHIND, x=("front + 0.6", "front + 1.6"))
@@ -58,12 +59,6 @@ def study(**search):
             **search,
         ),
     )
-
-
-def finished(job):
-    for _ in job:
-        pass
-    return job.outcome
 
 
 def test_a_search_that_starts_with_two_requirements_broken_ends_with_none():

@@ -41,11 +41,6 @@ def path(tmp_path):
     return tmp_path / "car.toml"
 
 
-@pytest.fixture
-def out(tmp_path):
-    return tmp_path / "out"
-
-
 def result(folder):
     """What result.json says but for times; the files beside it have to be those it tells of."""
     data = json.loads((folder / "result.json").read_text("utf-8"))

@@ -14,6 +14,7 @@ from pe_tools.sensitivity import NEAR, Archive, StepCosts, sensitivity_lines
 from pe_tools.sensitivity.flatness import Neighbourhood, PoseStep, active_constraints, flatness
 from pe_tools.sensitivity.optima import Basins
 from tests.engine import shapes
+from tests.engine.processes import finished
 
 TOP_M = 1.8
 
@@ -26,12 +27,6 @@ def study(sensitivity="full", **search):
     given = {"free": {"roof": ("z", "pitch")}, "limits": limits, "goals": goals} | search
     settings = pe.Search(samples=2048, evaluations=30, **given)
     return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=settings, samples=2048)
-
-
-def finished(job):
-    for _ in job:
-        pass
-    return job.outcome
 
 
 @pytest.fixture(scope="module")

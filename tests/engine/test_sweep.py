@@ -41,11 +41,6 @@ def study(tmp_path):
     return path
 
 
-@pytest.fixture
-def out(tmp_path):
-    return tmp_path / "out"
-
-
 def table(folder):
     with (folder / "sweep.csv").open() as file:
         return list(csv.DictReader(file))

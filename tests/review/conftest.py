@@ -11,6 +11,7 @@ from pe_core.catalog import load
 from pe_tools.page import ReportContext, page_bytes
 from pe_tools.page.pictures import sensor_views, vehicle_picture
 from pe_tools.page.sections import SECTIONS
+from tests.engine.processes import finished
 from tests.review.browser import started
 
 NAMES = ("</script><b>roof", "front & left / 60°")
@@ -58,36 +59,29 @@ def small_study(shift=0.0):
     return pe.Study(rig, vehicle, space, search=search)
 
 
-def outcome_of(job):
-    """Drive a job to its end."""
-    for _ in job:
-        pass
-    return job.outcome
-
-
 @pytest.fixture(scope="session")
 def scored():
     """The study scored as it stands."""
-    return ReportContext("a/b <i>c</i>", outcome_of(pt.ScoreJob(small_study())))
+    return ReportContext("a/b <i>c</i>", finished(pt.ScoreJob(small_study())))
 
 
 @pytest.fixture(scope="session")
 def other():
     """Another study, with the LiDAR farther back."""
-    return ReportContext("B & co", outcome_of(pt.ScoreJob(small_study(-1.5))))
+    return ReportContext("B & co", finished(pt.ScoreJob(small_study(-1.5))))
 
 
 @pytest.fixture(scope="session")
 def searched():
     """The study after a search."""
-    return ReportContext("searched", outcome_of(pt.OptimizeJob(small_study())))
+    return ReportContext("searched", finished(pt.OptimizeJob(small_study())))
 
 
 @pytest.fixture(scope="session")
 def bare():
     """A study without a vehicle."""
     study = dataclasses.replace(small_study(), vehicle=None)
-    return ReportContext("bare", outcome_of(pt.ScoreJob(study)))
+    return ReportContext("bare", finished(pt.ScoreJob(study)))
 
 
 @pytest.fixture(scope="session")

@@ -12,7 +12,8 @@ from pe_tools.page import ReportContext
 from pe_tools.page.pictures.sensor_views import field_figure
 from pe_tools.page.scene3d import scene_data
 from pe_tools.page.sections.visibility import sensor_details
-from tests.review.conftest import html_of, outcome_of, small_study
+from tests.engine.processes import finished
+from tests.review.conftest import html_of, small_study
 
 
 @pytest.fixture(scope="module")
@@ -22,7 +23,7 @@ def parking():
     rear = pe.Pose.from_degrees((-2.6, 0.3, 0.5), (0, 0, 180))
     sonar = pe.Sensor("rear", catalog.load("Bosch Ultrasonic 3.1"), rear)
     study = study.with_rig(pe.Rig([*study.rig, front, sonar]))
-    return ReportContext("parking", outcome_of(pt.ScoreJob(study)))
+    return ReportContext("parking", finished(pt.ScoreJob(study)))
 
 
 def test_a_page_shows_them(parking):

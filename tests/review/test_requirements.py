@@ -13,7 +13,8 @@ from pe_tools.page.pictures.reference_figures import worst_bodies
 from pe_tools.page.pictures.sight_plans import MET_RGBA, NOT_MET_RGBA, requirement_plan
 from pe_tools.page.sections.visibility import requirement_verdicts
 from pe_tools.wording import margin_text
-from tests.review.conftest import NAMES, html_of, outcome_of, small_study
+from tests.engine.processes import finished
+from tests.review.conftest import NAMES, html_of, small_study
 from tests.review.test_maps import pixels_of
 
 AHEAD = requirements.Requirement(
@@ -39,7 +40,7 @@ BEHIND = requirements.Requirement(
 def context():
     """The small study, held to three requirements."""
     study = dataclasses.replace(small_study(), requirements=(AHEAD, BESIDE, BEHIND))
-    return ReportContext("held", outcome_of(pt.ScoreJob(study)))
+    return ReportContext("held", finished(pt.ScoreJob(study)))
 
 
 @pytest.fixture(scope="module")

@@ -13,8 +13,9 @@ from pe_tools.page.pictures.sensor_views import SENSOR_VIEWS, SensorView
 from pe_tools.page.pictures.vehicle_picture import housing_of
 from pe_tools.page.scene3d import scene_data
 from pe_tools.page.sections.visibility import sensor_details
+from tests.engine.processes import finished
 from tests.engine.toy_kind import RING, Ring
-from tests.review.conftest import html_of, outcome_of, small_study
+from tests.review.conftest import html_of, small_study
 from tests.review.test_page import Elements
 
 HOUSING = scene.Housing("box", (0.02, 0.2, 0.02), (0.0, 0.0, 0.0))
@@ -27,7 +28,7 @@ def bumper():
     study = dataclasses.replace(small_study(), samples=1024)
     ring = pe.Sensor("bumper", Ring("park pilot", 4.0), pe.Pose((2.3, 0.0, 0.5)))
     study = study.with_rig(pe.Rig([*study.rig, ring]))
-    yield ReportContext("parking", outcome_of(pt.ScoreJob(study)))
+    yield ReportContext("parking", finished(pt.ScoreJob(study)))
     kinds.unregister("toyring")
 
 

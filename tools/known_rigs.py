@@ -7,7 +7,7 @@ usage: tools/known_rigs.py
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -17,7 +17,6 @@ if str(ROOT) not in sys.path:  # run as a script
 import pe_core as pe  # noqa: E402
 import pe_tools as pt  # noqa: E402
 from pe_core import catalog  # noqa: E402
-from pe_tools.cli import study_of_rig  # noqa: E402
 
 PAGE = ROOT / "docs" / "known_rigs.md"
 SAMPLES = 65_536
@@ -29,20 +28,23 @@ HIDDEN = 0.9
 HEAD = f"""\
 # Known rigs
 
-Published rigs, also in Blender's panel *Variants*:
+Published rigs and templates, also in Blender: *Variants > Add Rig*.
 
 ```sh
-pe rigs                                     # the list
-pe rigs waymo                               # its sensors, its source, what is to be known
-pe rigs waymo -o study.toml --mesh car.npz  # a study, stretched onto a vehicle
+pe rigs                                        # the list
+pe rigs waymo                                  # its sensors, its source
+pe rigs waymo -o study.toml --mesh car.npz     # stretched onto a vehicle
+pe rigs robotaxi -o study.toml --mesh car.npz  # a template on named places
 ```
 
-Scored at default settings on {SAMPLES:,} voxels, each rig alone in the open and on a vehicle of
-`blend_assets`: stretched from its own vehicle's box, or as published where that is not known.
-Entropies in nats, lower is better, with their standard errors; coverage in percent. They are no
-verdict on the vehicles they come from. No
-published positions of MAN TruckScenes' and EDGAR's sensors were found. Written by
-`tools/known_rigs.py`.
+A template (`robotaxi`, `truck`, `parking`, `shuttle`) is a start, no product: models on places found on the mesh, such
+as roof, mirrors, grille, bumpers and tailgate. `--on-places` moves known sensors to them. In Blender *Named
+Places* shows them as empties to move first.
+
+Scored at default settings on {SAMPLES:,} voxels, in the open and on a vehicle of
+`blend_assets`: stretched, or as published where its own vehicle's box is not known.
+Entropies in nats, with standard errors; coverage in percent. They are no
+verdict on those vehicles. Written by `tools/known_rigs.py`.
 
 | rig | LiDARs | cameras | radars | in the open | coverage | vehicle | on it | coverage | occluded |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |
@@ -75,7 +77,7 @@ def scored(key: str, samples: int = SAMPLES) -> ScoredRig:
     rig = catalog.known_rig(key)
     name = vehicle_of(rig)
     studies = [
-        replace(study_of_rig(rig, vehicle, stretched=True), samples=samples)
+        pe.Study(catalog.rig_on(rig, vehicle), vehicle, samples=samples)
         for vehicle in (None, read_vehicle(name))
     ]
     return ScoredRig(key, name, *(_score(study) for study in studies))

@@ -13,6 +13,7 @@ from . import (
     known_rigs,
     look_through,
     mounts,
+    named_places,
     place_sensor,
     placement,
     running_job,

@@ -12,15 +12,18 @@ from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
 from .. import bridge, signals, vehicle_cache
-from ..engine import catalog, exchange, pe, search, studies
+from ..engine import catalog, exchange, graphics, pe, search, studies
 from ..properties import FREE_BY_DEFAULT
 from ..sensor_kinds import mount_of
 from .declared import INTERNAL, Told, chosen_file, operator
 from .exports import FORMAT_ITEMS
+from .named_places import places_of
 from .variants import stand_as_variant
 
 
 def _about_rig(about: str, chosen: bpy.types.OperatorProperties) -> str:
+    if (template := catalog.templates().get(chosen.key)) is not None:
+        return f"{len(template.sensors)} sensors on named places, to start from. {template.note}"
     rig = catalog.known_rigs().get(chosen.key)
     if rig is None:
         return about
@@ -28,7 +31,7 @@ def _about_rig(about: str, chosen: bpy.types.OperatorProperties) -> str:
 
 
 @operator(
-    "Add Known Rig",
+    "Add Rig",
     mode="Rigs are added in Object Mode",
     signal=signals.study_changed,
     tooltip=_about_rig,
@@ -39,25 +42,37 @@ def _about_rig(about: str, chosen: bpy.types.OperatorProperties) -> str:
         "are as published, about the vehicle's centre",
         default=True,
     ),
+    on_places=BoolProperty(
+        name="On Named Places",
+        description="Move each of its sensors to the nearest named place: roof, mirror, bumper",
+    ),
 )
-def add_rig(context: bpy.types.Context, key: str, fit: bool) -> str:
-    """Replace the sensors of the scene by those of a known rig, as a variant.
+def add_rig(context: bpy.types.Context, key: str, fit: bool, on_places: bool) -> str:
+    """Replace the sensors of the scene by those of a template or a known rig, as a variant.
 
     Present sensors that are no variant yet are saved as one"""
     scene = context.scene
-    rig = catalog.known_rig(key)
+    rig = catalog.rig_named(key)
     before = bridge.records_of_scene(scene)
     vehicle = vehicle_cache.shared.read(scene, context.evaluated_depsgraph_get()).vehicle
-    sensors, fitted = rig.sensors, False
-    if fit and vehicle is not None and rig.size is not None:
-        sensors, fitted = rig.on_vehicle(*vehicle.bounds), True
-    how = "scaled to this vehicle's box" if fitted else "as published"
-    note = (
-        f"{rig.vehicle}; published with the origin {rig.origin}, here about the vehicle's centre, "
-        f"{how}. {rig.note} Source: {rig.source}"
-    )
-    name = stand_as_variant(scene, rig.title, tuple(map(record_of, sensors)), note, before)
-    return f"Added {name}: {len(rig.sensors)} sensors"
+    if isinstance(rig, catalog.RigTemplate):
+        at = None if vehicle is None else places_of(scene, vehicle)
+        sensors = catalog.sensors_on(rig, vehicle, at)
+        kinds = ((each.name, catalog.load(each.model).kind) for each in sensors)
+        tints, note = graphics.place_tints(kinds), f"A template on named places. {rig.note}"
+        records = tuple(replace(record_of(s), color=tints[s.name]) for s in sensors)
+    else:
+        on_it = vehicle if fit else None
+        at = places_of(scene, vehicle) if on_places and vehicle is not None else None
+        records = tuple(map(record_of, catalog.sensors_on(rig, on_it, at)))
+        fitted = "as published" if on_it is None or rig.size is None else "fitted to its box"
+        how = fitted if at is None else "on named places"
+        note = (
+            f"{rig.vehicle}; published with the origin {rig.origin}, here about the vehicle's "
+            f"centre, {how}. {rig.note} Source: {rig.source}"
+        )
+    name = stand_as_variant(scene, rig.title, records, note, before)
+    return f"Added {name}: {len(records)} sensors"
 
 
 def record_of(sensor: catalog.KnownSensor) -> bridge.SensorRecord:
@@ -76,8 +91,11 @@ def record_of(sensor: catalog.KnownSensor) -> bridge.SensorRecord:
 
 
 def menu_of_rigs() -> tuple[tuple[str, str], ...]:
-    """Return keys and titles of the known rigs, for a menu."""
-    return tuple((rig.key, rig.title) for rig in catalog.known_rigs().values())
+    """Return keys and titles of the templates, then of the known rigs, for a menu.
+
+    An empty key is between them."""
+    templates = ((key, row.title) for key, row in catalog.templates().items())
+    return (*templates, ("", ""), *((key, row.title) for key, row in catalog.known_rigs().items()))
 
 
 def replace_sensors(

@@ -74,14 +74,19 @@ def draw_text(layout: UILayout) -> None:
 
 
 class PE_MT_known_rigs(bpy.types.Menu):
-    """Rigs of well-known vehicles"""
+    """Templates on the vehicle's named places, and rigs of well-known vehicles"""
 
     bl_idname = "PE_MT_known_rigs"
-    bl_label = "Add Known Rig"
+    bl_label = "Add Rig"
 
     def draw(self, _context: Context) -> None:
         for key, title in menu_of_rigs():
-            self.layout.operator("pe.add_rig", text=title, translate=False).key = key
+            if key:
+                self.layout.operator("pe.add_rig", text=title, translate=False).key = key
+            else:
+                self.layout.separator()
+        self.layout.separator()
+        self.layout.operator("pe.show_places", icon="EMPTY_ARROWS")
 
 
 class PE_MT_live_against(bpy.types.Menu):

@@ -17,8 +17,9 @@ from ..base.arrays import read_only_data
 from ..base.errors import InputError, require_keys, require_name, shown
 from ..base.files import decode_text, read_bytes
 from ..base.table_reader import load_toml
-from ..base.values import A_NAME, A_TEXT
+from ..base.values import A_NAME, A_TEXT, choice
 from ..scene.data_sheet import DataSheet
+from ..scene.named_places import named_places
 from ..scene.rig import Housing, Rig, Sensor, SensorModel
 from ..scene.vehicle import Vehicle
 from ..sensors import kind_named, kind_of
@@ -27,10 +28,14 @@ from .rigs import KnownRig as KnownRig
 from .rigs import KnownSensor as KnownSensor
 from .rigs import known_rig as known_rig
 from .rigs import known_rigs as known_rigs
+from .templates import Places, at_nearest, filled
+from .templates import RigTemplate as RigTemplate
+from .templates import templates as templates
 
-__all__ = ["OTHER_LABELS", "OWN", "Entry", "KnownRig", "KnownSensor", "add", "add_file", "added"]
-__all__ += ["data_sheet", "entries", "from_table", "housing", "known_rig", "known_rigs", "load"]
-__all__ += ["matching", "names", "remove", "replace_added", "rig_on", "scan_above_base", "to_table"]
+__all__ = ["OTHER_LABELS", "OWN", "Entry", "KnownRig", "KnownSensor", "RigTemplate", "add"]
+__all__ += ["add_file", "added", "data_sheet", "entries", "from_table", "housing", "known_rig"]
+__all__ += ["known_rigs", "load", "matching", "names", "remove", "replace_added", "rig_named"]
+__all__ += ["rig_on", "scan_above_base", "sensors_on", "templates", "to_table"]
 
 PAPER_FILE = "paper.toml"  # File with the paper's sensors, which come first in lists
 OWN = "own"  # Replaces the file name for presets that a program has added
@@ -152,13 +157,42 @@ def load(name: str) -> SensorModel:
     return _loaded[name]
 
 
-def rig_on(known: KnownRig, vehicle: Vehicle | None = None) -> Rig:
-    """Return a known rig, scaled to a vehicle's bounds; without a vehicle as it was published."""
-    sensors = known.sensors
+def rig_named(key: str) -> KnownRig | RigTemplate:
+    """Return the known rig, or the rig template, of that key.
+
+    `InputError` when there is none of that key.
+    """
+    every: dict[str, KnownRig | RigTemplate] = {**known_rigs(), **templates()}
+    return every[choice("catalogue", "rig", key, every)]
+
+
+def sensors_on(
+    rig: KnownRig | RigTemplate, vehicle: Vehicle | None = None, places: Places | None = None
+) -> tuple[KnownSensor, ...]:
+    """Return the sensors of a rig on a vehicle.
+
+    A template fills the places, by default those that `named_places` finds. A known rig is scaled
+    to the vehicle's bounds, without a vehicle as it was published; with places, each sensor is then
+    moved to the nearest of them. `InputError` for a template with neither vehicle nor places.
+    """
+    if isinstance(rig, RigTemplate):
+        if places is None:
+            if vehicle is None:
+                raise InputError(rig.key, "vehicle", "a mesh: its places are found on it", "none")
+            places = named_places(vehicle)
+        return filled(rig, places, load)
+    sensors = rig.sensors
     if vehicle is not None:
-        low, high = vehicle.bounds
-        sensors = known.on_vehicle(low.tolist(), high.tolist())
-    return Rig([Sensor(s.name, load(s.model), s.pose) for s in sensors])
+        sensors = rig.on_vehicle(*(bound.tolist() for bound in vehicle.bounds))
+    return sensors if places is None else tuple(at_nearest(sensors, places, load))
+
+
+def rig_on(
+    rig: KnownRig | RigTemplate, vehicle: Vehicle | None = None, places: Places | None = None
+) -> Rig:
+    """Return the rig of `sensors_on`."""
+    found = sensors_on(rig, vehicle, places)
+    return Rig([Sensor(s.name, load(s.model), s.pose) for s in found])
 
 
 def housing(name: str) -> Housing | None:

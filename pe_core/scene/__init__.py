@@ -4,6 +4,7 @@ from ..geometry.grids import PerceptionSpace
 from ..geometry.poses import Pose, rotate, rotation_matrix, rpy_from_matrix
 from .data_sheet import DataSheet
 from .mesh import BodyShape
+from .named_places import PLACE_NAMES, NamedPlace, named_places
 from .objects import Objects
 from .rig import Housing, Rig, Sensor, cuts_body
 from .scan import ScanTiming

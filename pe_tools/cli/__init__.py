@@ -7,7 +7,6 @@ from .command import Parser, add_run_options, add_score_options, add_sensors_ver
 from .command import count_up_to, run, with_options
 from .drive_by_verb import add_drive_by_options, chosen_stories, drive_by_study
 from .exchange_verbs import SUFFIXES, add_export_options, add_rigs_verb, chosen_models, export
-from .exchange_verbs import study_of_rig
 from .explain_verbs import add_compare_options, add_explain_options, compare, explain, named_by_file
 from .explain_verbs import refuse_different, scored
 from .interrupts import leave, noted_when_interrupted

@@ -9,21 +9,22 @@ from typing import Any
 from pe_core import catalog
 from pe_core.base.errors import InputError
 from pe_core.base.files import quoted, require_new
-from pe_core.catalog import KnownRig
-from pe_core.scene import Pose, Reference, Vehicle, guessed_reference
+from pe_core.catalog import KnownRig, RigTemplate
+from pe_core.scene import Pose, Reference, Rig, Vehicle, guessed_reference, named_places
 from pe_core.scoring.sampling import FIRST_SAMPLES
 from pe_core.study import Study, load_study, read_rig_line, rig_line, save_study
 
 from ..exchange import FILES, RIG_FORMATS, export_rig, format_of_file, import_rig, read_vehicle_info
 from ..formats import read_mesh
+from ..graphics import place_tints
 from ..outputs import OF_EXAMPLE, export_scene, output_files, scene_output, scene_outputs
 from ..wording import aligned
 from .terminal import DONE, Answer, tell
 
 
 def add_rigs_verb(verbs: Any) -> None:
-    """Add ``rigs``: list known rigs, describe one, or write a study of one."""
-    parser = verbs.add_parser("rigs", help="list known rigs, or write one as a study")
+    """Add ``rigs``: list known rigs and templates, describe one, or write a study of one."""
+    parser = verbs.add_parser("rigs", help="list known rigs and templates, or write one as a study")
     parser.add_argument(
         "name", nargs="?", metavar="NAME", help="a rig's name in the list, or its line"
     )
@@ -32,8 +33,11 @@ def add_rigs_verb(verbs: Any) -> None:
     parser.add_argument("-o", "--output", metavar="STUDY", help="study to write")
     about = "the vehicle's mesh, from the study's folder: sensors are stretched onto it"
     parser.add_argument("--mesh", metavar="FILE", help=about)
+    standing = parser.add_mutually_exclusive_group()
     about = "leave sensors where they were published, about the vehicle's centre"
-    parser.add_argument("--as-published", action="store_true", help=about)
+    standing.add_argument("--as-published", action="store_true", help=about)
+    about = "move each sensor of a known rig to the nearest named place: roof, mirror, bumper"
+    standing.add_argument("--on-places", action="store_true", help=about)
     parser.add_argument("--replace", action="store_true", help="replace a study that is there")
     parser.set_defaults(function=show_rigs, usage_error=parser.error)
 
@@ -48,6 +52,8 @@ def show_rigs(args: argparse.Namespace) -> Answer:
         rows = [["NAME", "SENSORS", "RIG", "VEHICLE"]]
         for each in catalog.known_rigs().values():
             rows.append([each.key, str(len(each.sensors)), each.title, each.vehicle])
+        for key, row in catalog.templates().items():
+            rows.append([key, str(len(row.sensors)), f"Template: {row.title}", "any"])
         return "\n".join(aligned(rows)), DONE
     if "=" in args.name:
         sensors = read_rig_line(args.name)
@@ -57,15 +63,23 @@ def show_rigs(args: argparse.Namespace) -> Answer:
         study = Study(sensors, vehicle, samples=FIRST_SAMPLES, mesh=args.mesh)
         save_study(study, output)
         return _wrote(output, study), DONE
-    rig = catalog.known_rig(args.name)
+    rig = catalog.rig_named(args.name)
     if args.output is None:
         return "\n".join(_described(rig)), DONE
     output, vehicle = new_study(args)
-    study = study_of_rig(rig, vehicle, args.mesh, stretched=not args.as_published)
+    on_it = None if args.as_published else vehicle
+    places = named_places(vehicle) if args.on_places and vehicle is not None else None
+    placed = catalog.rig_on(rig, on_it, places)
+    if isinstance(rig, RigTemplate):
+        tints = place_tints((each.name, each.kind) for each in placed)
+        placed = Rig([replace(each, color=tints[each.name]) for each in placed])
+    study = Study(placed, vehicle, samples=FIRST_SAMPLES, mesh=args.mesh)
     save_study(study, output)
-    is_stretched = vehicle is not None and not args.as_published and rig.size is not None
-    as_published = "as published, about the vehicle's centre"
-    standing = "stretched onto this vehicle's box" if is_stretched else as_published
+    standing = "as published, about the vehicle's centre"
+    if places is not None or isinstance(rig, RigTemplate):
+        standing = "on named places of this vehicle"
+    elif on_it is not None and rig.size is not None:
+        standing = "stretched onto this vehicle's box"
     tell(f"{rig.title}: {standing}. {rig.note}")
     return _wrote(output, study), DONE
 
@@ -74,15 +88,11 @@ def _wrote(output: Path, study: Study) -> str:
     return f"wrote {output}: {len(study.rig)} sensor{'s' if len(study.rig) > 1 else ''}"
 
 
-def study_of_rig(
-    rig: KnownRig, vehicle: Vehicle | None = None, mesh: str | None = None, *, stretched: bool
-) -> Study:
-    """Return a study of a known rig: scaled to a vehicle, or as it was published."""
-    placed = catalog.rig_on(rig, vehicle if stretched else None)
-    return Study(placed, vehicle, samples=FIRST_SAMPLES, mesh=mesh)
-
-
-def _described(rig: KnownRig) -> list[str]:
+def _described(rig: KnownRig | RigTemplate) -> list[str]:
+    if isinstance(rig, RigTemplate):
+        rows = [["place", "model", "yaw, pitch [deg]"]]
+        rows += [[place, model, f"{yaw:g}, {pitch:g}"] for place, model, yaw, pitch in rig.sensors]
+        return [rig.title, f"note     {rig.note}", "", *aligned(rows)]
     size = "" if rig.size is None else " {:g} x {:g} x {:g} m".format(*rig.size)
     lines = [rig.title, f"vehicle  {rig.vehicle}{size}", f"origin   {rig.origin}"]
     lines += [f"source   {rig.source}", f"note     {rig.note}", ""]

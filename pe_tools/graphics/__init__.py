@@ -6,9 +6,9 @@ from .beams import MAX_BEAMS, PREVIEW_BEAMS, RING_FAR_M, BeamChoice, Cast, Chann
 from .beams import channels_of, free_lines, ground_distance, ground_rings, occluded_lines
 from .beams import shown_beams
 from .colors import CIVIDIS, COUNTS, DIFFERENCE, PAPER, VIEWPORT, VIRIDIS, Palette, Rgb, Rgba
-from .colors import color_text, free_tint, is_foreign_tint, linear, linear_of_srgb, on_scale, rgb_of
-from .colors import sensor_colors, sensor_colors_on_paper, sensor_palette, srgb_of_linear
-from .colors import with_alpha
+from .colors import color_text, free_tint, is_foreign_tint, linear, linear_of_srgb, on_scale
+from .colors import place_tints, rgb_of, sensor_colors, sensor_colors_on_paper, sensor_palette
+from .colors import srgb_of_linear, with_alpha
 from .drive_by import BRAKE, CONFIRMED, CORNERS, EDGES, FACES, NEVER, UNSEEN, BodiesInTime
 from .drive_by import MovingBody, MovingShape, TimeStrip, color_of_ap, digest, marks_of
 from .drive_by import moving_shape, strip_ends, strip_rows, time_strip

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pe_core.base.arrays import Floats
-from pe_core.scene import Sensor
+from pe_core.scene import PLACE_NAMES, Sensor
 
 Rgb = tuple[float, float, float]
 Rgba = tuple[float, float, float, float]
@@ -147,6 +147,19 @@ def free_tint(kind: str, taken: Iterable[str]) -> str:
     """Return the tint for a new sensor of a kind: the first that is taken least often."""
     counts = list(taken)
     return min(tints_of(kind), key=counts.count)
+
+
+def place_tints(sensors: Iterable[tuple[str, str]]) -> dict[str, str]:
+    """Return tints of sensors (name, kind) that are named by their places.
+
+    A place has the same tint of a kind in every rig, unless another sensor of the rig has it.
+    """
+    tints: dict[str, str] = {}
+    for name, kind in sensors:
+        number = next((k for k, place in enumerate(PLACE_NAMES) if name.endswith(f" {place}")), 0)
+        tint = tints_of(kind)[number % len(tints_of(kind))]
+        tints[name] = free_tint(kind, tints.values()) if tint in tints.values() else tint
+    return tints
 
 
 def is_foreign_tint(kind: str, color: str) -> bool:

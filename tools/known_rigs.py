@@ -37,9 +37,9 @@ pe rigs waymo -o study.toml --mesh car.npz     # stretched onto a vehicle
 pe rigs robotaxi -o study.toml --mesh car.npz  # a template on named places
 ```
 
-A template (`robotaxi`, `truck`, `parking`, `shuttle`) is a start, no product: models on places found on the mesh, such
-as roof, mirrors, grille, bumpers and tailgate. `--on-places` moves known sensors to them. In Blender *Named
-Places* shows them as empties to move first.
+A template (`robotaxi`, `truck`, `parking`, `shuttle`) is a start, no product: models on places
+found on the mesh: roof, mirrors, grille, bumpers, tailgate. `--on-places` moves known sensors to
+them. In Blender *Named Places* shows them as empties to move first.
 
 Scored at default settings on {SAMPLES:,} voxels, in the open and on a vehicle of
 `blend_assets`: stretched, or as published where its own vehicle's box is not known.

@@ -51,7 +51,16 @@ ROOMS = {
         "outputs": {"exchange", "graphics"},
         "sweep": {"wording", "jobs"},
         "cli": {
-            *("wording", "formats", "exchange", "advice", "sensitivity", "jobs", "outputs"),
+            *(
+                "wording",
+                "formats",
+                "graphics",
+                "exchange",
+                "advice",
+                "sensitivity",
+                "jobs",
+                "outputs",
+            ),
             "sweep",
         },
         "page": {"wording", "formats", "graphics", "advice", "sensitivity", "jobs", "cli"},

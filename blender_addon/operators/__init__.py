@@ -9,6 +9,7 @@ from . import (
     edit_sensors,
     exports,
     first_steps,
+    handles,
     inset,
     known_rigs,
     look_through,

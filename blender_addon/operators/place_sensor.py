@@ -5,10 +5,12 @@ from dataclasses import replace
 from typing import Any
 
 import bpy
-from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty
+import numpy as np
+from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, StringProperty
 from mathutils import Matrix, Vector
 
-from ..engine import catalog, kinds
+from .. import bridge
+from ..engine import catalog, kinds, pe
 from ..housing import measured_housing
 from ..sensor_kinds import Mount, mount_for
 from . import placement
@@ -20,7 +22,8 @@ from .add_sensor import (
     select_only,
     with_data_sheet,
 )
-from .declared import USER_ERRORS, OperatorResult, operator, report_error
+from .declared import USER_ERRORS, OperatorResult, chosen_sensor, operator, report_error
+from .edit_sensors import mirrored_copy
 from .surface_pose import STAND_OFF_STEP_M, Stance, SurfaceSpot, vehicle_center, view_under
 
 BY_KIND = -1.0
@@ -39,10 +42,11 @@ TURNS = {
     "DOWN_ARROW": (0.0, 1.0),
 }
 """Keys that turn a sensor: yaw to the left and pitch nose down, in steps; finer with Shift."""
+AXES = ("X", "Y", "Z")
 NUMBERS = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE")
 TYPED = {key: str(n) for n, key in enumerate(NUMBERS)} | {"PERIOD": ".", "COMMA": "."}
-TYPED["BACK_SPACE"] = ""
-"""Keys of a typed stand-off; those of the number pad turn the view."""
+TYPED |= {"MINUS": "-", "BACK_SPACE": ""}
+"""Keys of a typed number; those of the number pad turn the view."""
 VIEW = ("NUMPAD_", "MIDDLEMOUSE", "WHEEL", "TRACKPAD", "MOUSE", "NDOF", "TIMER", "WINDOW", "HOME")
 """How events begin that turn, move and zoom the view, or are Blender's own: they pass."""
 
@@ -53,11 +57,29 @@ def _stance(self: Any, mount: Mount) -> Stance:
 
 
 def _put(self: Any, context: bpy.types.Context, name: str, mount: Mount, placed: Matrix) -> None:
-    """Add the sensor with a pose."""
-    body = measured_housing(self.model) if self.housing else None
-    obj = new_sensor(context, name, self.model, mount, body)
-    obj.location, obj.rotation_euler = placed.to_translation(), placed.to_euler()
+    """Add the sensor with a pose, or move the one that is there; with its mirror image if asked."""
+    pose = bridge.pose_of_matrix(np.array(placed, dtype=float))
+    if self.sensor:
+        bridge.place_poses(context.scene, {self.sensor: pose})
+        obj = context.scene.objects[self.sensor]
+    else:
+        body = measured_housing(self.model) if self.housing else None
+        obj = new_sensor(context, name, self.model, mount, body)
+        obj.location, obj.rotation_euler = placed.to_translation(), placed.to_euler()
+        context.view_layer.update()
+    if self.mirrored and not obj.perception_entropy.mirror_of and not bridge.in_the_middle(pose):
+        try:
+            bridge.link_mirror(obj, mirrored_copy(context, obj))
+        except pe.InputError as error:
+            self.report({"WARNING"}, str(error))
     select_only(context, obj)
+
+
+def _model(self: Any, context: bpy.types.Context) -> Any:
+    """Return the model of the sensor that is moved, or of a new one."""
+    if not self.sensor:
+        return catalog.load(self.model)
+    return catalog.load(chosen_sensor(context, self.sensor).perception_entropy.model)
 
 
 def _hold(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
@@ -65,9 +87,9 @@ def _hold(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> Ope
     if bpy.app.background:
         return self.execute(context)
     try:
-        model = catalog.load(self.model)
+        model, moved = _model(self, context), context.scene.objects.get(self.sensor)
         choose_vehicle(context.scene)
-        placement.begin(context, model, _stance(self, mount_for(model)))
+        placement.begin(context, model, _stance(self, mount_for(model)), moved)
     except USER_ERRORS as error:
         return report_error(self, error)
     context.window_manager.modal_handler_add(self)
@@ -98,12 +120,16 @@ def _pressed(
     is_plain = not (event.ctrl or event.alt)
     if event.type == "LEFTMOUSE":
         held.point(context, event)
-        return _click(self, context, held, more=event.shift)
+        return _click(self, context, held, more=event.shift and not self.sensor)
     if event.type in {"RET", "NUMPAD_ENTER"}:
         held.matrix = Matrix.Translation(default_location(context, held.mount))
         return _click(self, context, held, more=False)
     if event.type == "N" and is_plain:
         held.stand(replace(held.stance, along_normal=not held.stance.along_normal))
+    elif event.type == "M" and is_plain:
+        held.mirror()
+    elif event.type in AXES and is_plain:
+        held.type_into(AXES.index(event.type))
     elif event.type in STEPS and is_plain and not event.shift:
         held.step(STEPS[event.type])
     elif event.type in TURNS and is_plain:
@@ -122,7 +148,12 @@ def _click(
     """Place the held sensor; then hold the next one, or finish."""
     if held.matrix is None:
         return {"RUNNING_MODAL"}
-    _put(self, context, held.kind.label, held.mount, held.matrix)
+    self.mirrored = held.mirrored
+    try:
+        _put(self, context, held.kind.label, held.mount, held.matrix)
+    except USER_ERRORS as error:  # a constraint holds the sensor that was to be moved
+        placement.end()
+        return report_error(self, error)
     if more:
         bpy.ops.ed.undo_push(message=self.bl_label)
         held.more(context)
@@ -173,10 +204,16 @@ BUSY = "Something else waits for Esc: a search, or a sensor to place"
         description="Rotation about the sensor's y axis; positive is nose down",
         subtype="ANGLE",
     ),
+    mirrored=BoolProperty(
+        name="Mirrored", description="Place a linked mirror image on the other side, too"
+    ),
+    sensor=StringProperty(
+        name="Sensor", description="Sensor that is moved; empty: a new one", options={"SKIP_SAVE"}
+    ),
 )
 def place_sensor(context: bpy.types.Context, operator: Any) -> None:
     """Place a sensor by pointing at the vehicle. Click: place, Esc: cancel"""
-    model = catalog.load(operator.model)
+    model = _model(operator, context)
     kind, mount = kinds.kind_of(model), mount_for(model)
     choose_vehicle(context.scene)
     spot = SurfaceSpot(Vector(operator.location), Vector(operator.normal).normalized(), "")

@@ -17,18 +17,22 @@ from mathutils import Matrix
 
 from .. import bridge, engine_calls, engine_process, viewport
 from ..choices import free_name
-from ..engine import graphics, kinds, pe
+from ..engine import catalog, graphics, kinds, pe
 from ..engine_calls import Gain
 from ..language import draw_label
+from ..overlay.regions import box_edges
 from ..sensor_kinds import mount_for
 from . import running_job
 from .surface_pose import (
+    MAGNET_M,
     MAX_STAND_OFF_M,
     Stance,
     SurfaceSpot,
     parts_of,
     ray_of,
+    spot_beside,
     spot_on_ray,
+    vehicle_box,
     vehicle_center,
     view_under,
 )
@@ -43,6 +47,9 @@ TEXT_PX, TEXT_GAP, PAD_PX = 12, 1.5, 6
 TEXT_AT = (26, -12)
 """Where text begins beside the mouse [px]."""
 PLATE = (0.08, 0.08, 0.08, 0.78)
+OFF, ALONG = -1, 0.5
+"""Numbers are typed for the stand-off; of a normal: along this axis the body goes on."""
+FARTHEST_M, CENTERED_M = 100.0, 5e-4
 TOPIC = "held sensor"
 _numbers = count()
 """Of studies that sensors are held in."""
@@ -52,8 +59,17 @@ class HeldSensor:
     """One sensor that is held under the mouse, until it is placed or cancelled. Its lines and faces
     are drawn in all 3D views, its text in the view under the mouse."""
 
-    def __init__(self, context: bpy.types.Context, model: Any, stance: Stance) -> None:
+    def __init__(
+        self,
+        context: bpy.types.Context,
+        model: Any,
+        stance: Stance,
+        moved: bpy.types.Object | None = None,
+    ) -> None:
         self.model, self.kind = model, kinds.kind_of(model)
+        self.mirrored, self.name = False, "" if moved is None else moved.name
+        self._own = None if moved is None else moved.matrix_world.to_euler().to_matrix().to_4x4()
+        self._axis, self._given = OFF, dict[int, float]()
         self.mount, self.stance = mount_for(model), stance
         self.matrix: Matrix | None = None
         self.text: tuple[str, ...] = ()
@@ -66,7 +82,7 @@ class HeldSensor:
         depsgraph = context.evaluated_depsgraph_get()
         vehicle = context.scene.perception_entropy.vehicle
         self._parts = parts_of(vehicle, depsgraph)
-        self._middle = vehicle_center(vehicle)
+        self._middle, self._box = vehicle_center(vehicle), vehicle_box(vehicle)
         self._scored = self._scored_in(context.scene, depsgraph)
         self._workspace = context.workspace.name
         self._handlers.show((self._draw, "POST_VIEW"), (self._draw_text, "POST_PIXEL"))
@@ -79,27 +95,49 @@ class HeldSensor:
             depsgraph = context.evaluated_depsgraph_get()
             spot = spot_on_ray(context.scene, depsgraph, self._parts, *ray_of(view))
             self._region, self._mouse = view.region.as_pointer(), view.mouse
+        self.stance = replace(self.stance, magnet=not event.ctrl)
         self.put(spot)
 
     def stand(self, stance: Stance) -> None:
-        """Change the stance of the sensor at its present spot."""
+        """Change the stance of the sensor at its present spot. One that is moved keeps its own
+        angles until it is turned."""
+        if replace(stance, stand_off_m=self.stance.stand_off_m) != self.stance:
+            self._own = None
         self.stance = stance
         self.put(self._spot)
         self.show_keys()
 
+    def mirror(self) -> None:
+        """Have a mirror image placed with the sensor, or no longer."""
+        self.mirrored = not self.mirrored
+        self.stand(self.stance)
+
+    def type_into(self, axis: int) -> None:
+        """Have numbers typed for a coordinate of the sensor; again: for its stand-off."""
+        self._axis, self._typed = OFF if axis == self._axis else axis, ""
+        self.show_keys()
+
     def typed(self, letter: str) -> None:
-        """Append a digit or a point to the typed stand-off; "" removes the last character."""
+        """Append a character to the typed number; "" removes the last one."""
         self._typed = self._typed + letter if letter else self._typed[:-1]
         try:
-            stand_off_m = float(self._typed or self.mount.stand_off_m)
+            value = float(self._typed) if self._typed else None
         except ValueError:  # not yet a number, such as a point alone
             self.show_keys()
             return
-        self.stand(replace(self.stance, stand_off_m=min(stand_off_m, MAX_STAND_OFF_M)))
+        stance = self.stance
+        if self._axis == OFF:
+            value = self.mount.stand_off_m if value is None else value
+            stance = replace(stance, stand_off_m=min(max(value, 0.0), MAX_STAND_OFF_M))
+        elif value is None:
+            self._given.pop(self._axis, None)
+        else:
+            self._given[self._axis] = min(max(value, -FARTHEST_M), FARTHEST_M)
+        self.stand(stance)
 
     def step(self, by_m: float) -> None:
         """Change the stand-off by a distance [m]."""
-        self._typed = ""
+        self._axis, self._typed = OFF, ""
         self.stand(self.stance.changed(by_m))
 
     @property
@@ -111,14 +149,18 @@ class HeldSensor:
         return round(math.degrees(yaw), 1) + 0.0, round(math.degrees(pitch), 1) + 0.0
 
     @property
-    def standoff_text(self) -> str:
-        """Return the stand-off as text: the typed text, or the present value."""
-        return f"{self._typed or format(self.stance.stand_off_m, 'g')} m"
+    def typed_text(self) -> str:
+        """Return what numbers are typed for as text: a coordinate, or the stand-off."""
+        if self._axis != OFF:
+            return f"{'XYZ'[self._axis]} {self._typed or '...'} m"
+        return f"Stand-off {self._typed or format(self.stance.stand_off_m, 'g')} m"
 
     def more(self, context: bpy.types.Context) -> None:
         """Hold another sensor of the same model; its score includes the sensor just placed."""
         scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
         self._scored, self.score = self._scored_in(scene, depsgraph), ""
+        self._axis, self._typed = OFF, ""
+        self._given.clear()
         self.put(None)
 
     def show_keys(self) -> None:
@@ -140,16 +182,35 @@ class HeldSensor:
         self._spot, self.matrix = spot, None
         self.lines = self._faces = graphics.Primitives.empty()
         if spot is not None:
+            spot = self._drawn_to(spot)
             self.matrix = self.stance.placed(spot, self.mount, self._middle)
+            if self._own is not None:
+                self.matrix = Matrix.Translation(self.matrix.translation) @ self._own
+            for axis, value in self._given.items():
+                self.matrix.translation[axis] = value
             pose = bridge.pose_of_matrix(np.array(self.matrix, dtype=float))
             stem = graphics.Primitives.of([spot.point, pose.position], STEM_COLOR)
-            self.lines = graphics.Primitives.joined([moved_to(self._shape[0], pose), stem])
-            self._faces = moved_to(self._shape[1], pose)
+            is_two = self.mirrored and not bridge.in_the_middle(pose)
+            poses = [pose, bridge.mirrored_pose(pose)] if is_two else [pose]
+            lines, faces = ([moved_to(shape, at) for at in poses] for shape in self._shape)
+            self.lines = graphics.Primitives.joined([*lines, stem])
+            self._faces = graphics.Primitives.joined(faces)
             if self._scored is not None:
                 given, lane = (*self._scored, pose), engine_process.FOLLOWS_MOUSE
                 tell = self._tell, self._tell
                 engine_process.ask(TOPIC, engine_calls.gain, given, *tell, lane=lane)
         self._write()
+
+    def _drawn_to(self, spot: SurfaceSpot) -> SurfaceSpot:
+        """Return the spot with the typed coordinates; near the centre line, the magnet has it."""
+        along = [axis for axis in range(3) if abs(spot.normal[axis]) < ALONG]
+        wanted = {axis: value for axis, value in self._given.items() if axis in along}
+        if self.stance.magnet and 1 not in self._given and abs(spot.point.y) < MAGNET_M:
+            wanted[1] = 0.0
+        if not wanted:
+            return spot
+        scene, depsgraph = bpy.context.scene, bpy.context.evaluated_depsgraph_get()
+        return spot_beside(scene, depsgraph, self._parts, spot, wanted)
 
     def _tell(self, gain: Gain | Exception) -> None:
         """Show the score that the engine found, or why there is none."""
@@ -166,15 +227,26 @@ class HeldSensor:
             where = f"{self.stance.stand_off_m:g} m from {self._spot.part}, {stands}"
             if self.stance.is_turned:
                 where += ", yaw {:g}°, pitch {:g}°".format(*self.angles)
-            self.text = self.model.name, where, self.score
+            self.text = self.model.name, where, self._distances(), self.score
         viewport.redraw_editors()
+
+    def _distances(self) -> str:
+        """Return distances from the vehicle's box and the ground; outside of the box negative."""
+        (rear, right, _), (front, left, _) = self._box.tolist()
+        x, y, z = (0.0, 0.0, 0.0) if self.matrix is None else self.matrix.translation
+        beside = f"left {left - y:.3f}" if y > 0.0 else f"right {y - right:.3f}"
+        text = f"front {front - x:.3f}, rear {x - rear:.3f}, {beside}, ground {z:.3f} m"
+        if abs(y) < CENTERED_M:
+            return f"{text}, centre line"
+        return f"{text}, mirrored" if self.mirrored else text
 
     def _scored_in(
         self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
     ) -> tuple[int, pe.Study, str] | None:
         """Return what it is scored in: a number, the study, its name; None, with the error as text,
         if the scene has no study."""
-        sensors = bridge.possible_sensors(bridge.sensor_objects(scene), depsgraph)
+        objects = [obj for obj in bridge.sensor_objects(scene) if obj.name != self.name]
+        sensors = bridge.possible_sensors(objects, depsgraph)
         name = free_name(self.kind.label, {sensor.name for sensor in sensors})
         try:
             rig = pe.Rig([*sensors, pe.Sensor(name, self.model)])
@@ -227,10 +299,12 @@ def busy() -> bool:
     return current is not None or running_job.current is not None
 
 
-def begin(context: bpy.types.Context, model: Any, stance: Stance) -> None:
-    """Start to hold a sensor under the mouse."""
+def begin(
+    context: bpy.types.Context, model: Any, stance: Stance, moved: bpy.types.Object | None = None
+) -> None:
+    """Start to hold a new sensor under the mouse, or one that is there and is moved."""
     global current
-    current = HeldSensor(context, model, stance)
+    current = HeldSensor(context, model, stance, moved)
 
 
 def end() -> None:
@@ -250,6 +324,11 @@ def sensor_shape(name: str, model: Any) -> tuple[graphics.Primitives, graphics.P
         drawing.lines(sensor, LENGTH_M, HELD_PALETTE),
         graphics.ring_lines(sensor, RING_M, HELD_PALETTE),
     ]
+    if (housing := catalog.housing(model.name)) is not None:  # the room that its body takes
+        half = np.array(housing.size) / 2.0
+        middle = np.array([0.0, 0.0, half[2] + ALOFT_M]) - housing.optical_center
+        edges = box_edges(middle - half, middle + half)
+        lines.append(graphics.Primitives.of(edges, HELD_PALETTE.other))
     low = np.array([0.0, 0.0, ALOFT_M], np.float32)
     both = graphics.Primitives.joined(lines), drawing.faces(sensor, LENGTH_M, HELD_PALETTE)
     moved = [graphics.Primitives(primitives.points - low, primitives.colors) for primitives in both]
@@ -274,7 +353,9 @@ def draw_status(header: bpy.types.Header, _context: bpy.types.Context) -> None:
         (("EVENT_SHIFT", "MOUSE_LMB"), "Place More"),
         (("EVENT_RETURN",), "On the Roof"),
         (("EVENT_N",), other),
-        (("MOUSE_MMB",), f"Wheel, [ ], Digits: Stand-off {current.standoff_text}"),
+        (("EVENT_M",), "One Side" if current.mirrored else "Both Sides"),
+        (("EVENT_CTRL",), "   No Magnet"),
+        (("MOUSE_MMB",), f"Wheel, X Y Z, Digits: {current.typed_text}"),
         (("DRIVER_ROTATIONAL_DIFFERENCE",), f"Arrows (Shift: 1°): {angles}"),
         (("EVENT_ESC",), "   Leave"),
     )

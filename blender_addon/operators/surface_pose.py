@@ -10,7 +10,7 @@ from bpy_extras import view3d_utils
 from mathutils import Matrix, Vector
 
 from .. import bridge
-from ..engine import search
+from ..engine import Floats, search
 from ..sensor_kinds import Mount
 
 PASS_STEP_M = 1e-3  # How far behind a surface that is not the vehicle's a ray goes on
@@ -55,8 +55,31 @@ def spot_on_ray(
     return None
 
 
+REACH_M = 0.5  # How far out from a spot a ray starts that finds the surface beside it
+
+
+def spot_beside(
+    scene: bpy.types.Scene,
+    depsgraph: bpy.types.Depsgraph,
+    parts: set[str] | None,
+    spot: SurfaceSpot,
+    wanted: dict[int, float],
+) -> SurfaceSpot:
+    """Return the spot on the same side of the body with the wanted coordinates [m], by axis. Where
+    the body does not reach so far, the point itself is moved."""
+    point = spot.point.copy()
+    for axis, value in wanted.items():
+        point[axis] = value
+    found = spot_on_ray(scene, depsgraph, parts, point + spot.normal * REACH_M, -spot.normal)
+    if found is None or (found.point - point).length > REACH_M:
+        return spot._replace(point=point)
+    return found
+
+
 POSITION_DECIMALS = 3  # A sensor that is put down by hand stands at whole millimetres
 PARALLEL_COS = 0.999  # Of two unit vectors: they are parallel
+QUARTER, MAGNET_RAD, MAGNET_M = math.pi / 2.0, math.radians(12.0), 0.06
+"""The magnet: to a quarter turn from so near, to the centre line from so near."""
 STAND_OFF_STEP_M, MIN_STAND_OFF_M, MAX_STAND_OFF_M = 0.01, 0.0, 2.0
 MAX_PITCH_DEG = 90.0
 """A sensor pitches no further than straight down or up."""
@@ -79,6 +102,7 @@ class Stance:
     along_normal: bool = False
     yaw_deg: float = 0.0
     pitch_deg: float = 0.0
+    magnet: bool = False
 
     def changed(self, by_m: float) -> "Stance":
         """Return the stance with a changed distance, clipped to the allowed range."""
@@ -104,6 +128,8 @@ class Stance:
         at = Matrix.Translation([round(value, POSITION_DECIMALS) for value in origin])
         if not self.along_normal:
             yaw = outward_yaw(spot.point, middle) if mount.outward else 0.0
+            near = round(yaw / QUARTER) * QUARTER
+            yaw = near if self.magnet and abs(yaw - near) <= MAGNET_RAD else yaw
             return at @ Matrix.Rotation(yaw, 4, "Z") @ self._turn()
         turned = (
             _axes_looking_along(spot.normal) if mount.outward else _axes_standing_on(spot.normal)
@@ -149,13 +175,18 @@ def outward_yaw(point: Vector, middle: Vector) -> float:
 
 
 def vehicle_center(vehicle: bpy.types.Collection | None) -> Vector:
-    """Return the middle of the vehicle's bounding boxes on the ground; else the origin."""
+    """Return the middle of the vehicle's box on the ground; the origin without one."""
+    low, high = vehicle_box(vehicle)
+    return Vector(((low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, 0.0))
+
+
+def vehicle_box(vehicle: bpy.types.Collection | None) -> Floats:
+    """Return the lowest and highest corner (2, 3) of the vehicle's bounding boxes [m]; else 0."""
     solid = [] if vehicle is None else [each for each in vehicle.all_objects if is_part(each)]
     corners = [obj.matrix_world @ Vector(corner) for obj in solid for corner in obj.bound_box]
     if not corners:
-        return Vector((0.0, 0.0, 0.0))
-    low, high = np.min(corners, axis=0), np.max(corners, axis=0)
-    return Vector(((low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, 0.0))
+        return np.zeros((2, 3))
+    return np.array([np.min(corners, axis=0), np.max(corners, axis=0)])
 
 
 def is_part(obj: bpy.types.Object) -> bool:

@@ -28,7 +28,7 @@ from .rigs import KnownRig as KnownRig
 from .rigs import KnownSensor as KnownSensor
 from .rigs import known_rig as known_rig
 from .rigs import known_rigs as known_rigs
-from .templates import NamedPlaces, at_nearest, filled
+from .templates import PlacesByName, at_nearest, filled
 from .templates import RigTemplate as RigTemplate
 from .templates import templates as templates
 
@@ -167,7 +167,7 @@ def rig_named(key: str) -> KnownRig | RigTemplate:
 
 
 def sensors_on(
-    rig: KnownRig | RigTemplate, vehicle: Vehicle | None = None, places: NamedPlaces | None = None
+    rig: KnownRig | RigTemplate, vehicle: Vehicle | None = None, places: PlacesByName | None = None
 ) -> tuple[KnownSensor, ...]:
     """Return the sensors of a rig on a vehicle.
 
@@ -188,7 +188,7 @@ def sensors_on(
 
 
 def rig_on(
-    rig: KnownRig | RigTemplate, vehicle: Vehicle | None = None, places: NamedPlaces | None = None
+    rig: KnownRig | RigTemplate, vehicle: Vehicle | None = None, places: PlacesByName | None = None
 ) -> Rig:
     """Return the rig of `sensors_on`."""
     found = sensors_on(rig, vehicle, places)

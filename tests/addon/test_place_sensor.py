@@ -10,6 +10,7 @@ from mathutils import Vector
 from blender_addon import engine_calls
 from blender_addon.engine import pe
 from blender_addon.operators import surface_pose
+from blender_addon.sensor_kinds import mount_for
 from tests.addon import scenes
 
 
@@ -79,3 +80,32 @@ def test_its_preview_is_the_score_with_it_beside_that_without(bare):
     gain = engine_calls.gain(1, study, "front", study.rig["front"].pose)
     assert gain == (before, after.entropy, after.coverage)
     assert gain.after < gain.before and f"({after.entropy - before:+.3f})" in str(gain)
+
+
+def test_the_magnet_holds_the_centre_line_and_quarter_turns(bare):
+    """Near the middle of the front a camera looks ahead and stands on y = 0; else by its place."""
+    depsgraph = scenes.depsgraph()
+    spot = spot_below(bare, 1.9, 0.04)
+    mount = mount_for(pe.catalog.load("Camera 60 deg"))
+    middle = surface_pose.vehicle_center(bare.perception_entropy.vehicle)
+    parts = surface_pose.parts_of(bare.perception_entropy.vehicle, depsgraph)
+    near = surface_pose.spot_beside(bare, depsgraph, parts, spot, {1: 0.0})
+    assert tuple(near.point) == pytest.approx((1.9, 0.0, spot.point.z), abs=1e-5)
+    beyond = surface_pose.spot_beside(bare, depsgraph, parts, spot, {0: 30.0})
+    assert beyond.point.x == 30.0, "no body there"
+    for x, y, magnet, yaw in ((1.9, 0.3, True, 0), (1.9, 0.3, False, 9), (1.0, 0.8, True, 39)):
+        at = surface_pose.SurfaceSpot(Vector((x, y, 0.5)), Vector((0.0, 0.0, 1.0)), "")
+        stance = surface_pose.Stance(0.1, magnet=magnet)
+        turned = stance.placed(at, mount, middle).to_euler().z
+        assert math.degrees(turned) == pytest.approx(yaw, abs=1e-3)
+
+
+def test_a_sensor_is_placed_on_both_sides_and_dragged_along_the_surface(bare):
+    """The partner is linked and follows; a sensor that is moved keeps its model."""
+    first = place("Camera 60 deg", location=(0.0, 0.9, 0.5), normal=(0.0, 1.0, 0.0), mirrored=True)
+    other = bpy.data.objects[first.perception_entropy.mirror_of]
+    assert other.location.y == pytest.approx(-first.location.y)
+    count = len(scenes.study().rig)
+    again = place("Pandar64", sensor=first.name, location=(1.0, 0.9, 0.5), normal=(0.0, 1.0, 0.0))
+    assert again == first and len(scenes.study().rig) == count == 2
+    assert first.perception_entropy.model == "Camera 60 deg" and first.location.x == 1.0

@@ -16,7 +16,7 @@ from ...scene.rig import SensorModel
 from ...sensors import kind_of
 from ..rigs import KnownSensor
 
-NamedPlaces = Mapping[str, NamedPlace]
+PlacesByName = Mapping[str, NamedPlace]
 Load = Callable[[str], SensorModel]
 """From a name in the catalogue to its model."""
 
@@ -53,7 +53,7 @@ def _rows(table: Iterable[Mapping[str, Any]]) -> tuple[tuple[str, str, float, fl
     return tuple(rows)
 
 
-def filled(template: RigTemplate, places: NamedPlaces, load: Load) -> tuple[KnownSensor, ...]:
+def filled(template: RigTemplate, places: PlacesByName, load: Load) -> tuple[KnownSensor, ...]:
     """Return a template's sensors, named by place; each is upright and stands off as its kind does.
 
     A sensor that looks all around looks ahead. `InputError` when a place is not there.
@@ -69,7 +69,7 @@ def filled(template: RigTemplate, places: NamedPlaces, load: Load) -> tuple[Know
 
 
 def at_nearest(
-    sensors: Iterable[KnownSensor], places: NamedPlaces, load: Load
+    sensors: Iterable[KnownSensor], places: PlacesByName, load: Load
 ) -> list[KnownSensor]:
     """Return sensors, each at the nearest place that no nearer one has, with their own angles.
 

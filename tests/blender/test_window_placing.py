@@ -83,6 +83,40 @@ def test_a_click_places_what_is_held_shift_goes_on_esc_leaves_and_undo_takes_eac
     assert "Traceback" not in window.log.read_text()
 
 
+def test_both_sides_a_typed_height_and_a_drag_along_the_surface(window, screenshots):
+    before = sensors(window)
+    start(window)
+    over(window, (1.5, 0.5, 0.9))
+    held_at(window, lambda place: place is not None and place[2] < 1.2)
+    window.key("m")
+    window.key("z")
+    for key in ("1", "period", "2", "5"):
+        window.key(key)
+    held_at(window, lambda place: place[2] == pytest.approx(1.25))
+    window.screenshot(screenshots / "window_both_sides.png", aside=False)
+    window.press_button()
+    window.wait_for(lambda: len(sensors(window)) == len(before) + 2, EFFECT_TIMEOUT_S, "two")
+    one, other = (window.state["places"][name] for name in sensors(window) - before)
+    assert one[:3] == pytest.approx((other[0], -other[1], other[2]), abs=1e-4)
+    assert one[2] == pytest.approx(1.25)
+
+    window.press_until(
+        "pe.place_sensor",
+        lambda: window.state["placing"],
+        "the sensor to drag",
+        words="Drag Along Surface",
+    )
+    over(window, (-0.4, 0.03, 1.45))
+    held_at(window, lambda place: place is not None and place[2] > 1.4)
+    assert window.state["held"][1] == pytest.approx(0.0), "the magnet"
+    window.screenshot(screenshots / "window_drag_along.png", aside=False)
+    window.press_button()
+    window.wait_for(lambda: not window.state["placing"], EFFECT_TIMEOUT_S, "the end")
+    window.screenshot(screenshots / "window_handles.png")
+    assert len(sensors(window)) == len(before) + 2
+    assert "Traceback" not in window.log.read_text()
+
+
 def test_look_through_a_camera_and_esc_comes_back(window, screenshots):
     before = sensors(window)
     window.do("bpy.context.scene.perception_entropy.kind_to_add = 'camera'")

@@ -38,7 +38,7 @@ class PE_GGT_handles(bpy.types.GizmoGroup):
     def setup(self, _context: bpy.types.Context) -> None:
         for color, orientation, axis in ROTATIONS:
             dial = self.gizmos.new("GIZMO_GT_dial_3d")
-            dial.draw_options = {"CLIP"}
+            dial.draw_options = {"CLIP"}  # type: ignore[attr-defined]  # of this type of gizmo
             rotation = dial.target_set_operator("transform.rotate")
             rotation.orient_type, rotation.constraint_axis = orientation, axis
             rotation.release_confirm = True

@@ -31,7 +31,7 @@ def sensor(layout: UILayout, _settings: PropertyGroup, context: Context) -> None
     row.prop(view, "show_inset", toggle=True, icon="IMAGE_PLANE")
     row = layout.row()
     row.operator_context = "INVOKE_DEFAULT"
-    row.operator("pe.place_sensor", text="Drag Along Surface", icon="SNAP_FACE").sensor = obj.name
+    row.operator("pe.place_sensor", text="Drag Along Surface", icon="VIEW_PAN").sensor = obj.name
     draw_mirror(layout, obj)
     split = layout.split(factor=0.4)
     draw_label(split, "Mounted on")

@@ -104,7 +104,7 @@ def test_both_sides_a_typed_height_and_a_drag_along_the_surface(window, screensh
         "pe.place_sensor",
         lambda: window.state["placing"],
         "the sensor to drag",
-        words="Drag Along Surface",
+        words='sensor="LiDAR',
     )
     over(window, (-0.4, 0.03, 1.45))
     held_at(window, lambda place: place is not None and place[2] > 1.4)

@@ -58,7 +58,6 @@ def show_places(context: bpy.types.Context) -> str:
         obj = bpy.data.objects.new(name, None)
         obj[KEY] = name
         obj.empty_display_type, obj.empty_display_size = "ARROWS", SIZE_M
-        obj.show_name = obj.show_in_front = True
         turn = Matrix.Rotation(math.radians(place.yaw_deg), 4, "Z")
         obj.matrix_world = Matrix.Translation(place.point) @ turn
         collection.objects.link(obj)

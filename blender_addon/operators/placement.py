@@ -182,11 +182,12 @@ class HeldSensor:
         self._spot, self.matrix = spot, None
         self.lines = self._faces = graphics.Primitives.empty()
         if spot is not None:
-            spot = self._drawn_to(spot)
+            wanted = self._wanted(spot)
+            spot = self._moved_to(spot, wanted)
             self.matrix = self.stance.placed(spot, self.mount, self._middle)
             if self._own is not None:
                 self.matrix = Matrix.Translation(self.matrix.translation) @ self._own
-            for axis, value in self._given.items():
+            for axis, value in wanted.items():
                 self.matrix.translation[axis] = value
             pose = bridge.pose_of_matrix(np.array(self.matrix, dtype=float))
             stem = graphics.Primitives.of([spot.point, pose.position], STEM_COLOR)
@@ -201,16 +202,18 @@ class HeldSensor:
                 engine_process.ask(TOPIC, engine_calls.gain, given, *tell, lane=lane)
         self._write()
 
-    def _drawn_to(self, spot: SurfaceSpot) -> SurfaceSpot:
-        """Return the spot with the typed coordinates; near the centre line, the magnet has it."""
-        along = [axis for axis in range(3) if abs(spot.normal[axis]) < ALONG]
-        wanted = {axis: value for axis, value in self._given.items() if axis in along}
-        if self.stance.magnet and 1 not in self._given and abs(spot.point.y) < MAGNET_M:
-            wanted[1] = 0.0
-        if not wanted:
+    def _wanted(self, spot: SurfaceSpot) -> dict[int, float]:
+        """Return the typed coordinates; near the centre line, the magnet's too."""
+        is_near = self.stance.magnet and abs(spot.point.y) < MAGNET_M
+        return ({1: 0.0} if is_near else {}) | self._given
+
+    def _moved_to(self, spot: SurfaceSpot, wanted: dict[int, float]) -> SurfaceSpot:
+        """Return the spot with those coordinates that run along the body."""
+        along = {axis: v for axis, v in wanted.items() if abs(spot.normal[axis]) < ALONG}
+        if not along:
             return spot
         scene, depsgraph = bpy.context.scene, bpy.context.evaluated_depsgraph_get()
-        return spot_beside(scene, depsgraph, self._parts, spot, wanted)
+        return spot_beside(scene, depsgraph, self._parts, spot, along)
 
     def _tell(self, gain: Gain | Exception) -> None:
         """Show the score that the engine found, or why there is none."""

@@ -210,6 +210,12 @@ class ViewSettings:
     show_inset: bool = _switch(
         False, "Picture in View", "Show what the selected sensor sees in a corner of the 3D view"
     )
+    show_cameras: bool = _switch(
+        False,
+        "Camera Strip",
+        "Show what every camera sees along the lower edge of the 3D view; a click on a picture "
+        "looks through that camera",
+    )
     show_legend: bool = _switch(True, "Legend", "Explain the colours in the lower right corner")
     layers: frozenset[str] = frozenset()
 

@@ -196,7 +196,8 @@ def beside_toolbar(context: bpy.types.Context) -> float:
     return left + MARGIN * ui_scale()
 
 
-STRIP = "strip"  # The plate along the lower edge: those in the corners stand above it
+STRIP, CAMERAS = "strip", "cameras"
+"""Plates along the lower edge, from below: those in the corners stand above them."""
 
 
 def sidebar_left(context: bpy.types.Context) -> float:
@@ -206,15 +207,18 @@ def sidebar_left(context: bpy.types.Context) -> float:
     return context.region.width - max(widths, default=0)
 
 
-def above_hud(context: bpy.types.Context, *, over_strip: bool = True) -> float:
+def above_hud(context: bpy.types.Context, *, over: Sequence[str] = (STRIP, CAMERAS)) -> float:
     """Return where a plate begins, from below: clear of the panel of the last operation. A row is
     always left for that panel, so that the plate does not jump with every move."""
     bottom = HUD_ROW * ui_scale()
     for other in context.area.regions:
         if other.type == "HUD" and other.height > 1:
             bottom = max(bottom, other.y + other.height - context.region.y)
-    strip = _plates.get(context.region.as_pointer(), {}).get(STRIP) if over_strip else None
-    return max(bottom, strip[3] if strip else 0.0) + MARGIN * ui_scale() / 2.0
+    boxes = _plates.get(context.region.as_pointer(), {})
+    return (
+        max([bottom, *(boxes[name][3] for name in over if name in boxes)])
+        + MARGIN * ui_scale() / 2.0
+    )
 
 
 def reserve_plate(region: int, plate: str, box: PlateBox | None) -> None:

@@ -22,7 +22,7 @@ def draw_strip(
     why it is not that of the scene; empty: it is."""
     scale = viewport.ui_scale()
     pad, small = PAD * scale, SMALL * scale
-    left, bottom = viewport.beside_toolbar(context), viewport.above_hud(context, over_strip=False)
+    left, bottom = viewport.beside_toolbar(context), viewport.above_hud(context, over=())
     right = viewport.sidebar_left(context) - viewport.MARGIN * scale
     height = (HEAD + FOOT + ROW * len(strip.names)) * scale
     plate = left, bottom, right, bottom + height

@@ -70,9 +70,10 @@ def draw_offers(
 
 
 @panel("Surroundings", closed=False)
-def surroundings(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
+def surroundings(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """A road and test bodies round the vehicle, and which sensors see each body"""
     layout.operator("pe.surroundings", icon="WORLD")
+    layout.prop(settings.view, "show_cameras", toggle=True, icon="RENDERLAYERS")
     for name, body in body_query.seen(context.scene).items():
         column = layout.column(align=True)
         chosen = column.operator("pe.select_part", text=f"{name}: {body.summary}", translate=False)

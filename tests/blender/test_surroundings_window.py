@@ -32,3 +32,67 @@ def test_a_grabbed_body_says_what_sees_it_while_it_moves(window, screenshots):
     window.wait_until(f"{SEEN}['child'].standing.place[0] == {x!r}", EFFECT_TIMEOUT_S)
     assert window.do(CHILD)["child"] == before
     assert "Traceback" not in window.log.read_text()
+
+
+PICTURES = (
+    "__import__('bl_ext.user_default.perception_entropy.operators.inset', fromlist=['_in_strip'])"
+)
+THREE = """
+for name, place, turn in (
+    ("front", (0.6, 0.0, 1.35), 0.0),
+    ("left", (0.8, 0.95, 1.0), 1.57),
+    ("rear", (-2.5, 0.0, 1.0), 3.14),
+):
+    bpy.ops.pe.add_sensor(model="Camera 120 deg")
+    made = bpy.context.object
+    made.name, made.location, made.rotation_euler = name, place, (0.0, 0.25, turn)
+view = window.scene.perception_entropy.view
+view.show_cameras, view.show_ground = True, False
+bpy.ops.pe.surroundings()
+"""
+WHERE = f"""
+((region, drawn),) = {PICTURES}._in_strip.items()
+kept["names"], box = [name for name, _ in drawn], dict(drawn)["left"]
+main = next(each for each in area.regions if each.type == "WINDOW")
+kept["at"] = [main.x + (box[0] + box[2]) / 2, window.height - main.y - (box[1] + box[3]) / 2]
+"""
+COST = f"""
+import time
+pictures = {PICTURES}
+view = window.scene.perception_entropy.view
+def redraws(count=6):
+    begun = time.perf_counter()
+    for _ in range(count):
+        bpy.ops.wm.redraw_timer(type="DRAW_WIN", iterations=1)
+    return (time.perf_counter() - begun) / count
+kept["on"] = redraws()
+pictures.note_change()
+redraws(1)
+begun = time.perf_counter()
+pictures.render_requested()
+kept["picture"], kept["left"] = time.perf_counter() - begun, len(pictures._requested)
+view.show_cameras = False
+redraws(2)
+kept["off"], kept["kept"] = redraws(), len(pictures._pictures)
+"""
+
+
+def test_a_click_on_a_picture_of_the_strip_looks_through_its_camera(window, screenshots):
+    window.do(THREE)
+    window.wait_until(f"len({PICTURES}._pictures) == 3", EFFECT_TIMEOUT_S)
+    window.settle()
+    window.screenshot(screenshots / "window_strip.png")
+    told = window.do(WHERE)
+    assert told["names"] == ["front", "left", "rear"]
+    window.click(*map(round, told["at"]))
+    window.wait_until(
+        "window.scene.camera and window.scene.camera.parent.name == 'left'", EFFECT_TIMEOUT_S
+    )
+    window.settle()
+    window.screenshot(screenshots / "window_strip_through.png")
+    window.do("bpy.ops.pe.look_back()")
+    cost = window.do(COST)
+    print(cost)
+    assert cost["left"] == 2 and cost["kept"] == 0
+    assert cost["on"] + cost["picture"] < 1.5 * cost["off"] + 0.05
+    assert "Traceback" not in window.log.read_text()

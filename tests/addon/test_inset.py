@@ -36,6 +36,16 @@ def test_a_picture_keeps_its_proportions_and_leaves_the_view_room(region, pictur
     assert height == pytest.approx(width * picture[1] / picture[0], abs=2)
 
 
+@pytest.mark.parametrize("width", [1200.0, 300.0])
+def test_the_strip_has_all_cameras_beside_each_other(width):
+    pictures = [(1920, 1080), (640, 480), (1280, 320)]
+    sizes = inset.strip_sizes(width, pictures, 1.0)
+    assert sum(size.width for size in sizes) + 2 * inset.GAP_PX <= width
+    assert len({size.height for size in sizes}) == 1 and sizes[0].height <= inset.STRIP_PX
+    for (across, up), size in zip(pictures, sizes, strict=True):
+        assert size.width == pytest.approx(size.height * across / up, abs=4)
+
+
 def context(scene, obj, perspective="PERSP"):
     """Return what a 3D view is drawn in."""
     look = SimpleNamespace(view_perspective=perspective)

@@ -43,7 +43,7 @@ class InsetSize(NamedTuple):
     height: int
 
 
-class Wanted(NamedTuple):
+class WantedPicture(NamedTuple):
     """A picture of a camera to be rendered; `made_of` is what it is made from."""
 
     made_of: Hashable
@@ -52,7 +52,7 @@ class Wanted(NamedTuple):
     size: InsetSize
 
 
-Place = tuple[int, str]
+PictureKey = tuple[int, str]
 """The region's pointer, and the sensor's name in the strip; "" in the corner."""
 
 _handlers = viewport.DrawHandlers()
@@ -61,9 +61,9 @@ _change_count = 0
 _rendering = False
 _rendered_count, _rest_at = 0, 0.0
 """How often it had changed when pictures were rendered last, and when all others will be."""
-_pictures: dict[Place, tuple[Hashable, sensor_pictures.InsetCamera]] = {}
+_pictures: dict[PictureKey, tuple[Hashable, sensor_pictures.InsetCamera]] = {}
 """Pictures of cameras, with what they were made from."""
-_requested: dict[Place, Wanted] = {}
+_requested: dict[PictureKey, WantedPicture] = {}
 """Pictures that are to be rendered, in turn."""
 _in_strip: dict[int, list[tuple[str, viewport.PlateBox]]] = {}
 """Sensors and their pictures in the strip, by the region's pointer."""
@@ -302,7 +302,7 @@ def _picture(
     made_of = (size, sensor.pose, model.name, _change_count, context.scene.name, look)
     cached = _pictures.get(place)
     if cached is None or cached[0] != made_of:
-        _requested[place] = Wanted(made_of, sensor.pose, model, size)
+        _requested[place] = WantedPicture(made_of, sensor.pose, model, size)
         if not bpy.app.timers.is_registered(render_requested):
             bpy.app.timers.register(render_requested, first_interval=0.0)
     return None if cached is None else cached[1]
@@ -427,7 +427,7 @@ def _corner(context: bpy.types.Context, size: tuple[int, int]) -> tuple[float, f
     return left, min(bottom, region.height - size[1] - TITLE_PX * viewport.ui_scale())
 
 
-def _release(place: Place) -> None:
+def _release(place: PictureKey) -> None:
     _requested.pop(place, None)
     cached = _pictures.pop(place, None)
     if cached is not None:

@@ -208,6 +208,7 @@ def _draw_strip(context: bpy.types.Context) -> None:
     """Draw the pictures of all cameras in a row, and note where they are."""
     region, scale = context.region.as_pointer(), viewport.ui_scale()
     viewport.reserve_plate(region, viewport.CAMERAS, None)
+    _in_strip.pop(region, None)
     cameras, drawn = shown_cameras(context), []
     names = {sensor.name for sensor, _ in cameras}
     for place in [key for key in _pictures if key[0] == region and key[1] not in {"", *names}]:
@@ -230,7 +231,7 @@ def _draw_strip(context: bpy.types.Context) -> None:
         boxes = [box for _, box in drawn]
         outer = boxes[0][0], bottom, boxes[-1][2], max(box[3] for box in boxes)
         viewport.reserve_plate(region, viewport.CAMERAS, outer)
-    _in_strip[region] = drawn
+        _in_strip[region] = drawn
 
 
 def strip_sizes(width: float, pictures: list[tuple[int, int]], scale: float) -> list[InsetSize]:

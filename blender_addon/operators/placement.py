@@ -240,7 +240,7 @@ class HeldSensor:
         beside = f"left {left - y:.3f}" if y > 0.0 else f"right {y - right:.3f}"
         text = f"front {front - x:.3f}, rear {x - rear:.3f}, {beside}, ground {z:.3f} m"
         if abs(y) < CENTERED_M:
-            return f"{text}, centre line"
+            return text.replace(beside, "on the centre line")
         return f"{text}, mirrored" if self.mirrored else text
 
     def _scored_in(
@@ -289,6 +289,7 @@ class HeldSensor:
         left, top = (at + off * scale for at, off in zip(self._mouse, TEXT_AT, strict=True))
         width = max((viewport.text_size(line, size)[0] for line in self.text), default=0.0)
         low = top - row * (len(self.text) - 1) - pad
+        left = min(left, viewport.sidebar_left(bpy.context) - width - 2.0 * pad)
         viewport.fill_box((left - pad, low, left + width + pad, top + row), PLATE)
         for number, line in enumerate(self.text):
             viewport.draw_text(line, left, top - number * row, size, viewport.INK)

@@ -117,6 +117,24 @@ def test_both_sides_a_typed_height_and_a_drag_along_the_surface(window, screensh
     assert "Traceback" not in window.log.read_text()
 
 
+YAW = "kept['angles'] = list(bpy.data.objects['roof_lidar'].rotation_euler)"
+
+
+def test_a_handle_turns_the_yaw_of_the_active_sensor_and_is_undone(window):
+    x, y = window.place_of(tuple(window.state["places"]["roof_lidar"][:3]))
+    for below in (18, 21, 24, 27, 30):  # the arc passes there
+        window.drag((x, y + below), (x + 70, y + below - 14))
+        window.settle()
+        roll, pitch, yaw = window.do(YAW)["angles"]
+        if yaw:
+            break
+    assert abs(yaw) > 0.1 and (roll, pitch) == pytest.approx((0.0, 0.0), abs=1e-5)
+    window.point_at_view()
+    window.key("ctrl+z")
+    window.settle()
+    assert window.do(YAW)["angles"] == pytest.approx([0.0, 0.0, 0.0], abs=1e-6)
+
+
 def test_look_through_a_camera_and_esc_comes_back(window, screenshots):
     before = sensors(window)
     window.do("bpy.context.scene.perception_entropy.kind_to_add = 'camera'")

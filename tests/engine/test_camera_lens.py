@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.sensors import kind_of
 from pe_core.sensors.camera.definition import axes_of, bent_pixel_area, frustum_distance
 from pe_core.sensors.camera.lens import (
     RINGS,
@@ -63,6 +64,16 @@ def test_places_in_the_picture_come_back(lens):
     np.testing.assert_allclose((directions[seen] ** 2).sum(axis=1), 1.0, atol=1e-12)
     again = camera.lens.project(*directions[seen].T)
     np.testing.assert_allclose(again, (right[seen], down[seen]), atol=1e-6)
+
+
+def test_rays_through_a_bent_picture_are_those_of_a_raster_of_it():
+    camera = pe.Camera("mine", *SIZES[RATIONAL], lens=RATIONAL)
+    sensor = pe.Sensor("eye", camera, pe.Pose((1.0, 2.0, 3.0), (0.1, 0.2, -2.0)))
+    rays = kind_of(sensor).rays(sensor, 160) @ sensor.pose.ground_from_sensor
+    assert len(rays) == 160  # 16 x 10 fields of 80 px
+    places = np.round(np.transpose(camera.lens.project(*rays.T)), 6)
+    raster = {(x, y) for x in range(40, 1280, 80) for y in range(40, 800, 80)}
+    assert {tuple(place) for place in places.tolist()} == raster
 
 
 @pytest.mark.parametrize("lens", [WIDE, RATIONAL, FISHEYE, ROUND])

@@ -60,11 +60,13 @@ def rounded(pose: Pose) -> Pose:
 @dataclass(frozen=True, slots=True)
 class DesignVariable:
     """A number that a search varies, from `low` to `high`; both belong to the range. Its unit is
-    "m", "rad" or "share": from 0 to 1, a share selects an element of a list and is cyclic."""
+    "m", "rad" or "share": from 0 to 1, a share selects an element of a list and is cyclic.
+    `mirrored` is its factor, 1 or -1, in the mirror image of a pose across y = 0."""
 
     low: float
     high: float
     unit: str
+    mirrored: float = 1.0
 
     def clipped(self, value: float) -> float:
         """Return a value clipped to the range; a share is taken modulo 1."""
@@ -75,7 +77,8 @@ class DesignVariable:
 
 def variable_of(axis: str, bounds: tuple[float, float]) -> DesignVariable:
     """Return the design variable of a coordinate, with its bounds [m or rad]."""
-    return DesignVariable(*bounds, METRE if axis in POSITION_AXES else RADIAN)
+    unit = METRE if axis in POSITION_AXES else RADIAN
+    return DesignVariable(*bounds, unit, -1.0 if axis in ("y", "roll", "yaw") else 1.0)
 
 
 class MountSurface:

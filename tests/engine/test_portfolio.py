@@ -99,6 +99,28 @@ def test_sensors_of_one_model_take_values_from_each_other_and_move_together():
     assert ends[0] < 0.02 and ends[1] > 0.2
 
 
+def test_sensors_of_one_model_are_tried_beside_the_mirror_image_of_each_other():
+    """Each axis but one as the other sensor's; none where it is of another model."""
+    places = {"roof": ((0.2, 0.6, 1.6), (0.0, 6.0, 0.0)), "b": ((-0.4, -0.3, 1.9), (0.0, 0.0, 0.0))}
+    rig, space = mounting.space(*[can(at, name, turn) for name, (at, turn) in places.items()])
+    unlike = replace(rig["b"], model=replace(rig["b"].model, name="of another make"))
+    asked = []
+    for each in (rig, pe.Rig([rig["roof"], unlike])):
+        coding = Parametrization(each, space)
+        images = Survey(Given(coding, coding.start, 5.0)).images(
+            Incumbent(coding.start, 5.0), PHASE
+        )
+        sizes = answered(images, lambda rig: asked.append(rig) or 9.0)
+        assert len(sizes) == (2 if each is rig else 0)
+    for tried in asked:
+        moved, kept = ("roof", "b") if tried["b"].pose == rig["b"].pose else ("b", "roof")
+        at, other = pose_values(tried[moved].pose), pose_values(rig[kept].pose)
+        image = {**other, "y": -other["y"]}
+        apart = [axis for axis in ("x", "y", "z", "pitch") if abs(at[axis] - image[axis]) > 1e-9]
+        assert len(apart) == 1, apart
+    assert {tried["b"].pose == rig["b"].pose for tried in asked} == {True, False}
+
+
 def test_a_valley_as_narrow_as_a_step_is_found_beside_a_wide_one():
     """A descent by a model or by a distribution ends in the wide valley, at 1."""
 

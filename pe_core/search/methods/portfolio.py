@@ -2,6 +2,7 @@
 
 Surveys find the region: each sensor tries places all over its range, the others kept. Descents that
 share nothing but their start race then; the best of them goes on to the end, with surveys between.
+Sensors of one model are tried beside images of each other, too.
 Sensors on lists of slots try all slots, exchange them, and move two at a time.
 """
 
@@ -74,6 +75,7 @@ def ask(given: Given) -> QuestionStream:
             yield from steps.descend(incumbent, phase, share * left)
         if not stalled:
             yield from survey.survey(incumbent, phase, NEAR_COUNT, NEAR)
+            yield from survey.images(incumbent, phase)
         if incumbent.count == before[0]:
             return  # nothing can move
         number += 1
@@ -111,6 +113,7 @@ def _race(
     on, share = racing, RACE_SHARE
     while on:
         for own, steps in on:
+            yield from survey.images(own, last)
             yield from steps.descend(own, last, share * left)
         on = sorted(on, key=lambda each: each[0].entropy)[: len(on) // 2] if len(on) > 2 else []
         share *= 2.0

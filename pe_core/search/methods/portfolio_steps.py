@@ -40,8 +40,8 @@ class MultiscaleDescent:
         movable = [v.low < v.high and v.unit != SHARE for v in variables]
         blocks = given.parametrization.blocks
         self._free = [
-            ([k for k in block if movable[k]], number, alike)
-            for block, alike in zip(blocks, _alike(given.parametrization), strict=True)
+            ([k for k in block if movable[k]], number, others)
+            for block, others in zip(blocks, alike(given.parametrization), strict=True)
             for number in block
             if movable[number]
         ]
@@ -103,7 +103,7 @@ class MultiscaleDescent:
         return length if self._rng.random() < 0.5 else -length
 
 
-def _alike(parametrization: Parametrization) -> Iterator[list[int]]:
+def alike(parametrization: Parametrization) -> Iterator[list[int]]:
     """Yield, for each sensor, how far away the variables of those of the same model are."""
     variables, blocks = parametrization.variables, parametrization.blocks
     units = ([variables[k].unit for k in block] for block in blocks)

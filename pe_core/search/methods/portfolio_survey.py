@@ -4,7 +4,7 @@ A sensor in ranges tries places all over them, or their corners; one on a list o
 slots. Sensors in slots exchange them, and move two at a time.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import combinations, product
 
 import numpy as np
@@ -13,9 +13,14 @@ from numpy.typing import NDArray
 from ..domains import METRE, SHARE, DesignVariable
 from ..parametrization import Candidate
 from .method import Evaluated, Given, Incumbent, MethodPart, Phase, sampled_candidate
+from .portfolio_steps import alike
 
 TWO_MOVED = 16  # Placements with two sensors in other slots, tried at once
 MAX_SLOTS = 16  # Slots evaluated in one turn; of a longer list, so many are sampled
+IMAGES, IMAGE_SHARE = 8, 0.02
+"""Places beside images that each sensor tries at once; all sensors at most this share of all."""
+BESIDE = (-1 / 16, 1 / 16, -1 / 32, 1 / 32, -1 / 64, 1 / 64)
+"""How far beside an image, as shares of a range."""
 
 
 class SlotTurn:
@@ -72,6 +77,8 @@ class Survey:
         self._shares = {
             k: Recurrence(len(block)) for k, block in enumerate(blocks) if k not in self._turns
         }
+        like = enumerate(alike(given.parametrization))
+        self._alike = [[] if k in self._turns else others for k, others in like]
 
     @property
     def has_slots_alone(self) -> bool:
@@ -92,10 +99,35 @@ class Survey:
                 incumbent.told((yield from self._turns[number].evaluate(incumbent.best, phase)))
                 continue
             sampled = [self._sampled(incumbent.best, number, block, reach) for _ in range(count)]
-            kept = [c for c in sampled if c is not None]
-            yield from _evaluate(incumbent, phase, kept)
+            yield from _evaluate(incumbent, phase, sampled)
         if len(self._turns) > 1:
-            yield from _evaluate(incumbent, phase, list(self._exchanged(incumbent.best)))
+            yield from _evaluate(incumbent, phase, self._exchanged(incumbent.best))
+
+    def images(self, incumbent: Incumbent, phase: Phase) -> MethodPart[None]:
+        """Try each sensor beside images of others of its model, mirrored where it is on the other
+        side. Two LiDARs have their optima together, where beams of one fall between those of the
+        other: no step of one of them leads there."""
+        count = min(IMAGES, int(IMAGE_SHARE * phase.total / len(self._alike)))
+        for number, others in enumerate(self._alike):
+            if others:
+                sampled = [self._image(incumbent.best, number, others) for _ in range(count)]
+                yield from _evaluate(incumbent, phase, sampled)
+
+    def _image(self, base: Candidate, number: int, others: list[int]) -> Candidate | None:
+        variables, block = self._parametrization.variables, self._parametrization.blocks[number]
+
+        def sample() -> list[float]:
+            vector, away = list(base.vector), others[int(self._rng.integers(len(others)))]
+            for k in block:
+                own, other = vector[k], vector[k + away]
+                image = variables[k].mirrored * other
+                vector[k] = image if abs(own - image) < abs(own - other) else other
+            k = block[int(self._rng.integers(len(block)))]
+            width = variables[k].high - variables[k].low
+            vector[k] += width * BESIDE[int(self._rng.integers(len(BESIDE)))]
+            return vector
+
+        return sampled_candidate(self._parametrization, sample)
 
     def two_moved(self, incumbent: Incumbent, phase: Phase) -> MethodPart[None]:
         """Try placements with two sensors in other slots."""
@@ -110,7 +142,7 @@ class Survey:
             return vector
 
         sampled = [sampled_candidate(self._parametrization, sample) for _ in range(TWO_MOVED)]
-        yield from _evaluate(incumbent, phase, [c for c in sampled if c is not None])
+        yield from _evaluate(incumbent, phase, sampled)
 
     def _exchanged(self, base: Candidate) -> Iterator[Candidate]:
         """Yield the placements in which two sensors exchange their slots."""
@@ -163,9 +195,11 @@ def _within(variable: DesignVariable, value: float, reach: float, share: float) 
     return low + share * (high - low)
 
 
-def _evaluate(incumbent: Incumbent, phase: Phase, candidates: list[Candidate]) -> MethodPart[None]:
+def _evaluate(
+    incumbent: Incumbent, phase: Phase, candidates: Iterable[Candidate | None]
+) -> MethodPart[None]:
     """Evaluate placements; only those better than the incumbent matter."""
-    moved = [c for c in candidates if c.vector != incumbent.best.vector]
+    moved = [c for c in candidates if c is not None and c.vector != incumbent.best.vector]
     if moved:
         values = yield from phase.evaluate(moved, incumbent.entropy)
         incumbent.told(zip(moved, values, strict=True))

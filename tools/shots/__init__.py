@@ -6,6 +6,7 @@ from .guide import GUIDE
 from .mounts import MOUNTS
 from .reel import Reel
 from .requirements import REQUIREMENTS
+from .tour import TOUR
 
 REELS = {
     "guide": GUIDE,
@@ -13,6 +14,7 @@ REELS = {
     "film": FILM,
     "mounts": MOUNTS,
     "requirements": REQUIREMENTS,
+    "tour": TOUR,
 }
 """By the name that `tools/screenshots.py` takes."""
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
-from PIL import Image
+from PIL import Image, ImageDraw, ImageFont
 
 Box = tuple[int, int, int, int]
 MAX_PIXELS = 1600
@@ -13,6 +14,7 @@ MAX_PIXELS = 1600
 LOST_BITS = (0, 1, 2, 3)
 MAX_PNG_BYTES = 450_000
 MAX_FILM_BYTES = 3_000_000
+CAPTION_PX = 44
 
 
 def save_still(source: Path, target: Path, crop: Box | None = None) -> int:
@@ -38,28 +40,44 @@ def rounded(image: Image.Image, bits: int) -> Image.Image:
     return image.point([min(round(level / step) * step, 255) for level in range(256)] * 3)
 
 
+class Frame(NamedTuple):
+    """A screenshot of a film, how long it is shown, and the words below it."""
+
+    path: Path
+    shown_ms: int
+    caption: str = ""
+
+
 def save_film(
-    frames: Sequence[Path], target: Path, crop: Box, width: int, frame_ms: int, quality: int = 60
+    frames: Sequence[Frame], target: Path, crop: Box, width: int, quality: int = 60
 ) -> int:
     """Write screenshots as an animation that runs for ever; return its size in bytes."""
     height = round(width * (crop[3] - crop[1]) / (crop[2] - crop[0]))
-    images = [
-        Image.open(frame)
-        .convert("RGB")
-        .crop(crop)
-        .resize((width, height), Image.Resampling.LANCZOS)
-        for frame in frames
-    ]
+    images = []
+    for frame in frames:
+        image = Image.open(frame.path).convert("RGB").crop(crop)
+        image = image.resize((width, height), Image.Resampling.LANCZOS)
+        images.append(captioned(image, frame.caption) if frame.caption else image)
     images[0].save(
         target,
         save_all=True,
         append_images=images[1:],
-        duration=frame_ms,
+        duration=[frame.shown_ms for frame in frames],
         loop=0,
         quality=quality,
         method=4,
     )
     return checked(target, MAX_FILM_BYTES)
+
+
+def captioned(image: Image.Image, words: str) -> Image.Image:
+    """Return a picture with a line of words in a bar below it."""
+    width, height = image.size
+    whole = Image.new("RGB", (width, height + CAPTION_PX), "#14171a")
+    whole.paste(image)
+    pen, font = ImageDraw.Draw(whole), ImageFont.load_default(size=20)
+    pen.text((width / 2, height + CAPTION_PX / 2), words, "#f2f4f5", font, anchor="mm")
+    return whole
 
 
 def checked(path: Path, most: int) -> int:

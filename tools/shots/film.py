@@ -40,9 +40,9 @@ def drawn_along(camera: Camera) -> None:
         share = math.sin(2.0 * math.pi * number / FRAMES)
         stage.mouse("mousemove", round(x + (u - x) * share), round(y + (v - y) * share))
         stage.rest(0.3)
-        camera.frame()
+        camera.frame(FRAME_MS)
     stage.key("Escape")
-    camera.film("film", CROP, WIDTH, FRAME_MS)
+    camera.film("film", CROP, WIDTH)
 
 
 FILM = Reel("sedan.blend", (drawn_along,))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from tests.blender.stage import Stage
 
-from .files import Box, save_film, save_still
+from .files import Box, Frame, save_film, save_still
 
 WHOLE = (0, 32, 1600, 874)
 """The window without Blender's own first and last line."""
@@ -24,7 +24,8 @@ class Camera:
     out: Path
     scratch: Path
     kept: dict[str, int] = field(default_factory=dict)
-    frames: list[Path] = field(default_factory=list)
+    frames: list[Frame] = field(default_factory=list)
+    caption: str = ""
 
     def still(self, name: str, crop: Box = WHOLE) -> None:
         """Keep what the window shows as docs/images/NAME.png."""
@@ -37,17 +38,17 @@ class Camera:
         """Keep a picture that Blender has rendered."""
         self.kept[name] = save_still(source, self.out / f"{name}.png")
 
-    def frame(self) -> None:
-        """Take another picture for the film."""
+    def frame(self, shown_ms: int) -> None:
+        """Take another picture for the film, with the present caption."""
         path = self.scratch / f"frame_{len(self.frames):04d}.png"
         self.stage.do(DRAW)
         self.stage.photograph(path)
-        self.frames.append(path)
+        self.frames.append(Frame(path, shown_ms, self.caption))
 
-    def film(self, name: str, crop: Box, width: int, frame_ms: int) -> None:
+    def film(self, name: str, crop: Box, width: int) -> None:
         """Put the film together as docs/images/NAME.webp."""
         path = self.out / f"{name}.webp"
-        self.kept[name] = save_film(self.frames, path, crop, width, frame_ms)
+        self.kept[name] = save_film(self.frames, path, crop, width)
         self.frames.clear()
 
 

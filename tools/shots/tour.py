@@ -8,6 +8,7 @@ from .reel import Camera, Reel
 WIDTH, STILL_MS, MOVING_MS = 1120, 3600, 160
 ROOF, BEHIND_SEAT = (-0.43, 0.0, 1.8), (0.4, 1.7, 0.0)
 AHEAD = LOOK.format(center=(5.0, 0.0, 0.5), distance=24.0, rotation=(1.05, 0.0, 2.3))
+BODIES = LOOK.format(center=(4.0, 0.0, 0.5), distance=19.0, rotation=(1.12, 0.0, 2.5))
 WHERE = OURS.format("where_map")
 PLACES = f"{WHERE}.maps.get(window.scene.name)"
 OFFERS = f"{WHERE}.offers.get(window.scene.name)"
@@ -26,9 +27,7 @@ def dragged(camera: Camera) -> None:
     stage.do(f"{CLOSE}{SETTINGS}settings.live.on, settings.view.show_beams = True, False")
     stage.press("pe.select_sensor")
     settled(camera)
-    camera.caption = (
-        "A car with one LiDAR. Within the red outline what is 0.5 m tall stays unseen."
-    )
+    camera.caption = "A car with one LiDAR. Within the red outline what is 0.5 m tall stays unseen."
     camera.frame(STILL_MS)
     camera.caption = "Drag it: score, ground map and blind ground follow the mouse."
     x, y = stage.place_of(ROOF)
@@ -43,12 +42,25 @@ def dragged(camera: Camera) -> None:
     stage.do(f"{SETTINGS}settings.live.on = False")
 
 
+def surrounded(camera: Camera) -> None:
+    """Test bodies round the car: one is moved, and says who sees it."""
+    stage = camera.stage
+    stage.do(f"bpy.ops.pe.surroundings()\n{BODIES}")
+    settled(camera)
+    camera.caption = "Test bodies on a road say which sensors see them, and with how much."
+    camera.frame(STILL_MS)
+    for step in range(10):
+        stage.do(f"window.scene.objects['child'].location = (5.4 - 0.45 * {step}, 1.5, 0.0)")
+        stage.rest(1.0)
+        camera.frame(2 * MOVING_MS)
+    camera.frame(STILL_MS // 2)
+    stage.do(f"bpy.ops.pe.surroundings()\n{CLOSE}")
+
+
 def coloured(camera: Camera) -> None:
     """Where?, and a click that places a camera."""
     stage = camera.stage
-    camera.caption = (
-        "Where should a camera go? The body is coloured by the score with one there."
-    )
+    camera.caption = "Where should a camera go? The body is coloured by the score with one there."
     stage.do("bpy.ops.pe.where(model='Camera 120 deg')")
     stage.wait_until(f"{PLACES} and {PLACES}.error is not None", 200)
     settled(camera)
@@ -144,4 +156,4 @@ def driven(camera: Camera) -> None:
     camera.film("tour", (0, 32, 1600, 874), WIDTH)
 
 
-TOUR = Reel("sedan.blend", (dragged, coloured, mended, searched, driven))
+TOUR = Reel("sedan.blend", (dragged, surrounded, coloured, mended, searched, driven))

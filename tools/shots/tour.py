@@ -101,7 +101,13 @@ def to_top(camera: Camera) -> None:
 def searched(camera: Camera) -> None:
     """The search at work; its result beside the start."""
     stage = camera.stage
-    stage.do(f"{SETTINGS}settings.evaluations, settings.search_samples = 240, 4096")
+    stage.do(f"""
+        {SETTINGS.strip()}
+        settings.evaluations, settings.search_samples = 240, 4096
+        for each in window.scene.objects:
+            if each.perception_entropy.model.startswith("Camera"):  # its place is the body's
+                each.perception_entropy.free = (False, False, False, False, True, True)
+    """)
     stage.do("bpy.ops.pe.dismiss_place()")
     to_top(camera)
     stage.do("bpy.ops.pe.save_variant()")

@@ -21,7 +21,6 @@ OURS = "__import__('bl_ext.user_default.perception_entropy.{}', fromlist=['*'])"
 RUNNING = OURS.format("operators.running_job")
 LIVE_READING = OURS.format("live.state") + ".live_state(window.scene.name).score"
 MODAL = "[each.bl_idname.lower().replace('_ot_', '.') for each in window.modal_operators]"
-SETTLED = f"not {OURS.format('diagnostics')}.warnings_outdated()"
 IDLE = f"not {OURS.format('engine_process')}.busy('live score')"
 PLACING = OURS.format("operators.placement")
 SENSORS = "any(each.perception_entropy.is_sensor for each in window.scene.objects)"
@@ -180,9 +179,7 @@ def optimized(camera: Camera) -> None:
     stage.wait_until(f"{RUNNING}.current and {RUNNING}.current.progress.fraction > 0.4", 300)
     camera.still("guide_optimize")
     stage.wait_until(f"{RUNNING}.current is None", 600)
-    stage.rest(3.0)  # the sensors are moved by an update after the job
-    stage.wait_until(SETTLED, 60)
-    stage.rest(3.0)
+    settled(camera)  # the sensors are moved by an update after the job
     camera.still("guide_optimized")
     stage.point_at(800, 330)
     stage.do("bpy.ops.pe.compare_variants('INVOKE_DEFAULT')")

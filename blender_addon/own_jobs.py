@@ -163,7 +163,7 @@ class CompareJob(jobs.Job):
     def __iter__(self) -> Iterator[jobs.Progress]:
         compared: dict[int, ComparedVariant] = {}
         for key, (name, study, unscored) in self.lacking.items():
-            score = None
+            score = known = None
             if unscored:
                 job = jobs.ScoreJob(study)
                 for step in job:
@@ -172,12 +172,13 @@ class CompareJob(jobs.Job):
                     yield self._progress(name, len(compared), step)
                 if job.outcome is None:
                     break
-                score = job.outcome.after
+                score, known = job.outcome.after, (job.outcome.figures or (None,))[-1]
             if self.stopped and score is None:
                 break
             looking = jobs.Progress("seeing", 1.0 - FIGURES_SHARE)
             yield self._progress(name, len(compared), looking)
-            compared[key] = ComparedVariant(score, study.key_figures(), _small_picture(study))
+            picture = _small_picture(study)
+            compared[key] = ComparedVariant(score, study.key_figures(known), picture)
         self.compared = None if self.dropped else compared or None
 
     def _progress(self, name: str, done: int, step: jobs.Progress) -> jobs.Progress:

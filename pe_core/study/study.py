@@ -322,10 +322,14 @@ class Study(Tabular):
                 samples=self.samples,
             )
 
-    def key_figures(self) -> KeyFigures:
-        """Return the key figures of this study's rig, with the margins of its stories."""
+    def key_figures(self, known: KeyFigures | None = None) -> KeyFigures:
+        """Return the key figures of this study's rig, with the margins of its stories.
+
+        `known` are those without margins, where a score has them already.
+        """
         margins = {story.name: self.drive_by(story).margin_s for story in self.stories}
-        return replace(KeyFigures.of_rig(self.sight(), self.rig), margins=margins)
+        found = KeyFigures.of_rig(self.sight(), self.rig) if known is None else known
+        return replace(found, margins=margins)
 
     def drive_by(self, story: Story, rig: Rig | None = None) -> DriveBy:
         """Return a story as a rig, the study's by default, sees it."""

@@ -140,8 +140,10 @@ def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
     """Score studies by name, and print a table that compares them."""
     refuse_different(studies)
     studies = {**studies, **_beside(studies, args.beside)}
-    figures = {name: study.key_figures() for name, study in studies.items()}
-    scores = {name: scored(study, args.workers).after for name, study in studies.items()}
+    outcomes = {name: scored(study, args.workers) for name, study in studies.items()}
+    scores = {name: outcome.after for name, outcome in outcomes.items()}
+    known = {name: (outcome.figures or (None,))[-1] for name, outcome in outcomes.items()}
+    figures = {name: study.key_figures(known[name]) for name, study in studies.items()}
     rows, figure_rows = advice.compare(scores), advice.compare_figures(figures)
     alike = len({vehicle_digest(study.vehicle) for study in studies.values()}) == 1
     data = {

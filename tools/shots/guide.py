@@ -191,9 +191,12 @@ def optimized(camera: Camera) -> None:
 
 def reported(camera: Camera) -> None:
     """The review picture."""
-    path = camera.scratch / "review.png"
+    path = camera.scratch / "guide_report.svg"
     camera.stage.do(f"bpy.ops.pe.render_review(filepath={str(path)!r})")
-    camera.picture("guide_report", path)
+    camera.stage.wait_until(
+        f"{RUNNING}.current is None and __import__('os').path.exists({str(path)!r})", 120
+    )
+    camera.keep(path)
 
 
 GUIDE = Reel(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -34,9 +35,10 @@ class Camera:
         self.stage.photograph(raw)
         self.kept[name] = save_still(raw, self.out / f"{name}.png", crop)
 
-    def picture(self, name: str, source: Path) -> None:
-        """Keep a picture that Blender has rendered."""
-        self.kept[name] = save_still(source, self.out / f"{name}.png")
+    def keep(self, source: Path) -> None:
+        """Keep a picture that the add-on has written."""
+        path = shutil.copy(source, self.out / source.name)
+        self.kept[source.stem] = path.stat().st_size
 
     def frame(self, shown_ms: int) -> None:
         """Take another picture for the film, with the present caption."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .guide import CLOSE, LOOK, OURS, RUNNING, SETTINGS, grab, settled
+from .guide import BUDGET, CLOSE, LOOK, OURS, RUNNING, SETTINGS, grab, settled
 from .reel import Camera, Reel
 
 WIDTH, STILL_MS, MOVING_MS = 1120, 3600, 160
@@ -101,13 +101,7 @@ def to_top(camera: Camera) -> None:
 def searched(camera: Camera) -> None:
     """The search at work; its result beside the start."""
     stage = camera.stage
-    stage.do(f"""
-        {SETTINGS.strip()}
-        settings.evaluations, settings.search_samples = 240, 4096
-        for each in window.scene.objects:
-            if each.perception_entropy.model.startswith("Camera"):  # its place is the body's
-                each.perception_entropy.free = (False, False, False, False, True, True)
-    """)
+    stage.do(BUDGET.format(240))
     stage.do("bpy.ops.pe.dismiss_place()")
     to_top(camera)
     stage.do("bpy.ops.pe.save_variant()")

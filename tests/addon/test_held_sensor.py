@@ -58,8 +58,9 @@ def test_what_is_held_changes_nothing_in_the_scene(held, car):
 
 def test_its_score_is_reported_beside_where_it_stands(held):
     held.put(ROOF)
-    model, where, score = held.text
+    model, where, distances, score = held.text
     assert (model, where) == ("Camera 60 deg", "0.05 m from cabin, upright")
+    assert distances == "front 2.300, rear 1.700, on the centre line, ground 1.550 m"
     assert "nats" in score and "coverage" in score
 
 

@@ -4,6 +4,7 @@
 """
 
 import hashlib
+import os
 from pathlib import Path
 
 import bpy
@@ -45,7 +46,7 @@ def main() -> None:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     blender_addon.register()
     KEPT.write_text(f"{digest(scene_of_digest())}\n")
-    blender_addon.unregister()
+    os._exit(0)  # at its own exit, bpy may wait for a thread for ever
 
 
 if __name__ == "__main__":

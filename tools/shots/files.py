@@ -12,7 +12,7 @@ Box = tuple[int, int, int, int]
 MAX_PIXELS = 1600
 """Along the longer side."""
 LOST_BITS = (0, 1, 2, 3)
-MAX_PNG_BYTES = 450_000
+MAX_PNG_BYTES = 400_000
 MAX_FILM_BYTES = 3_000_000
 CAPTION_PX = 44
 

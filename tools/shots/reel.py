@@ -35,10 +35,10 @@ class Camera:
         self.stage.photograph(raw)
         self.kept[name] = save_still(raw, self.out / f"{name}.png", crop)
 
-    def keep(self, source: Path) -> None:
+    def keep(self, name: str, source: Path) -> None:
         """Keep a picture that the add-on has written."""
-        path = shutil.copy(source, self.out / source.name)
-        self.kept[source.stem] = path.stat().st_size
+        path = shutil.copy(source, self.out / f"{name}{source.suffix}")
+        self.kept[name] = path.stat().st_size
 
     def frame(self, shown_ms: int) -> None:
         """Take another picture for the film, with the present caption."""

@@ -172,7 +172,7 @@ class CompareJob(jobs.Job):
                     yield self._progress(name, len(compared), step)
                 if job.outcome is None:
                     break
-                score, known = job.outcome.after, (job.outcome.figures or (None,))[-1]
+                score, known = job.outcome.after, job.outcome.figures_after
             if self.stopped and score is None:
                 break
             looking = jobs.Progress("seeing", 1.0 - FIGURES_SHARE)

@@ -142,8 +142,9 @@ def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
     studies = {**studies, **_beside(studies, args.beside)}
     outcomes = {name: scored(study, args.workers) for name, study in studies.items()}
     scores = {name: outcome.after for name, outcome in outcomes.items()}
-    known = {name: (outcome.figures or (None,))[-1] for name, outcome in outcomes.items()}
-    figures = {name: study.key_figures(known[name]) for name, study in studies.items()}
+    figures = {
+        name: study.key_figures(outcomes[name].figures_after) for name, study in studies.items()
+    }
     rows, figure_rows = advice.compare(scores), advice.compare_figures(figures)
     alike = len({vehicle_digest(study.vehicle) for study in studies.values()}) == 1
     data = {

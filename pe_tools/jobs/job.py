@@ -144,12 +144,16 @@ class Outcome(Tabular):
     figures: tuple[KeyFigures, KeyFigures] | None = None
 
     @property
+    def figures_after(self) -> KeyFigures | None:
+        """The key figures of the result, if they are known."""
+        return None if self.figures is None else self.figures[1]
+
+    @property
     def dashboard(self) -> tuple[Reading, ...]:
         """What the result is decided by, with what is wanted and kept."""
         search, met = self.study.search, [each.met for each in self.verdicts]
-        figures = None if self.figures is None else self.figures[1]
         keep = [*search.goals.keep, *[REQUIREMENTS] * (search.requirements is not None)]
-        return dashboard(figures, self.after.entropy, met, search.goals.wanted, keep)
+        return dashboard(self.figures_after, self.after.entropy, met, search.goals.wanted, keep)
 
     def _rows(self) -> list[dict[str, Any]]:
         told = [{}, {}] if self.figures is None else [_beside(each) for each in self.figures]

@@ -79,7 +79,7 @@ def language_of_locale(locale: str) -> str:
 
 def shown(text: str) -> str:
     """Return a text that is drawn or reported, in the interface's language."""
-    return catalog(current()).get(text, text)
+    return catalog(current()).get(text, text).replace(" m2", " m²")
 
 
 PLAIN = (

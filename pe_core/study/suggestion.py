@@ -96,7 +96,8 @@ class Suggestion:
         was, now = self.before.blind_m2, self.after.blind_m2
         if was is not None and now is not None:
             gains.append(f"blind ground {was:.1f} to {now:.1f} m2")
-        gains.append(f"entropy {self.after.entropy - self.before.entropy:+.3f} nats")
+        by = self.after.entropy - self.before.entropy
+        gains.append(f"entropy {abs(by):.3f} nats {'lower' if by < 0.0 else 'higher'}")
         broken = f"; breaks {', '.join(self.breaks)}" if self.breaks else ""
         return f"{done}: {', '.join(gains)}{broken}"
 

@@ -22,6 +22,7 @@ from ...geometry.bins import blocks
 Counts = NDArray[np.int32]
 
 BOUND_BINS = 1 << 16
+FIRST_BIN, LAST_BIN = np.float32(0), np.float32(BOUND_BINS - 1)
 BOUND_MARGIN = np.float32(4e-6)
 """Relative rounding of a slope that is bounded, with room to spare."""
 MARGIN = np.float32(4e-6)
@@ -36,11 +37,11 @@ BALL = np.float32(0.867)
 ON_AXIS = np.float32(1e-25)
 """Replaces the minimum distance from the sensor's axis of a cube that the axis may touch: a channel
 along the axis has a slope of 1e16."""
+MIN_FLAT = np.float32(1e-3)
+"""Replaces smaller distances of an inner window from the axis."""
+ONE, SIGN_BIT = np.float32(1.0), np.uint32(1 << 31)
 MIN_SHARE, MAX_SHARE = np.float32(0.85), np.float32(1.0 - 1e-5)
 """Limits of the inner window's width, as a share of the slice's width."""
-MAX_PICKED_SHARE = 0.85
-"""Inner windows are computed only for voxels whose outer window holds beams, if no more than this
-share of them; else for all, which saves the selection."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,10 +68,10 @@ class SlopeBounds:
         scale = BOUND_BINS / (edges[-1] - edges[0])
         return cls(float(edges[0]), float(scale), below.astype(np.int32), upto.astype(np.int32))
 
-    def bins(self, slopes: Singles) -> Counts:
+    def bins(self, slopes: Singles) -> NDArray[np.intp]:
         """Return the bin of each slope."""
         scaled = (slopes - np.float32(self.low)) * np.float32(self.scale)
-        return np.clip(scaled, 0, BOUND_BINS - 1).astype(np.int32)
+        return np.clip(scaled, FIRST_BIN, LAST_BIN).astype(np.intp)
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,102 +145,101 @@ class Silhouettes:
             for w in range(3)
         )
         flat = np.sqrt(x * x + y * y)
-        safe = np.maximum(flat, np.float32(0.1))
-        c, s = x / safe, y / safe
-        c[flat == 0.0] = 1.0  # a cube on the axis needs some azimuth; any will do
+        inverse = ONE / np.maximum(flat, np.float32(0.1))
+        c, s = x * inverse, y * inverse
+        if not flat.all():
+            c[flat == 0.0] = 1.0  # a cube on the axis needs some azimuth; any will do
         half = rotation * np.float32(0.5)
-        radial = [half[k, 0] * c + half[k, 1] * s for k in range(3)]
-        lateral = [half[k, 1] * c - half[k, 0] * s for k in range(3)]
+        upright = np.zeros((), np.float32)  # of an axis along the sensor's own: fewer products
+        radial, lateral = (
+            [a * c + b * s if a or b else upright for a, b in pairs]
+            for pairs in (half[:, :2], np.stack([half[:, 1], -half[:, 0]], axis=1))
+        )
         depth, width = (np.abs(a) + np.abs(b) + np.abs(c) for a, b, c in (radial, lateral))
         middle = np.arctan2(y, x) / step
         up = half[:, 2]
         return cls(flat, z, middle, step, radial, lateral, up, depth, width, np.abs(up).sum())
 
-    def take(self, index: NDArray[np.intp]) -> "Silhouettes":
-        """Return the cubes with these indices."""
-        flat, z, middle, depth, width = (
-            w[index] for w in (self.flat, self.z, self.middle, self.depth, self.width)
-        )
-        radial, lateral = ([w[index] for w in side] for side in (self.radial, self.lateral))
-        step, up, height = self.step, self.up, self.height
-        return Silhouettes(flat, z, middle, step, radial, lateral, up, depth, width, height)
-
 
 def _bounds(seen: Silhouettes, slopes: SlopeBounds, count: int) -> tuple[Counts, ...]:
     """Compute the fields of a `Bracket`."""
     depth, width, height = seen.depth + SLACK, seen.width + SLACK, seen.height + SLACK
-    off_axis = seen.flat > depth * np.float32(1.1)
-    near = np.where(off_axis, seen.flat - depth, ON_AXIS)
-    far = np.where(off_axis, np.sqrt((seen.flat + depth) ** 2 + width * width), seen.flat + BALL)
-    reach = width / near / seen.step * (1 + MARGIN) + np.abs(seen.middle) * MARGIN + MARGIN
-    reach = np.minimum(reach, np.float32(count))
+    near, far = np.maximum(seen.flat - depth, ON_AXIS), _hypotenuse(seen.flat + depth, width)
+    on_axis = np.flatnonzero(seen.flat <= depth * np.float32(1.1))
+    near[on_axis], far[on_axis] = ON_AXIS, seen.flat[on_axis] + BALL
+    near, far = ONE / near, ONE / far
+    slack = np.abs(seen.middle) * MARGIN + MARGIN
+    reach = np.minimum(width * near * ((1 + MARGIN) / seen.step) + slack, np.float32(count))
     first, last = np.ceil(seen.middle - reach), np.floor(seen.middle + reach)
-    columns = np.minimum(last - first + 1, count).astype(np.int32)
-    high = slopes.bins(_slope(seen.z + height, near, far))
-    low = slopes.bins(_slope(seen.z - height, far, near))
-    row = slopes.below[low]
-    rows = np.maximum(slopes.upto[high] - row, 0)
+    columns = np.minimum(last - first + ONE, np.float32(count)).astype(np.int32)
+    columns[on_axis] = count  # the cube may surround the axis
+    high, low = seen.z + height, seen.z - height
+    row = slopes.below[slopes.bins(np.minimum(low * near, low * far))]
+    rows = slopes.upto[slopes.bins(np.maximum(high * near, high * far))]
+    rows = np.maximum(rows - row, 0)
     upper = rows * columns
-    lower = np.zeros_like(upper)  # the beams of the inner windows, where the outer ones hold any
-    picked = np.flatnonzero(off_axis & (upper > 0))
-    if len(picked) > MAX_PICKED_SHARE * len(upper):
-        inner = _inner_window(seen, slopes)
-        lower = np.where(off_axis, np.minimum(inner, upper), 0)
-    else:
-        lower[picked] = np.minimum(_inner_window(seen.take(picked), slopes), upper[picked])
-    columns = np.where(off_axis, columns, np.int32(count))  # the cube may surround the axis
-    return lower, rows * columns, row, rows, first.astype(np.int32), columns
+    lower = np.minimum(_inner_window(seen, slopes, slack), upper)
+    lower[on_axis] = 0
+    return lower, upper, row, rows, first.astype(np.int32), columns
 
 
-def _slope(z: Singles, flat_if_above: Singles, flat_if_below: Singles) -> Singles:
-    """Slope of a height over one of two distances, by the height's sign."""
-    return z / np.where(z > 0, flat_if_above, flat_if_below)
+def _hypotenuse(long: Singles, short: Singles) -> Singles:
+    """Upper bound of the hypotenuse, close to it for a short second leg: no root is needed."""
+    return long + short * short / (long + long)
 
 
-def _inner_window(seen: Silhouettes, slopes: SlopeBounds) -> Counts:
-    """Numbers (V,) of beams of the inner windows."""
+def _inner_window(seen: Silhouettes, slopes: SlopeBounds, slack: Singles) -> Counts:
+    """Numbers (V,) of beams of the inner windows; `slack` is the rounding of `middle`."""
     width, height, skew = slice_through(seen)
-    drift = np.abs(skew) * width
-    near, far = seen.flat - drift, np.sqrt((seen.flat + drift) ** 2 + width * width)
-    near = np.maximum(near, np.float32(1e-3))
-    high = slopes.bins(_slope(seen.z + height, far, near))
-    low = slopes.bins(_slope(seen.z - height, near, far))
-    rows = np.maximum(slopes.below[high] - slopes.upto[low], 0)
+    recess = skew * width
+    drift = np.abs(recess)
+    near = ONE / np.maximum(seen.flat - drift, MIN_FLAT)
+    far = ONE / _hypotenuse(seen.flat + drift + MIN_FLAT, width)
+    high, low = seen.z + height, seen.z - height
+    rows = slopes.below[slopes.bins(np.minimum(high * near, high * far))]
+    rows = np.maximum(rows - slopes.upto[slopes.bins(np.maximum(low * near, low * far))], 0)
     left, right = (
-        width / np.maximum(reach, np.float32(1e-3)) / seen.step
-        for reach in (seen.flat + skew * width, seen.flat - skew * width)
+        width / np.maximum(reach, MIN_FLAT) for reach in (seen.flat + recess, seen.flat - recess)
     )
     # atan(t) >= t - t^3 / 3, so no arc tangent is needed
-    left, right = (t * (1 - (t * seen.step) ** 2 / 3) * (1 - MARGIN) for t in (left, right))
-    slack = np.abs(seen.middle) * MARGIN + MARGIN
-    columns = np.floor(seen.middle + left - slack) - np.ceil(seen.middle - right + slack) + 1
+    third, scale = np.float32(1.0 / 3.0), (1 - MARGIN) / seen.step
+    left, right = ((t - t * t * t * third) * scale for t in (left, right))
+    columns = np.floor(seen.middle + left - slack) - np.ceil(seen.middle - right + slack) + ONE
     return rows * np.maximum(columns, 0).astype(np.int32)
 
 
 def slice_through(seen: Silhouettes) -> tuple[Singles, Singles, Singles]:
     """Return half width and half height of a rectangle inside the slice, and the slice's skew. The
     skew is the distance by which the slice recedes from the axis for each side to the left."""
-    a, b, c = (np.copysign(r, r * s) for r, s in zip(seen.radial, seen.lateral, strict=True))
+    a, b, c = (_signed(r, s) for r, s in zip(seen.radial, seen.lateral, strict=True))
     skew: Singles = (a + b + c) / seen.width
     tilt: list[Singles] = [
-        np.float32(2) * np.abs(b + skew * a) for a, b in zip(seen.radial, seen.lateral, strict=True)
+        np.abs(b + skew * a) for a, b in zip(seen.radial, seen.lateral, strict=True)
     ]
     rectangle = _rectangle(tilt, np.abs(2 * seen.up))
     width, height = (np.maximum(side - SLACK, 0) for side in rectangle)
     return width, height, skew
 
 
+def _signed(values: Singles, signs: Singles) -> Singles:
+    """Values times the signs of others: by bits, twelve times as fast as `np.copysign`."""
+    product = values.view(np.uint32) ^ (signs.view(np.uint32) & SIGN_BIT)
+    return product.view(np.float32)
+
+
 def _rectangle(tilt: list[Singles], up: Singles) -> tuple[Singles, Singles]:
     """Half width and half height of a rectangle in the slice.
 
-    A point of the slice, s to the left and u up, lies in the cube if ``|s tilt_k + u up_k| <= 1/2``
-    for its three axes k. A tilted slice has no height at its full width; from the share
+    A point of the slice, s to the left and u up, lies in the cube if ``|2 s tilt_k + u up_k| <=
+    1/2`` for its three axes k. A tilted slice has no height at its full width; from the share
     ``1 - up_k`` of the width on, k being the second most upright axis, it has about the cube's.
     """
-    half, tiny = np.float32(0.5), np.float32(1e-9)
-    widest = half / np.maximum(np.maximum(np.maximum(tilt[0], tilt[1]), tilt[2]), tiny)
+    half, quarter, tiny = np.float32(0.5), np.float32(0.25), np.float32(1e-9)
+    widest = quarter / np.maximum(np.maximum(np.maximum(tilt[0], tilt[1]), tilt[2]), tiny)
     share = np.clip(np.float32(1.0) - np.sort(up)[1], MIN_SHARE, MAX_SHARE)
     width = widest * share
-    heights = [(half - width * t) / max(u, tiny) for t, u in zip(tilt, up, strict=True)]
+    heights = [
+        (half - (width + width) * t) * (ONE / max(u, tiny)) for t, u in zip(tilt, up, strict=True)
+    ]
     height = np.minimum(np.minimum(heights[0], heights[1]), heights[2])
     return width, np.maximum(height, 0)

@@ -8,7 +8,7 @@ from ..bridge import figures_of_sensor, sensor_loss
 from ..diagnostics import explanation
 from ..language import draw_label
 from ..sensor_cache import sensors as listed_sensors
-from .layout import row_list
+from .layout import is_simple, row_list
 
 MODEL_FROM = 0.64  # Where the model begins, in shares of the room for name and model
 MAX_ROWS = 7  # More sensors are a list that scrolls: the panel stays as long as it is
@@ -25,7 +25,7 @@ def draw_sensors(layout: UILayout, context: Context) -> None:
     if not objects:
         draw_label(box, "No sensors yet", "INFO")
         return
-    draw_header(box)
+    draw_header(box, context)
     if len(objects) > MAX_ROWS:
         given = context.scene, "objects", context.scene.perception_entropy, "selected_sensor"
         box.template_list(sensors_rows.__name__, "", *given, rows=MAX_ROWS, maxrows=MAX_ROWS)
@@ -55,16 +55,17 @@ def shown_rows(objects: list[Object], sensors: list[Object]) -> tuple[list[int],
     return flags, [order[o.name] if o.name in order else next(rest) for o in objects]
 
 
-def draw_header(layout: UILayout) -> None:
+def draw_header(layout: UILayout, context: Context) -> None:
     """Draw the header of the columns."""
     row = layout.row(align=True)
     row.active = False
     row.scale_y = 0.8
     for _ in range(3):
         row.label(text="", icon="BLANK1")
-    name, model, figure = row_cells(row)
+    name, model, figure = row_cells(row, context)
     draw_label(name, "Sensor")
-    draw_label(model, "Model")
+    if model:
+        draw_label(model, "Model")
     draw_label(figure, "Loss")
 
 
@@ -77,7 +78,7 @@ def draw_sensor(layout: UILayout, context: Context, obj: Object) -> None:
     rays = "LIGHT_SUN" if settings.show else "DOT"
     row.prop(settings, "show", text="", icon=rays, emboss=False)
     draw_swatch(row, settings)
-    name, model, figure = row_cells(row)
+    name, model, figure = row_cells(row, context)
     row.active = counts  # a hidden sensor is not scored
     active = obj == context.active_object
     warned = any(w.subject == obj.name for w in context.scene.perception_entropy.result_warnings)
@@ -85,7 +86,8 @@ def draw_sensor(layout: UILayout, context: Context, obj: Object) -> None:
     name.operator(
         "pe.select_sensor", text=obj.name, depress=active, icon=icon, translate=False
     ).name = obj.name
-    model.label(text=settings.model, translate=False)
+    if model:
+        model.label(text=settings.model, translate=False)
     draw_label(figure, loss_text(obj))
 
 
@@ -101,11 +103,11 @@ def loss_text(obj: Object) -> str:
     return NO_FIGURE if figures_of_sensor(obj) is None else sensor_loss(obj)
 
 
-def row_cells(layout: UILayout) -> tuple[UILayout, UILayout, UILayout]:
-    """Return the cells of a row: name, model, figure at the right."""
+def row_cells(layout: UILayout, context: Context) -> tuple[UILayout, UILayout | None, UILayout]:
+    """Return the cells of a row: name, model (*All*: names are long), figure at the right."""
     left = layout.split(factor=1.0 - FIGURE_SHARE, align=True)
-    both = left.split(factor=MODEL_FROM, align=True)
-    name, model = both.row(align=True), both.row(align=True)
+    both = left if is_simple(context.scene) else left.split(factor=MODEL_FROM, align=True)
+    name, model = both.row(align=True), None if both is left else both.row(align=True)
     figure = left.row(align=True)
     figure.alignment = "RIGHT"
     return name, model, figure

@@ -66,6 +66,7 @@ def test_the_operator_scores_it_as_the_engine_does(ring_kind, ring):
 
 def test_the_panel_shows_what_was_stored(ring_kind, ring):
     bpy.ops.pe.score()
+    ring_kind.perception_entropy.panels = "ALL"
     layout, own = Layout(), bridge.figures_of_sensor(ring)
     panels.sensor_lists.draw_sensors(layout, Window(ring_kind))
     assert list(filter(None, layout.texts("operator"))) == ["bumper", "roof"]

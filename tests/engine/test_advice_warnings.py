@@ -8,6 +8,7 @@ import pytest
 
 import pe_core as pe
 from pe_tools import advice
+from pe_tools.wording import warning_text
 from tests.engine import shapes
 
 SPACE, PRIOR = pe.PerceptionSpace(), pe.Prior.uniform()
@@ -166,6 +167,9 @@ def test_warnings_of_sensors_have_the_figures_and_the_part():
     assert near["s", "looks_at"].values["distance"] == pytest.approx(0.05, abs=0.01)
     found = told(WALL, ring_at(0.6))["s", "occluded"]
     assert found.values["share"] == pytest.approx(0.379, abs=0.002) and found.part == "vehicle"
+    assert found.text == "38% of its beams are occluded by vehicle"
+    some = warning_text("occluded", "mast", {"share": 0.5, "part_share": 0.3, "unit": "beams"})
+    assert some == "50% of its beams are occluded, 30% by mast"
     pixels = told(CAR, camera_at(0.85, 0, 0.95, hfov_deg=40.0))["s", "occluded"]
     assert (pixels.values["unit"], pixels.part) == ("pixels", "body")
 
@@ -247,6 +251,8 @@ def test_sunk_floating_or_beside_the_axis(vehicles):
         ):
             found = told(moved(vehicle, shift=shift))[None, code]
             assert found.fix == "move_vehicle"
+            if code == "height":
+                assert ("in the ground" in found.text) == (shift[2] < 0.0)
             assert found.amount == pytest.approx(np.negative(shift), abs=0.01)
             mended = moved(moved(vehicle, shift=shift), shift=found.amount)
             assert (None, code) not in told(mended)

@@ -12,6 +12,7 @@ import pe_core as pe
 import pe_tools as pt
 from pe_core.scoring.score import TrafficAp
 from pe_tools import advice
+from pe_tools.advice.ranking import moved_words
 from pe_tools.advice.summary import outlook_words
 from tests.engine import shapes
 
@@ -259,6 +260,14 @@ def test_shares_by_number_and_by_sensor_by_hand():
     score = pe.Evaluator(space, prior).score(pe.Rig([ahead]))
     assert one["front"] == pytest.approx(score.per_zone["front"].coverage, abs=0.01)
     assert math.isclose(one["left"], score.per_zone["left"].coverage, abs_tol=0.01)
+
+
+def test_a_turn_past_180_degrees_is_told_by_the_shorter_way():
+    before, after = (
+        pe.Rig([shapes.camera(60.0, (x, 0.0, 1.0), (0.0, 0.0, yaw))])
+        for x, yaw in ((0.0, 179.0), (1.2, -179.0))
+    )
+    assert moved_words(before, after) == "camera 1.20 m ahead and turned 2 deg"
 
 
 def test_figures_that_prefer_different_rigs_are_told():

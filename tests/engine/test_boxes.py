@@ -8,6 +8,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
+from pe_core.prior.boxes import voxel_of
 from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused
 
@@ -162,6 +163,7 @@ def test_a_box_outside_is_left_out_and_counted():
     for box in OUTSIDE:
         ground, profile, report = counted(inside, box)
         assert ground[1, 0] == 1.0 and profile == [1.0, 0.0], box
+        assert -1 in [voxel_of(np.array(box[a]), BY_HAND_SPACE, a) for a in range(3)], box
         assert report == "boxes: 1 box taken, 1 left out (1 outside the space)"
     assert wrongly_refused(counted, [("boxes", box) for box in OUTSIDE], "boxes") == []
 

@@ -17,6 +17,7 @@ from pe_core.sensors.camera.lens import (
     field_outline,
     fold_angle,
 )
+from pe_core.sensors.camera.model import picture_rays
 from pe_core.sensors.camera.sample_areas import BEYOND, NEAREST_RAD, QuickLens, bent_pixel_areas
 from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused
@@ -97,6 +98,8 @@ def test_a_pinhole_of_an_ideal_camera_is_that_camera():
     lens = pe.Camera("lens", 640, 480, lens=Pinhole(f, f, 320.0, 240.0))
     assert lens.projection.is_straight and lens.focal_px == f
     assert (lens.hfov, lens.vfov) == pytest.approx((ideal.hfov, ideal.vfov), abs=1e-12)
+    rays = [picture_rays(pe.Sensor("s", camera), 100) for camera in (lens, ideal)]
+    np.testing.assert_allclose(*rays, atol=1e-12)
 
 
 KEYS = {"kind": "camera", "width": 640, "height": 480, "fx": 400, "cx": 320, "cy": 240}

@@ -41,6 +41,7 @@ def score(entropy, coverage=0.5, own=None, sample="one", stderr=0.03):
         (6, 15, 3.4837),
         (2, 31, 2.0395),
         (1, 4, 2.7764),
+        (1, 2, 4.271),  # five terms of a series: the table has 4.3027
     ],
 )
 def test_the_factor_is_student_s_t_shared_by_all_pairs(studies, degrees, factor):

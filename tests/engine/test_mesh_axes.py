@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.scene.mesh import AXIS_NAMES
+from pe_core.scene.mesh import AXIS_NAMES, BodyShape
+from pe_core.scene.vehicle_description import up_of
 from pe_core.study.study_file import study_from_dict, study_to_dict
 from tests.engine.mesh_files import glb_file, gltf, obj_bytes, read, stl_binary
 
@@ -161,6 +162,28 @@ def test_the_keys_come_back_from_a_file(tmp_path):
 
 def slab(low, high):
     return corners(np.array((low, high)))
+
+
+CORNER = np.vstack([np.zeros(3), np.eye(3)])[[(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]]
+"""The triangles of a cube's corner: none of its halves is like the other."""
+
+
+@pytest.mark.parametrize(
+    ("low", "mirrored", "up"),
+    [
+        ((5.0, 5.0, 5.0), 1, (2, "shape")),
+        ((5.0, 5.0, 5.0), 2, (1, "shape")),
+        ((5.0, -0.5, 0.0), None, (2, "shape")),  # the bottom at z = 0, the middle at y = 0
+        ((-0.5, 0.0, -0.5), None, (1, "shape")),
+        ((-0.5, 5.0, 0.0), None, None),
+    ],
+)
+def test_up_is_across_the_mirror_or_where_the_bottom_is_on_the_ground(low, mirrored, up):
+    halves = [CORNER]
+    if mirrored is not None:
+        halves.append(CORNER * np.where(np.arange(3) == mirrored, -1.0, 1.0))
+    triangles = np.concatenate(halves) + low
+    assert up_of(BodyShape(triangles, np.zeros(len(triangles), np.int32), ["body"])) == up
 
 
 def outline_car(heights, width):

@@ -10,6 +10,7 @@ import trimesh
 
 import pe_core as pe
 import pe_tools as pt
+from pe_core.prior.grid import Grid
 from pe_core.base.notebook import ShortRepr, Tabular
 from tests.engine.processes import finished
 from tests.engine.shapes import box_car
@@ -61,6 +62,12 @@ def test_a_grid_is_read_at_the_centres_of_another_space_and_takes_focus_weights(
     assert not found[56:].any() and not found[:, :, 8:].any()
     halved = pe.Prior.from_grid(np.ones((40, 24)), SPACE, [pe.Focus(3.0, x=(0, 10))])
     assert voxels(halved)[20:].sum() == pytest.approx(0.75)
+
+
+@pytest.mark.parametrize("wrong", [{"weights": np.zeros((40, 24))}, {"file": 3}])
+def test_a_grid_without_weight_or_with_no_path_is_refused(wrong):
+    with pytest.raises(pe.InputError):
+        Grid(**{"weights": np.ones((40, 24)), "space": SPACE} | wrong)
 
 
 @pytest.mark.parametrize("by_height", [False, True])

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.sensors.lidar.field_of_view import beam_patch
 from pe_tools.outputs.solid import free_solid, mounted_view
 
 from .shapes import box, box_car, camera, lidar_on_roof, small_lidar
@@ -56,6 +57,16 @@ def test_solids_of_every_kind_of_view_are_closed_and_outwards(plugin, name):
     assert parts == pytest.approx(
         plugin.volume(whole), rel=1e-3
     )  # the hidden one is 1 mm thick at least
+
+
+def test_a_pole_is_one_point_of_a_field_that_reaches_it():
+    """The dome's upper one, and both of a LiDAR that sees all round in each direction."""
+    ball = pe.Lidar("ball", np.radians(np.linspace(-90, 90, 7)), 180, 30.0)
+    for model, poles in ((DOME, {1.0}), (ball, {-1.0, 1.0})):
+        patch = beam_patch(model, math.radians(10.0))
+        ends = patch.directions[np.unique(patch.faces)]
+        ends = ends[np.abs(ends[:, 2]) > 0.9999]
+        assert set(ends[:, 2]) == poles and len(ends) == len(poles)
 
 
 def test_a_wall_takes_what_lies_behind_it(plugin):

@@ -1,7 +1,8 @@
 """Less of what stands beside a result, where it is not what a test is about.
 
 Every search ends with the robustness of its result: a sensor is measured anew for each error. Every
-result has key figures, of many scenes of traffic. In small studies both take longer than the rest.
+result has key figures, of many scenes of traffic. What mends a requirement is looked for at many
+places. In small studies each takes longer than the rest.
 """
 
 import importlib
@@ -10,11 +11,13 @@ from dataclasses import replace
 import pytest
 
 from pe_core.scoring.sight import sight
+from pe_core.study import suggestion
 
 ROBUSTNESS = importlib.import_module("pe_core.search.tolerance")
 """The module: its package has a function of this name."""
 WORKSHOP, OBJECTS = ROBUSTNESS.WORKSHOP, sight.ObjectEvaluator
 FEW_SCENES = 16
+FEW_PLACES = {"HELP_PLACES": 8, "ADD_PLACES": 24, "ADD_COMPARED": 2}
 
 
 def objects_of_few_scenes(*where, targets, **more):
@@ -25,9 +28,11 @@ def objects_of_few_scenes(*where, targets, **more):
 
 @pytest.fixture
 def few_errors(monkeypatch):
-    """Draw two mounting errors a sensor for the result of a search, not six, and few scenes."""
+    """Draw two mounting errors a sensor for the result of a search, not six, few scenes, places."""
     monkeypatch.setattr(ROBUSTNESS, "WORKSHOP", replace(WORKSHOP, draws=2))
     monkeypatch.setattr(sight, "ObjectEvaluator", objects_of_few_scenes)
+    for name, few in FEW_PLACES.items():
+        monkeypatch.setattr(suggestion, name, few)
 
 
 @pytest.fixture

@@ -24,6 +24,7 @@ def exported(tmp_path, name, **options):
     return path
 
 
+@pytest.mark.usefixtures("small_pictures")
 @pytest.mark.parametrize("name", [*outputs.scene_outputs()])
 def test_every_output_of_the_panel_is_that_of_the_engine(seen, tmp_path, name):
     path = exported(tmp_path, name, range_m=5.0)

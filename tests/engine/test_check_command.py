@@ -16,6 +16,7 @@ from pe_tools.cli.verbs import main
 from pe_tools.jobs import CheckJob, SuggestJob
 from tests.engine import shapes
 
+pytestmark = pytest.mark.usefixtures("few_errors")
 STUDY = """
 samples = 2048
 [space]

@@ -57,6 +57,7 @@ def checked(path):
     return study
 
 
+@pytest.mark.usefixtures("few_errors", "no_key_figures")
 @pytest.mark.parametrize("name", ["sedan", "bus"])
 def test_a_study_of_our_vehicles_runs_as_it_is(name, tmp_path, monkeypatch, capsys):
     """The sedan's part `roof` is the mount; the bus has a pod there, so faces of it are."""

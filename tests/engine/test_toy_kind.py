@@ -109,6 +109,7 @@ def test_a_study_holds_it_and_its_curve(ring_kind, tmp_path):
     assert again.model == study.model
 
 
+@pytest.mark.usefixtures("few_errors", "no_key_figures")
 def test_the_command_scores_searches_and_leaves_results(ring_kind, tmp_path, capsys):
     path = tmp_path / "study.toml"
     path.write_text(STUDY)

@@ -98,7 +98,7 @@ from pe_core.study import suggestion
 from pe_tools.__main__ import main
 from pe_tools.page.pictures import sensor_views, vehicle_picture
 small, pages = json.load(sys.stdin)
-robustness, study = map(importlib.import_module, ("pe_core.search.tolerance", "pe_core.study.study"))
+robustness = importlib.import_module("pe_core.search.tolerance")
 robustness.WORKSHOP = replace(robustness.WORKSHOP, draws=2)
 vehicle_picture.SIZE, sensor_views.MAX_WIDTH = (192, 108), 128
 objects = sight.ObjectEvaluator
@@ -106,7 +106,7 @@ of_few = lambda *where, targets, **more: objects(*where, targets=replace(targets
 os.cpu_count = lambda: 1  # no worker processes: their starts would take most of the time
 for page, (folder, lines) in pages.items():
     if page != "README.md":  # which shows what is printed
-        sight.ObjectEvaluator = study.ObjectEvaluator = of_few
+        sight.ObjectEvaluator = of_few
         sight.SECTOR_HEIGHTS_M, sight.SAMPLES = (0.5,), 4096
         suggestion.HELP_PLACES, suggestion.ADD_PLACES, suggestion.ADD_COMPARED = 8, 16, 2
     os.chdir(folder)
@@ -125,9 +125,9 @@ for page, (folder, lines) in pages.items():
         answer = [page, line, status, out.getvalue()[:2000], err.getvalue()[-2000:]]
         print(json.dumps(answer), file=sys.__stdout__)
         if words[0] == "new" and not status:  # a newcomer's study is made small, to be quick
-            new = Path(words[words.index("-o") + 1])
-            text = re.sub(r"(?ms)^samples = .*?(?=^\[prior\])", small, new.read_text(), count=1)
-            new.write_text(text.replace("evaluations = 0 ", "evaluations = 4 "))
+            study = Path(words[words.index("-o") + 1])
+            text = re.sub(r"(?ms)^samples = .*?(?=^\[prior\])", small, study.read_text(), count=1)
+            study.write_text(text.replace("evaluations = 0 ", "evaluations = 4 "))
 """
 """Types the lines of all pages into a Python without extras, in one process."""
 

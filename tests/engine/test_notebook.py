@@ -10,8 +10,8 @@ import trimesh
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.prior.grid import Grid
 from pe_core.base.notebook import ShortRepr, Tabular
+from pe_core.prior.grid import Grid
 from tests.engine.processes import finished
 from tests.engine.shapes import box_car
 

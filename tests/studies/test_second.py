@@ -72,6 +72,14 @@ def test_arms_have_equal_beams_at_equal_poses():
     assert len(main_runs(quick_second_plan())) == 4
 
 
+@pytest.mark.skipif(not THOROUGH, reason="half a minute of permutations: with CI=true")
+def test_the_results_are_those_of_the_committed_runs():
+    plan, saved = full_second_plan(), json.loads((FOLDER / "results.json").read_text("utf-8"))
+    runs = {path.stem: json.loads(path.read_text("utf-8")) for path in FOLDER.glob("runs/*.json")}
+    scores = json.loads((FOLDER / "scores.json").read_text("utf-8"))["scores"]
+    assert second_analysis(plan, parts_of(plan), runs, scores) == saved
+
+
 def test_w_of_made_up_scans_is_found():
     shares = np.log([[1.0, 1.0], [1.0, 0.5], [0.5, 1.0], [0.5, 0.5]])
     ap = [0.8 + 0.1 * (2 * 0.7 * rows + 2 * 0.3 * columns) for rows, columns in shares]

@@ -15,6 +15,7 @@ import traceback
 import warnings
 import zipfile
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -130,42 +131,6 @@ def ply(faces, data, of="uchar int"):
     return head.encode() + np.asarray(POINTS, "<f4").tobytes() + data
 
 
-ONE = npy((1, 3, 3), "<f8", bytes(72))
-PRIMITIVES = gltf()[0]["meshes"][0]["primitives"]
-DOUBLING = [{"children": [i + 1, i + 1]} for i in range(60)] + [{"mesh": 0}]
-DEEP = [*({"children": [i + 1]} for i in range(19_999)), {"mesh": 0}]
-LOOP = [{"children": [(i + 1) % 1000]} for i in range(1000)]
-TRIANGLE = b"v 0 0 0\nv 1 0 0\nv 0 1 0\n"
-MESHES = {
-    "claims 10^15 triangles.npz": (npz(npy((10**15, 3, 3), "<f8")), "file"),
-    "claims 10^4000 triangles.npz": (npz(npy((10**4000, 3, 3), "<f8")), "file"),
-    "5,000 digits.npz": (npz(npy((1, 3, 3), "<f8").replace(b"1,", b"9" * 5000)), "file"),
-    "1000 to 1.npz": (npz(npy((3_000_000, 3, 3), "<f4", bytes(108_000_000))), "triangles"),
-    "a lying directory.npz": (lying_npz(), "file"),
-    "many names.npz": (npz(ONE, npy((10**9,), "<U1")), "file"),
-    "nested header.npz": (npz(ONE.replace(b"(1,", b"(" * 9000 + b"1,")), "file"),
-    "impossible letters.npz": (npz(ONE, npy((1,), "<U1", b"\xff" * 4)), "file"),
-    "a crowd.glb": (scene(nodes=[{"mesh": 0}] * 20_001), "scene"),
-    "many primitives.glb": (scene(meshes=[{"primitives": PRIMITIVES * 99_999}]), "scene"),
-    "2^60 nodes.glb": (scene(nodes=DOUBLING), "scene"),
-    "too many nodes.glb": (scene(nodes=[{}] * 200_001), "scene"),
-    "20,000 deep.glb": (scene(nodes=DEEP), None),
-    "a long loop.glb": (scene(nodes=LOOP), "triangles"),
-    "brackets.glb": (glb_file(b'{"a":' + b"[" * 100_000, b""), "JSON"),
-    "much JSON.glb": (glb_file(b" " * 40_000_000, b""), "file"),
-    "a polygon of millions.ply": (
-        ply(1, struct.pack("<I", 2_000_000) + bytes(2_000_000), "uint uchar"),
-        "triangles",
-    ),
-    "a list of 2^32.ply": (ply(1, struct.pack("<I", 2**32 - 1) + bytes(12), "uint int"), "file"),
-    "uneven lists.ply": (ply(3_000_000, b"\3" + bytes(3_000_012)), "file"),
-    "2^32 facets.stl": (b"x" * 80 + b"\xff" * 4 + bytes(50), "triangles"),
-    "one line in a million.obj": (TRIANGLE + b"\\\n" * 1_000_000 + b"f 1 2 3\n", None),
-    "much text.obj": (b"#" * 30_000_000, "file"),
-    "5,000 digits.obj": (TRIANGLE + f"f 1 2 {HUGE}\n".encode(), "file"),
-    "1e308.obj": (b"v 1e308 -1e308 1e308\n" + TRIANGLE + b"f 1 2 3\nf 2 3 4", None),
-}
-
 HEADER, ROW = "class,x,y,z,length,width,height,yaw\n", ",1,2,3,4,5,6,7\n"
 
 
@@ -175,38 +140,82 @@ def one_box(**change):
     return json.dumps([{"category_name": "vehicle.car", **box, **change}])
 
 
-STRANGERS = json.dumps([json.loads(one_box(category_name=f"thing.{i}"))[0] for i in range(50_000)])
-TEXTS = {
-    "100,000 digits": ("boxes", f"{HEADER}car,{'9' * 100_000}x{ROW[2:]}", "line 2"),
-    "a cell of 200,000": ("boxes", f"{HEADER}{'c' * 200_000}{ROW}", "line 2"),
-    "a class turned round": ("boxes", f"{HEADER}car\u202e{ROW}", "line 2"),
-    "a class with an escape": ("boxes", f"{HEADER}c\x1b[2Jar{ROW}", "line 2"),
-    "5,000 digits": ("boxes", one_box().replace("[1, 2, 3]", f"[1, 2, {HUGE}]"), "file"),
-    "NaN where nobody looks": ("boxes", one_box(velocity=[float("nan")] * 2), None),
-    "half a character": ("boxes", one_box(category_name="\ud800"), "boxes"),
-    "strangers": ("boxes", STRANGERS, "boxes"),
-    "a shout": ("boxes", json.dumps({"k\n" * 10**5: 3}), "file"),
-    "a unit of a million": ("angles", f"elevation{'_deg' * 200_000}x\n", "line 1"),
-    "a header of 200,000": ("table", f"m,ap,{'9' * 200_000}", "line 1"),
-    "a key of 40 kB": ("study", ".".join("a" * 20_000) + " = 1", "line 1"),
-    "braces": ("study", "a = " + "{a = " * 100_000, "study"),
-    "5,000 digits of TOML": ("study", f"samples = {HUGE}", "study"),
-}
-CASES = {
-    **{name: ("mesh", make, field) for name, (make, field) in NO_FILES.items()},
-    **{name: ("mesh", holding(name, data), field) for name, (data, field) in MESHES.items()},
-    **{name: (reader, holding("a", data), field) for name, (reader, data, field) in TEXTS.items()},
-}
-"""The reader, what makes the file in a folder, and the field that is named; None: it is read."""
+@cache
+def cases():
+    """Return the reader, what makes the file in a folder, and the field that is named; None: it is
+    read."""
+    one = npy((1, 3, 3), "<f8", bytes(72))
+    primitives = gltf()[0]["meshes"][0]["primitives"]
+    doubling = [{"children": [i + 1, i + 1]} for i in range(60)] + [{"mesh": 0}]
+    deep = [*({"children": [i + 1]} for i in range(19_999)), {"mesh": 0}]
+    loop = [{"children": [(i + 1) % 1000]} for i in range(1000)]
+    triangle = b"v 0 0 0\nv 1 0 0\nv 0 1 0\n"
+    meshes = {
+        "claims 10^15 triangles.npz": (npz(npy((10**15, 3, 3), "<f8")), "file"),
+        "claims 10^4000 triangles.npz": (npz(npy((10**4000, 3, 3), "<f8")), "file"),
+        "5,000 digits.npz": (npz(npy((1, 3, 3), "<f8").replace(b"1,", b"9" * 5000)), "file"),
+        "1000 to 1.npz": (npz(npy((3_000_000, 3, 3), "<f4", bytes(108_000_000))), "triangles"),
+        "a lying directory.npz": (lying_npz(), "file"),
+        "many names.npz": (npz(one, npy((10**9,), "<U1")), "file"),
+        "nested header.npz": (npz(one.replace(b"(1,", b"(" * 9000 + b"1,")), "file"),
+        "impossible letters.npz": (npz(one, npy((1,), "<U1", b"\xff" * 4)), "file"),
+        "a crowd.glb": (scene(nodes=[{"mesh": 0}] * 20_001), "scene"),
+        "many primitives.glb": (scene(meshes=[{"primitives": primitives * 99_999}]), "scene"),
+        "2^60 nodes.glb": (scene(nodes=doubling), "scene"),
+        "too many nodes.glb": (scene(nodes=[{}] * 200_001), "scene"),
+        "20,000 deep.glb": (scene(nodes=deep), None),
+        "a long loop.glb": (scene(nodes=loop), "triangles"),
+        "brackets.glb": (glb_file(b'{"a":' + b"[" * 100_000, b""), "JSON"),
+        "much JSON.glb": (glb_file(b" " * 40_000_000, b""), "file"),
+        "a polygon of millions.ply": (
+            ply(1, struct.pack("<I", 2_000_000) + bytes(2_000_000), "uint uchar"),
+            "triangles",
+        ),
+        "a list of 2^32.ply": (
+            ply(1, struct.pack("<I", 2**32 - 1) + bytes(12), "uint int"),
+            "file",
+        ),
+        "uneven lists.ply": (ply(3_000_000, b"\3" + bytes(3_000_012)), "file"),
+        "2^32 facets.stl": (b"x" * 80 + b"\xff" * 4 + bytes(50), "triangles"),
+        "one line in a million.obj": (triangle + b"\\\n" * 1_000_000 + b"f 1 2 3\n", None),
+        "much text.obj": (b"#" * 30_000_000, "file"),
+        "5,000 digits.obj": (triangle + f"f 1 2 {HUGE}\n".encode(), "file"),
+        "1e308.obj": (b"v 1e308 -1e308 1e308\n" + triangle + b"f 1 2 3\nf 2 3 4", None),
+    }
+    strangers = json.dumps(
+        [json.loads(one_box(category_name=f"thing.{i}"))[0] for i in range(50_000)]
+    )
+    texts = {
+        "100,000 digits": ("boxes", f"{HEADER}car,{'9' * 100_000}x{ROW[2:]}", "line 2"),
+        "a cell of 200,000": ("boxes", f"{HEADER}{'c' * 200_000}{ROW}", "line 2"),
+        "a class turned round": ("boxes", f"{HEADER}car\u202e{ROW}", "line 2"),
+        "a class with an escape": ("boxes", f"{HEADER}c\x1b[2Jar{ROW}", "line 2"),
+        "5,000 digits": ("boxes", one_box().replace("[1, 2, 3]", f"[1, 2, {HUGE}]"), "file"),
+        "NaN where nobody looks": ("boxes", one_box(velocity=[float("nan")] * 2), None),
+        "half a character": ("boxes", one_box(category_name="\ud800"), "boxes"),
+        "strangers": ("boxes", strangers, "boxes"),
+        "a shout": ("boxes", json.dumps({"k\n" * 10**5: 3}), "file"),
+        "a unit of a million": ("angles", f"elevation{'_deg' * 200_000}x\n", "line 1"),
+        "a header of 200,000": ("table", f"m,ap,{'9' * 200_000}", "line 1"),
+        "a key of 40 kB": ("study", ".".join("a" * 20_000) + " = 1", "line 1"),
+        "braces": ("study", "a = " + "{a = " * 100_000, "study"),
+        "5,000 digits of TOML": ("study", f"samples = {HUGE}", "study"),
+    }
+    return {
+        **{name: ("mesh", make, field) for name, (make, field) in NO_FILES.items()},
+        **{name: ("mesh", holding(name, data), field) for name, (data, field) in meshes.items()},
+        **{
+            name: (reader, holding("a", data), field)
+            for name, (reader, data, field) in texts.items()
+        },
+    }
 
 
 def outcomes_of(new_folder):
     """How each file went, read in another process with little memory."""
     listed = new_folder("list") / "cases.json"
-    cases = [
-        (name, reader, str(make(new_folder("a")))) for name, (reader, make, _) in CASES.items()
-    ]
-    listed.write_text(json.dumps(cases))
+    made = [(name, row[0], str(row[1](new_folder("a")))) for name, row in cases().items()]
+    listed.write_text(json.dumps(made))
     command = [sys.executable, "-m", "tests.engine.test_hostile_files", str(listed)]
     with subprocess.Popen(
         command, cwd=Path(__file__).parents[2], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE
@@ -224,7 +233,7 @@ def test_hostile_files_are_refused_in_one_line(tmp_path_factory):
     """What is not in the answers hung, or took the process with it; odd files are read."""
     told = outcomes_of(tmp_path_factory.mktemp)
     expected = {
-        name: {"name": name, "fault": "", "field": field} for name, (_, _, field) in CASES.items()
+        name: {"name": name, "fault": "", "field": field} for name, (_, _, field) in cases().items()
     }
     assert told == expected
 
@@ -250,14 +259,14 @@ def read_with_little_memory():
 
     import trimesh  # noqa: F401  (before memory is limited)
 
-    cases = json.loads(Path(sys.argv[1]).read_text())
+    listed = json.loads(Path(sys.argv[1]).read_text())
     for reader in READERS.values():  # what they import on their first call is not the files' fault
         with suppress(pe.InputError):
             reader(Path("/none.obj"))
     pages = int(Path("/proc/self/statm").read_text().split()[0])
     most = pages * resource.getpagesize() + ROOM_BYTES
     resource.setrlimit(resource.RLIMIT_AS, (most, most))
-    for name, reader, path in cases:
+    for name, reader, path in listed:
         print(json.dumps({"name": name, **outcome(reader, Path(path))}), flush=True)
 
 

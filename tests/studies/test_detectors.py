@@ -52,7 +52,6 @@ from tests.thorough import THOROUGH
 
 FOLDER = ROOT / "docs" / "validity" / "own"
 PLAN = full_plan()
-PLACEMENT = placements(PLAN)[0]
 DIGEST = "33306cc19714a1fa"
 """Of the plan that the study began with. A changed plan is another study, with its own results."""
 SCENE = "bdedc09a393d7688"
@@ -80,8 +79,13 @@ print(json.dumps(result_of(plan, Run(placements(plan)[0], 1, TOWN, POINTS))))
 
 
 @pytest.fixture(scope="module")
-def caster():
-    return Caster(PLAN, PLACEMENT, PLAIN)
+def placement():
+    return placements(PLAN)[0]
+
+
+@pytest.fixture(scope="module")
+def caster(placement):
+    return Caster(PLAN, placement, PLAIN)
 
 
 @pytest.fixture(scope="module")
@@ -111,12 +115,12 @@ def test_scenes_and_their_noise_are_the_same_in_every_session(voxels):
 
 
 @pytest.mark.parametrize("world", [PLAIN, TOWN])
-def test_beams_end_where_embree_says(world):
+def test_beams_end_where_embree_says(placement, world):
     content = scene(PLAN, "sedan", "train", world, 1)
     embree = Embree.of(content.triangles)
     if embree is None:
         pytest.skip("embreex is not installed")
-    lidar = FreeBeams(PLACEMENT, 0)
+    lidar = FreeBeams(placement, 0)
     hits = VisibleTriangles(TriangleTree(content.triangles), lidar.origin)
     face = hits.first_hit(lidar.directions).face
     expected = embree.first_hit(lidar.origin, lidar.directions)

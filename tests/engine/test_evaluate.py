@@ -175,9 +175,9 @@ def sensors(groups):
 
 
 RIGS = {
-    "as usual": (None,) * 5,
-    "all late": ("a", "b", None, None, None),
     "cameras early, too": (None, None, "eyes", "eyes", "eyes"),
+    "all late": ("a", "b", None, None, None),
+    "as usual": (None,) * 5,
     "some of them": ("a", "b", "eyes", "eyes", None),
 }
 

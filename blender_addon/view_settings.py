@@ -216,6 +216,16 @@ class ViewSettings:
         "Show what every camera sees along the lower edge of the 3D view; a click on a picture "
         "looks through that camera",
     )
+    show_birds_eye: bool = _switch(
+        False,
+        "Bird's-Eye View",
+        "Show the ground round the vehicle from above, stitched from the pictures of all cameras; "
+        "ground that no camera sees is hatched",
+    )
+    birds_eye_within: float = _value(
+        10.0, studies.Number(1.0, 30.0, unit="m"), "Distance",
+        "How far from the vehicle's body the ground is shown",
+    )  # fmt: skip
     show_legend: bool = _switch(True, "Legend", "Explain the colours in the lower right corner")
     layers: frozenset[str] = frozenset()
 

@@ -29,7 +29,7 @@ from . import (
     where_map,
 )
 from .live import session
-from .operators import inset, look_through, upright
+from .operators import camera_pictures, look_through, upright
 from .overlay import draw_handler, scheduler
 
 Function = Callable[..., None]
@@ -46,7 +46,7 @@ EVENTS: dict[str, tuple[Function, ...]] = {
     "depsgraph_update_post": (
         sensor_cache.invalidate,
         vehicle_cache.invalidate_if_updated,
-        inset.note_change,
+        camera_pictures.note_change,
         change_events.note_if_changed,
         session.follow_update,
         body_query.note_update,

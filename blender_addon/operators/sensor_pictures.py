@@ -9,15 +9,24 @@ import numpy as np
 from gpu_extras.presets import draw_texture_2d
 from mathutils import Matrix
 
-from .. import viewport
-from ..engine import graphics
+from .. import bridge, viewport
+from ..engine import catalog, graphics, pe
 from ..sensor_kinds import Pixels
 
 TITLE_PX, PAD_PX = 20.0, 6.0
+WIDTH_SHARE, MAX_HEIGHT_SHARE, MAX_WIDTH_PX = 0.3, 0.4, 380.0
+"""Largest share of the view's width and height, and largest width at a scale of 1."""
 TITLE_PLATE, INK = (0.08, 0.08, 0.08, 0.78), (0.92, 0.92, 0.92, 1.0)
 TAKES_SRGB = bpy.app.version >= (5, 0, 0)
 """Whether textures drawn over a view are taken as they are; before 5.0 they are linear light."""
 EDGE = (0.75, 0.75, 0.75, 1.0)
+
+
+class PictureSize(NamedTuple):
+    """Size of a picture [px]."""
+
+    width: int
+    height: int
 
 
 class PictureView(NamedTuple):
@@ -117,3 +126,37 @@ def draw_frame(
     pad = PAD_PX * scale
     viewport.draw_text(title, left + pad, top + pad, viewport.SMALL * scale, INK)
     return left, bottom, right, above
+
+
+def has_room(context: bpy.types.Context) -> bool:
+    """Whether a region is a 3D view; in a quad view, the one that can be turned."""
+    space = context.space_data
+    is_view = space is not None and space.type == "VIEW_3D"
+    return is_view and context.region_data == space.region_3d
+
+
+def sensor_of(obj: bpy.types.Object) -> pe.Sensor | None:
+    """Return an object's sensor as it stands; None where it is not possible: the list says why."""
+    try:
+        pose = bridge.pose_of_matrix(np.array(obj.matrix_world, dtype=float))
+        return pe.Sensor(obj.name, catalog.load(obj.perception_entropy.model), pose)
+    except pe.InputError:
+        return None
+
+
+def size_of(
+    region: tuple[int, int], picture: tuple[float, float], scale: float
+) -> PictureSize:
+    """Return the size of a picture of these proportions in a region [px]."""
+    ratio = picture[1] / picture[0]
+    width = min(WIDTH_SHARE * region[0], MAX_WIDTH_PX * scale, MAX_HEIGHT_SHARE * region[1] / ratio)
+    return PictureSize(max(int(width), 2), max(int(width * ratio), 2))
+
+
+def corner(context: bpy.types.Context, plate: str, size: tuple[int, int]) -> tuple[float, float]:
+    """Return the lower left corner of a picture in the region [px]: above the other plates."""
+    region, margin = context.region, viewport.MARGIN * viewport.ui_scale()
+    left, pointer = viewport.beside_toolbar(context), region.as_pointer()
+    viewport.reserve_plate(pointer, plate, None)
+    bottom = viewport.free_bottom(pointer, (left, left + size[0]), margin, margin)
+    return left, min(bottom, region.height - size[1] - TITLE_PX * viewport.ui_scale())

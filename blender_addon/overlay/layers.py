@@ -8,7 +8,7 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from ..engine import graphics, motion, pe
+from ..engine import graphics, kinds, motion, pe
 from ..view_settings import ALL, BY_CHANNEL, BY_SENSOR, RIG, ViewSettings
 from . import ground_layers, heatmap, regions
 from .annotations import (
@@ -19,6 +19,7 @@ from .annotations import (
     ghost_sensors,
     location_mark,
 )
+from .birds_eye import birds_eye
 from .layer_cache import LayerCache
 from .place_colors import place_colors
 from .request import SceneSensor, ViewRequest
@@ -27,6 +28,8 @@ from .requirement_zones import requirement_zones
 WHOLE_RIG, OTHER_RIG = "", "\0other variant"
 """The names of shapes that belong to no single sensor: of the scene, and of the variant that a wipe
 shows beside it."""
+BIRDS_EYE = "birds_eye"
+"""The layer that is a plate over the view: `operators.birds_eye` draws it."""
 BLIND_WITHIN_M = 10.0
 RING_ALPHA = 0.55
 OCCLUDED_ALPHA = 0.35
@@ -106,6 +109,18 @@ def _blind(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.Laye
     found = cache.sight(request).blind(_counted_rig(request), height, within=BLIND_WITHIN_M)
     body = None if request.vehicle is None else request.vehicle.bounds
     return ground_layers.blind_ground(found, body, height)
+
+
+def _birds_eye_keys(request: ViewRequest) -> dict[str, Hashable]:
+    """Return the key of the plate, by cameras alone."""
+    models = ((each, each.sensor.model) for each in request.counted)
+    cameras = tuple(e for e, model in models if kinds.kind_of(model).pixels_per_radian(model))
+    return _rig_keys("birds_eye_within")(replace(request, sensors=cameras))
+
+
+def _birds_eye(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.LayerShape:
+    rig, within = _counted_rig(request), request.view.birds_eye_within
+    return birds_eye(cache.sight(request).surround_view(rig, within))
 
 
 def _reach_keys(request: ViewRequest) -> dict[str, Hashable]:
@@ -388,6 +403,7 @@ LAYERS = (
     Layer("front", "Front", _front_keys, _front, 2.2, edged=True),
     Layer("ghosts", "Other Variant", _ghost_keys, _ghosts, 1.6, edged=True),
     Layer("place", "Queried Location", _place_keys, _place, 1.8, edged=True),
+    Layer(BIRDS_EYE, "Bird's-Eye View", _birds_eye_keys, _birds_eye),
     Layer("labels", "Names", _label_keys, _label),
 )
 assert all(a.name != b.name for a, b in pairwise(LAYERS))

@@ -74,6 +74,7 @@ def surroundings(layout: UILayout, settings: PropertyGroup, context: Context) ->
     """A road and test bodies round the vehicle, and which sensors see each body"""
     layout.operator("pe.surroundings", icon="WORLD")
     layout.prop(settings.view, "show_cameras", toggle=True, icon="RENDERLAYERS")
+    layout.prop(settings.view, "show_birds_eye", toggle=True, icon="AXIS_TOP")
     for name, body in body_query.seen(context.scene).items():
         column = layout.column(align=True)
         chosen = column.operator("pe.select_part", text=f"{name}: {body.summary}", translate=False)

@@ -66,9 +66,9 @@ overlay.surroundings: engine overlay viewport
 overlay.draw_handler: body_query bridge engine engine_process overlay overlay.scheduler
     overlay.surroundings vehicle_cache viewport
 operators: best_so_far body_query bridge choices diagnostics engine engine_calls engine_process
-    film housing language library live location_query overlay overlay.surroundings own_jobs
-    properties result_staleness sensor_cache sensor_kinds signals translation_context
-    variant_pictures vehicle_cache view_settings viewport where_map
+    film housing language library live location_query overlay overlay.scheduler
+    overlay.surroundings own_jobs properties result_staleness sensor_cache sensor_kinds signals
+    translation_context variant_pictures vehicle_cache view_settings viewport where_map
 panels: body_query bridge choices diagnostics engine language live location_query operators
     properties sensor_cache sensor_kinds where_map
 commands: bridge engine film result_staleness

@@ -9,7 +9,7 @@ from mathutils import Vector
 
 from blender_addon import bridge
 from blender_addon.engine import catalog, pe
-from blender_addon.operators import inset
+from blender_addon.operators import camera_pictures, camera_strip, inset, sensor_pictures
 from tests.addon import scenes
 
 
@@ -17,7 +17,7 @@ from tests.addon import scenes
 def test_points_fall_where_the_camera_has_them(car, model):
     """The pinhole of eq. 3: as the page's and the score's."""
     camera = catalog.load(model)
-    clip = inset.projection(camera)
+    clip = camera_pictures.projection(camera)
     for ahead, left, up in ((5.0, 0.0, 0.0), (5.0, 1.0, 0.4), (9.0, -2.0, -0.7)):
         seen = bridge.CAMERA_FROM_SENSOR.inverted() @ Vector((ahead, left, up, 1.0))
         x, y, _, w = clip @ seen
@@ -30,18 +30,21 @@ def test_points_fall_where_the_camera_has_them(car, model):
 @pytest.mark.parametrize("picture", [(1920, 1080), (640, 480), (1080, 120)])
 @pytest.mark.parametrize("scale", [1.0, 2.0])
 def test_a_picture_keeps_its_proportions_and_leaves_the_view_room(region, picture, scale):
-    width, height = inset.size_of(region, picture, scale)
-    assert width <= max(inset.WIDTH_SHARE * region[0], 2) and width <= inset.MAX_WIDTH_PX * scale
-    assert height <= max(inset.MAX_HEIGHT_SHARE * region[1], 2)
+    width, height = sensor_pictures.size_of(region, picture, scale)
+    assert (
+        width <= max(sensor_pictures.WIDTH_SHARE * region[0], 2)
+        and width <= sensor_pictures.MAX_WIDTH_PX * scale
+    )
+    assert height <= max(sensor_pictures.MAX_HEIGHT_SHARE * region[1], 2)
     assert height == pytest.approx(width * picture[1] / picture[0], abs=2)
 
 
 @pytest.mark.parametrize("width", [1200.0, 300.0])
 def test_the_strip_has_all_cameras_beside_each_other(width):
     pictures = [(1920, 1080), (640, 480), (1280, 320)]
-    sizes = inset.strip_sizes(width, pictures, 1.0)
-    assert sum(size.width for size in sizes) + 2 * inset.GAP_PX <= width
-    assert len({size.height for size in sizes}) == 1 and sizes[0].height <= inset.STRIP_PX
+    sizes = camera_strip.strip_sizes(width, pictures, 1.0)
+    assert sum(size.width for size in sizes) + 2 * camera_strip.GAP_PX <= width
+    assert len({size.height for size in sizes}) == 1 and sizes[0].height <= camera_strip.STRIP_PX
     for (across, up), size in zip(pictures, sizes, strict=True):
         assert size.width == pytest.approx(size.height * across / up, abs=4)
 

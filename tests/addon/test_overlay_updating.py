@@ -51,7 +51,7 @@ def test_every_layer_shows_something_of_a_rig(rig):
         assert set(drawn[name]) == {layers.WHOLE_RIG}
     for shapes in drawn.values():
         for item in shapes.values():
-            shape = item.at(0.0)
+            shape = getattr(item.at(0.0), "over", item.at(0.0))  # what a plate has over pictures
             parts = (shape.lines, shape.faces, shape.through, shape.thin)
             assert shape.labels or shape.sheet or any(len(part.points) for part in parts)
             assert all(p.points.flags.c_contiguous and p.colors.flags.c_contiguous for p in parts)
@@ -71,7 +71,7 @@ def test_each_layer_has_a_switch_and_all_of_them_one(rig):
 
 def test_nothing_is_worked_out_without_a_change(rig, worked):
     scenes.drawn(rig)
-    assert len(worked) == 13
+    assert len(worked) == 14
     before = {layer: dict(shown_of(rig.name, layer)) for layer in ALL_LAYERS}
     worked.clear()
     scenes.drawn(rig)
@@ -90,7 +90,7 @@ def test_a_moved_sensor_is_worked_out_alone_and_the_vehicle_is_not_read(rig, wor
     bpy.context.view_layer.update()
     scenes.drawn(rig)
     of_the_rig = {("ground", ""), ("blind", ""), ("reach", ""), ("requirements", "")}
-    of_the_rig |= {("story", "")}
+    of_the_rig |= {("story", ""), ("birds_eye", "")}
     assert set(worked) == {("frustums", "eye"), ("labels", "eye"), *of_the_rig}
 
 
@@ -238,7 +238,7 @@ def test_the_map_is_of_the_scene_s_own_space(rig):
     rig.perception_entropy.space_x = (30.0, -20.0)  # a mistake: a score says which
     for name in ALL_LAYERS:
         setattr(view, f"show_{name}", True)
-    assert set(scenes.drawn(rig)) == ALL_LAYERS - {"ground", "blind", "reach", "focus"}
+    assert set(scenes.drawn(rig)) == ALL_LAYERS - {"ground", "blind", "reach", "focus", "birds_eye"}
 
 
 def test_changes_are_heard_and_another_file_forgets(rig):

@@ -34,9 +34,17 @@ def test_a_grabbed_body_says_what_sees_it_while_it_moves(window, screenshots):
     assert "Traceback" not in window.log.read_text()
 
 
-PICTURES = (
-    "__import__('bl_ext.user_default.perception_entropy.operators.inset', fromlist=['_in_strip'])"
-)
+OURS = "__import__('bl_ext.user_default.perception_entropy.{}', fromlist=['*'])"
+PICTURES, STRIP = OURS.format("operators.camera_pictures"), OURS.format("operators.camera_strip")
+GROUND = OURS.format("overlay.layer_cache") + ".shown_of(window.scene.name, 'birds_eye')"
+BOX = f"""
+name = {OURS.format("operators.birds_eye")}.PLATE_NAME
+(found,) = [boxes for boxes in {OURS.format("viewport")}._plates.values() if name in boxes]
+main = next(each for each in area.regions if each.type == "WINDOW")
+left, bottom, right, top = found[name]
+kept["box"] = [main.x + left, window.height - main.y - top, right - left, top - bottom]
+kept["taken"] = sorted(key.name for key in {PICTURES}._pictures if key.plate == name)
+"""
 THREE = """
 for name, place, turn in (
     ("front", (0.6, 0.0, 1.35), 0.0),
@@ -71,7 +79,7 @@ redraws(1)
 begun = time.perf_counter()
 pictures.render_requested()
 kept["picture"], kept["left"] = time.perf_counter() - begun, len(pictures._requested)
-view.show_cameras = False
+view.show_cameras = view.show_birds_eye = False
 redraws(2)
 kept["off"], kept["kept"] = redraws(), len(pictures._pictures)
 """
@@ -91,8 +99,16 @@ def test_a_click_on_a_picture_of_the_strip_looks_through_its_camera(window, scre
     window.settle()
     window.screenshot(screenshots / "window_strip_through.png")
     window.do("bpy.ops.pe.look_back()")
+    window.do("window.scene.perception_entropy.view.show_birds_eye = True")
+    window.wait_until(f"len({PICTURES}._pictures) == 7", EFFECT_TIMEOUT_S)
+    window.settle()
+    shown = screenshots / "window_birds_eye.png"
+    window.photograph(shown)
+    plate = window.do(BOX)
+    assert plate["taken"] == ["", "front", "left", "rear"]
+    assert colors_in(shown, plate["box"]) > 500, "the road and the vehicle, in shades"
     cost = window.do(COST)
     print(cost)
-    assert cost["left"] == 2 and cost["kept"] == 0
+    assert cost["left"] == 6 and cost["kept"] == 0
     assert cost["on"] + cost["picture"] < 1.5 * cost["off"] + 0.05
     assert "Traceback" not in window.log.read_text()

@@ -12,4 +12,5 @@ from .blind_ground import (
 from .ground_cells import outlines
 from .reach import Reach, ends_with_space, reach_line
 from .sight import Sight
+from .surround_view import NO_CAMERA, VEHICLE, SurroundView
 from .visibility import GroundSight, VisibleShares

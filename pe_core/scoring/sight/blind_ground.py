@@ -298,10 +298,23 @@ class BlindSearch:
 
     def blind(self, rig: Rig) -> Flags:
         """Return the blind cells (NX, NY) of a rig."""
-        marked = self.squares.marked(rig)
-        blind = blind_squares(marked & ~self.own, self.own, self.cells.step)
-        inner = tuple(slice(self.margin, n - self.margin) for n in blind.shape)
-        return np.ascontiguousarray(blind[inner])
+        return self._blind(self.squares.marked(rig))
+
+    def by_sensor(self) -> dict[str, Flags]:
+        """Return the blind cells (NX, NY) of each sensor of the last rig, as if it were alone."""
+        return {name: self._blind(marked) for name, marked in self.squares.by_sensor.items()}
+
+    @property
+    def covered(self) -> Flags:
+        """Cells (NX, NY) with the vehicle over their centres."""
+        return self._inner(self.own)
+
+    def _blind(self, marked: Flags) -> Flags:
+        return self._inner(blind_squares(marked & ~self.own, self.own, self.cells.step))
+
+    def _inner(self, squares: Flags) -> Flags:
+        inner = tuple(slice(self.margin, n - self.margin) for n in squares.shape)
+        return np.ascontiguousarray(squares[inner])
 
 
 def blind_squares(marked: Flags, covered: Flags, step: float) -> Flags:

@@ -41,6 +41,7 @@ from .blind_ground import (
 )
 from .ground_cells import GroundCells, widened
 from .reach import AP, AT_LEAST_M, BEARINGS, Reach, Spokes, density_of, object_reach
+from .surround_view import SurroundView, cameras_of, surround_view
 from .visibility import (
     GroundSight,
     VisibleShares,
@@ -165,6 +166,18 @@ class Sight:
         cells, blind = self._blind_cells(rig, height, WITHIN_M)
         return area_of(cells, blind)
 
+    def surround_view(self, rig: Rig, within: float = WITHIN_M) -> SurroundView:
+        """Return which camera of the rig shows each square of the ground round the vehicle best.
+
+        What is blind is what `blind` has, at height 0, for the cameras alone.
+
+        `InputError` when the rig has no camera; otherwise as `blind`.
+        """
+        cameras = cameras_of(rig)
+        with self._lock:
+            search = self._blind_search(self._cells_round_body(0.0, within), 0.0)
+            return surround_view(search, cameras, float(within))
+
     def blind_sectors(self, rig: Rig) -> tuple[BlindSector, ...]:
         """Return the widest blind sector for bodies of each of `SECTOR_HEIGHTS_M`.
 
@@ -229,20 +242,26 @@ class Sight:
         self, rig: Rig, height: float, within: float
     ) -> tuple[GroundCells, NDArray[np.bool_]]:
         """Return cells, and which of them (NX, NY) are blind."""
+        cells = self._cells_round_body(height, within)
+        return cells, self._blind_of(cells, rig, height)
+
+    def _cells_round_body(self, height: float, within: float) -> GroundCells:
         area = widened(body_rectangle(self.vehicle), within)
         cells = GroundCells.of(self.space, STEP_M, area)
         layer_at(self.space, height)  # raises InputError for a height that is not in the space
-        return cells, self._blind_of(cells, rig, height)
+        return cells
 
     def _blind_of(self, cells: GroundCells, rig: Rig, height: float) -> NDArray[np.bool_]:
         with self._lock:
-            search = self._voxel_sets.cached(
-                ("blind", float(height), cells.key),
-                lambda: BlindSearch.of(
-                    cells, max(float(height), 0.0), self.vehicle, self._voxel_sets.kernel_cache
-                ),
-            )
-            return search.blind(rig)
+            return self._blind_search(cells, height).blind(rig)
+
+    def _blind_search(self, cells: GroundCells, height: float) -> BlindSearch:
+        return self._voxel_sets.cached(
+            ("blind", float(height), cells.key),
+            lambda: BlindSearch.of(
+                cells, max(float(height), 0.0), self.vehicle, self._voxel_sets.kernel_cache
+            ),
+        )
 
     def reach(
         self, rig: Rig, class_name: str, *, ap: float = MIN_AP, bearings: int = BEARINGS_SHOWN

@@ -163,6 +163,7 @@ CAMERA = Kind(
     curve=RTM3D,
     object_curves=derived_object_curves(RTM3D),
     keys=KEYS,
+    pixels_per_radian=lambda model: model.pixels_per_radian,
     has_top=True,
     shows_parts=True,
     occlusion_text="picture occluded",

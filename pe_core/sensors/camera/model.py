@@ -116,6 +116,12 @@ class Camera(SensorModel):
         return lens.fx if lens.fx == lens.fy else math.sqrt(lens.fx * lens.fy)
 
     @property
+    def pixels_per_radian(self) -> float:
+        """Pixels per radian on the axis: the root of those per steradian."""
+        ahead, aside = np.ones(1), np.zeros(1)
+        return math.sqrt(self.projection.density(ahead, aside, aside)[0])
+
+    @property
     def vfov(self) -> float:
         """Vertical field of view [rad], along the column through the principal point."""
         if self.lens is None:

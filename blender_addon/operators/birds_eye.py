@@ -1,0 +1,141 @@
+"""The bird's-eye view: a plate over the 3D view with the ground as the cameras show it, from above.
+
+Every picture is taken from its camera's place straight down, with a projection whose picture plane
+is the ground of the plate. So it lies on the plate as it is, however wide the lens, and nothing is
+bent: which camera paints a square of the ground, and which squares are blind, the engine says, by
+the camera's lens, range and what the vehicle hides. The vehicle is a picture from above.
+"""
+
+import bpy
+import gpu
+import numpy as np
+from gpu_extras.batch import batch_for_shader
+from mathutils import Matrix
+
+from .. import bridge, viewport
+from ..engine import pe
+from ..overlay import scheduler
+from ..overlay.batches import Batches
+from ..overlay.birds_eye import FROM_ABOVE, BirdsEye
+from ..overlay.layer_cache import shown_of
+from ..overlay.layers import BIRDS_EYE, WHOLE_RIG
+from . import camera_pictures, sensor_pictures
+from .camera_pictures import NEAR_M, Look
+
+PLATE_NAME = "bird's-eye view"
+UNSEEN: viewport.Rgba = (0.05, 0.05, 0.05, 0.9)
+ABOVE_M, BELOW_M = 20.0, 1.0
+"""Height of the eye that sees the vehicle, and how far below the ground pictures reach."""
+RAISED_M = 0.009
+"""The drawn road is raised to below that of *Surroundings*: what lies lower is shown farther out,
+less from a higher camera, and would not fit at seams."""
+BAR_M, BAR_PX, LINE_PX = 5.0, 2.0, 1.4
+"""Length and thickness of the bar that tells the scale; width of outlines."""
+
+_uploaded: list[tuple[BirdsEye, dict[str, gpu.types.GPUBatch], Batches]] = []
+"""What was drawn last, on the graphics card."""
+
+
+def clear() -> None:
+    """Keep nothing on the graphics card."""
+    _uploaded.clear()
+
+
+def draw(context: bpy.types.Context) -> None:
+    """Draw the plate, if it is switched on and the engine has said who sees what."""
+    region, scene = context.region.as_pointer(), context.scene
+    viewport.reserve_plate(region, PLATE_NAME, None)
+    item = shown_of(scene.name, BIRDS_EYE).get(WHOLE_RIG)
+    if item is None or not sensor_pictures.has_room(context):
+        camera_pictures.keep_only(region, PLATE_NAME, ())
+        return
+    shape, scale = item.shape, viewport.ui_scale()
+    assert isinstance(shape, BirdsEye)
+    proportions = shape.y[1] - shape.y[0], shape.x[1] - shape.x[0]
+    size = sensor_pictures.size_of(
+        (context.region.width, context.region.height), proportions, scale
+    )
+    left, bottom = sensor_pictures.corner(context, PLATE_NAME, size)
+    box = left, bottom, left + size.width, bottom + size.height
+    viewport.fill_box(box, UNSEEN)
+    _draw_ground(context, shape, size, box)
+    old = scheduler.is_preview(scene.name, BIRDS_EYE, WHOLE_RIG, item)
+    title = f"{shape.blind_m2:.1f} m² blind to cameras{' (preview)' if old else ''}"
+    frame = sensor_pictures.draw_frame((left, bottom), size, title, scale)
+    bar, pad = size.width * BAR_M / proportions[0], sensor_pictures.PAD_PX * scale
+    ruler = left + pad, bottom + pad, left + pad + bar, bottom + pad + BAR_PX * scale
+    viewport.fill_box(ruler, viewport.INK)
+    text = ruler[2] + pad, ruler[1]
+    viewport.draw_text(f"{BAR_M:g} m", *text, viewport.SMALL * scale, viewport.INK)
+    viewport.reserve_plate(region, PLATE_NAME, frame)
+
+
+def _draw_ground(
+    context: bpy.types.Context,
+    shape: BirdsEye,
+    size: sensor_pictures.PictureSize,
+    box: viewport.PlateBox,
+) -> None:
+    """Draw what the pictures show, blind ground and the outline of the vehicle over it."""
+    image = viewport.shader("IMAGE")
+    if not _uploaded or _uploaded[0][0] is not shape:
+        painted = {
+            name: batch_for_shader(image, "TRIS", {"pos": corners, "texCoord": corners})
+            for name, corners in shape.painted.items()
+        }
+        _uploaded[:] = [(shape, painted, Batches.of(shape.over))]
+    _, painted, over = _uploaded[0]
+    looks = looks_of(context.scene, shape)
+    camera_pictures.keep_only(context.region.as_pointer(), PLATE_NAME, looks)
+    gpu.state.blend_set("NONE")
+    with viewport.in_box(box):
+        for name, look in looks.items():
+            camera = camera_pictures.picture(context, PLATE_NAME, name, look, size)
+            if camera is not None:
+                image.bind()
+                image.uniform_sampler("image", camera.texture)
+                painted[name].draw(image)
+        with viewport.blended():
+            over.draw_lines(context.region, LINE_PX, edged=False)
+
+
+def looks_of(scene: bpy.types.Scene, shape: BirdsEye) -> dict[str, Look]:
+    """Return from where each picture is taken, by name; none of a camera below the ground."""
+    middle = (sum(shape.x) / 2.0, sum(shape.y) / 2.0, ABOVE_M)
+    eyes = {FROM_ABOVE: pe.Pose(middle)}
+    for name in shape.painted:
+        if name != FROM_ABOVE and (obj := scene.objects.get(name)) is not None:
+            eyes[name] = bridge.pose_of_matrix(np.array(obj.matrix_world, dtype=float))
+    return {
+        name: look_down(eye, shape, straight=name == FROM_ABOVE)
+        for name, eye in eyes.items()
+        if name in shape.painted and eye.position[2] > NEAR_M
+    }
+
+
+def look_down(eye: pe.Pose, shape: BirdsEye, *, straight: bool) -> Look:
+    """Return the look straight down from an eye whose picture is the ground of a plate; `straight`:
+    by parallel rays, otherwise all of them through the eye."""
+    ex, ey, height = eye.position
+    camera_from_ground = Matrix(((0, -1, 0, ey), (1, 0, 0, -ex), (0, 0, 1, -height), (0, 0, 0, 1)))
+    near, far = NEAR_M, height + BELOW_M
+    share = 1.0 if straight else near / height
+    low_x, high_x = share * (ey - shape.y[1]), share * (ey - shape.y[0])
+    low_y, high_y = share * (shape.x[0] - ex), share * (shape.x[1] - ex)
+    wide, high, deep = high_x - low_x, high_y - low_y, far - near
+    middle = (high_x + low_x) / wide, (high_y + low_y) / high
+    if straight:
+        rows = (
+            (2.0 / wide, 0.0, 0.0, -middle[0]),
+            (0.0, 2.0 / high, 0.0, -middle[1]),
+            (0.0, 0.0, -2.0 / deep, -(far + near) / deep),
+            (0.0, 0.0, 0.0, 1.0),
+        )
+    else:
+        rows = (
+            (2.0 * near / wide, 0.0, middle[0], 0.0),
+            (0.0, 2.0 * near / high, middle[1], 0.0),
+            (0.0, 0.0, -(far + near) / deep, -2.0 * far * near / deep),
+            (0.0, 0.0, -1.0, 0.0),
+        )
+    return Look(eye, camera_from_ground, Matrix(rows), RAISED_M)

@@ -1,0 +1,119 @@
+"""The pictures of all cameras along the lower edge of the 3D view, in a strip that takes clicks."""
+
+from typing import Any
+
+import bpy
+
+from .. import sensor_cache, viewport
+from ..engine import pe
+from ..sensor_kinds import row_of
+from . import camera_pictures, sensor_pictures
+from .declared import declared
+from .sensor_pictures import PictureSize, has_room, sensor_of
+
+STRIP_PX, GAP_PX = 92.0, 6.0
+"""Height of the pictures of the strip and the gaps between them, at a scale of 1."""
+_in_strip: dict[int, list[tuple[str, viewport.PlateBox]]] = {}
+"""Sensors and their pictures in the strip, by the region's pointer."""
+
+
+def clear() -> None:
+    """Forget where pictures are."""
+    _in_strip.clear()
+
+
+def shown_cameras(context: bpy.types.Context) -> list[tuple[pe.Sensor, pe.Camera]]:
+    """Return the visible cameras, where the view is to show the strip."""
+    if not context.scene.perception_entropy.view.show_cameras or not has_room(context):
+        return []
+    visible = (each for each in sensor_cache.sensors(context.scene) if each.visible_get())
+    possible = (sensor for each in visible if (sensor := sensor_of(each)) is not None)
+    rows = ((sensor, row_of(sensor.kind).camera) for sensor in possible)
+    return [(sensor, camera_of(sensor.model)) for sensor, camera_of in rows if camera_of]
+
+
+def draw(context: bpy.types.Context) -> None:
+    """Draw the pictures of all cameras in a row, and note where they are."""
+    region, scale = context.region.as_pointer(), viewport.ui_scale()
+    viewport.reserve_plate(region, viewport.CAMERAS, None)
+    _in_strip.pop(region, None)
+    cameras, drawn = shown_cameras(context), []
+    camera_pictures.keep_only(region, viewport.CAMERAS, {sensor.name for sensor, _ in cameras})
+    if not cameras:
+        return
+    left = viewport.beside_toolbar(context)
+    bottom = viewport.above_hud(context, over=(viewport.STRIP,))
+    width = viewport.sidebar_left(context) - viewport.MARGIN * scale - left
+    sizes = strip_sizes(width, [(each.width, each.height) for _, each in cameras], scale)
+    for (sensor, model), size in zip(cameras, sizes, strict=True):
+        look = camera_pictures.look_of(sensor.pose, model)
+        camera = camera_pictures.picture(context, viewport.CAMERAS, sensor.name, look, size)
+        if camera is not None:
+            sensor_pictures.draw_picture(camera.texture, (left, bottom), size)
+        box = sensor_pictures.draw_frame((left, bottom), size, sensor.name, scale)
+        drawn.append((sensor.name, box))
+        left += size.width + GAP_PX * scale
+    boxes = [box for _, box in drawn]
+    outer = boxes[0][0], bottom, boxes[-1][2], max(box[3] for box in boxes)
+    viewport.reserve_plate(region, viewport.CAMERAS, outer)
+    _in_strip[region] = drawn
+
+
+def strip_sizes(width: float, pictures: list[tuple[int, int]], scale: float) -> list[PictureSize]:
+    """Return the sizes of pictures of these proportions in a row, as high as the width allows."""
+    ratios = [across / up for across, up in pictures]
+    room = width - GAP_PX * scale * (len(ratios) - 1)
+    height = max(min(STRIP_PX * scale, room / sum(ratios)), 2.0)
+    return [PictureSize(max(int(ratio * height), 2), int(height)) for ratio in ratios]
+
+
+def picture_at(region: int, x: float, y: float) -> str:
+    """Return the sensor whose picture in the strip is at a place in a region [px]; "": none."""
+    for name, (left, bottom, right, top) in _in_strip.get(region, ()):
+        if left <= x <= right and bottom <= y <= top:
+            return name
+    return ""
+
+
+@declared
+class PE_GT_camera_strip(bpy.types.Gizmo):
+    """Takes the clicks on pictures in the strip."""
+
+    bl_idname = "PE_GT_camera_strip"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draw nothing: the pictures are there."""
+
+    def test_select(self, context: bpy.types.Context, location: tuple[float, float]) -> int:
+        """Whether the mouse is over a picture: 0, else -1."""
+        return 0 if picture_at(context.region.as_pointer(), *location) else -1
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Look through the camera under the mouse."""
+        place = event.mouse_region_x, event.mouse_region_y
+        name = picture_at(context.region.as_pointer(), *place)
+        if name and bpy.ops.pe.look_through.poll():
+            bpy.ops.pe.look_through("INVOKE_DEFAULT", name=name)
+        return {"FINISHED"}
+
+    def modal(self, _context: bpy.types.Context, _event: Any, _tweak: set[str]) -> set[str]:
+        """End: Blender invokes no gizmo without this."""
+        return {"FINISHED"}
+
+
+@declared
+class PE_GGT_camera_strip(bpy.types.GizmoGroup):
+    """The strip of cameras takes clicks while it is shown."""
+
+    bl_idname, bl_label = "PE_GGT_camera_strip", "Camera Strip"
+    bl_space_type, bl_region_type = "VIEW_3D", "WINDOW"
+    bl_options = {"PERSISTENT"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Whether the strip is shown."""
+        return bool(context.scene.perception_entropy.view.show_cameras)
+
+    def setup(self, _context: bpy.types.Context) -> None:
+        """Make the one gizmo."""
+        self.gizmos.new(PE_GT_camera_strip.bl_idname)

@@ -46,7 +46,8 @@ def draw(context: bpy.types.Context) -> None:
     region, scene = context.region.as_pointer(), context.scene
     viewport.reserve_plate(region, PLATE_NAME, None)
     item = shown_of(scene.name, BIRDS_EYE).get(WHOLE_RIG)
-    if item is None or not sensor_pictures.has_room(context):
+    is_on = scene.perception_entropy.view.show_birds_eye and sensor_pictures.has_room(context)
+    if item is None or not is_on:
         camera_pictures.keep_only(region, PLATE_NAME, ())
         return
     shape, scale = item.shape, viewport.ui_scale()

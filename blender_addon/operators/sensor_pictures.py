@@ -144,9 +144,7 @@ def sensor_of(obj: bpy.types.Object) -> pe.Sensor | None:
         return None
 
 
-def size_of(
-    region: tuple[int, int], picture: tuple[float, float], scale: float
-) -> PictureSize:
+def size_of(region: tuple[int, int], picture: tuple[float, float], scale: float) -> PictureSize:
     """Return the size of a picture of these proportions in a region [px]."""
     ratio = picture[1] / picture[0]
     width = min(WIDTH_SHARE * region[0], MAX_WIDTH_PX * scale, MAX_HEIGHT_SHARE * region[1] / ratio)

@@ -1,5 +1,7 @@
 """The road and its test bodies in a real window: a body that is grabbed is counted as it moves."""
 
+import subprocess
+
 EFFECT_TIMEOUT_S = 60
 SEEN = (
     "__import__('bl_ext.user_default.perception_entropy.body_query', fromlist=['seen'])"
@@ -59,7 +61,7 @@ view.show_cameras, view.show_ground = True, False
 bpy.ops.pe.surroundings()
 """
 WHERE = f"""
-((region, drawn),) = {PICTURES}._in_strip.items()
+((region, drawn),) = {STRIP}._in_strip.items()
 kept["names"], box = [name for name, _ in drawn], dict(drawn)["left"]
 main = next(each for each in area.regions if each.type == "WINDOW")
 kept["at"] = [main.x + (box[0] + box[2]) / 2, window.height - main.y - (box[1] + box[3]) / 2]
@@ -83,6 +85,14 @@ view.show_cameras = view.show_birds_eye = False
 redraws(2)
 kept["off"], kept["kept"] = redraws(), len(pictures._pictures)
 """
+
+
+def colors_in(picture, box) -> int:
+    """Return the number of colours of a part (left, top, width, height) of a picture."""
+    left, top, width, height = map(round, box)
+    part = f"{width}x{height}+{left}+{top}"
+    command = ["convert", picture, "-crop", part, "-format", "%k", "info:"]
+    return int(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
 
 
 def test_a_click_on_a_picture_of_the_strip_looks_through_its_camera(window, screenshots):

@@ -29,6 +29,8 @@ ABOVE_M, BELOW_M = 20.0, 1.0
 RAISED_M = 0.009
 """The drawn road is raised to below that of *Surroundings*: what lies lower is shown farther out,
 less from a higher camera, and would not fit at seams."""
+HEADER, LEAST_SHARE = 110.0, 0.3
+"""Height of the headers and of Blender's own text at the top, and how far a plate shrinks below."""
 BAR_M, BAR_PX, LINE_PX = 5.0, 2.0, 1.4
 """Length and thickness of the bar that tells the scale; width of outlines."""
 
@@ -53,22 +55,35 @@ def draw(context: bpy.types.Context) -> None:
     shape, scale = item.shape, viewport.ui_scale()
     assert isinstance(shape, BirdsEye)
     proportions = shape.y[1] - shape.y[0], shape.x[1] - shape.x[0]
-    size = sensor_pictures.size_of(
-        (context.region.width, context.region.height), proportions, scale
-    )
+    wide, high = context.region.width, context.region.height
+    size = sensor_pictures.size_of((wide, high), proportions, scale)
     left, bottom = sensor_pictures.corner(context, PLATE_NAME, size)
+    share = (high - bottom - HEADER * scale) / size.height
+    if share < 1.0:
+        shrunk = max(share, LEAST_SHARE) * high
+        size = sensor_pictures.size_of((wide, int(shrunk)), proportions, scale)
     box = left, bottom, left + size.width, bottom + size.height
     viewport.fill_box(box, UNSEEN)
     _draw_ground(context, shape, size, box)
     old = scheduler.is_preview(scene.name, BIRDS_EYE, WHOLE_RIG, item)
-    title = f"{shape.blind_m2:.1f} m² blind to cameras{' (preview)' if old else ''}"
+    title = (
+        f"No camera sees {shape.blind_m2:.1f} m²" if shape.blind_m2 else "Cameras see all ground"
+    )
+    title += " (preview)" if old else ""
     frame = sensor_pictures.draw_frame((left, bottom), size, title, scale)
-    bar, pad = size.width * BAR_M / proportions[0], sensor_pictures.PAD_PX * scale
-    ruler = left + pad, bottom + pad, left + pad + bar, bottom + pad + BAR_PX * scale
-    viewport.fill_box(ruler, viewport.INK)
-    text = ruler[2] + pad, ruler[1]
-    viewport.draw_text(f"{BAR_M:g} m", *text, viewport.SMALL * scale, viewport.INK)
+    _draw_ruler((left, bottom), size.width * BAR_M / proportions[0], scale)
     viewport.reserve_plate(region, PLATE_NAME, frame)
+
+
+def _draw_ruler(corner: tuple[float, float], long: float, scale: float) -> None:
+    """Draw a bar that tells the scale."""
+    text, small, pad = f"{BAR_M:g} m", viewport.SMALL * scale, sensor_pictures.PAD_PX * scale
+    left, bottom = corner[0] + pad, corner[1] + pad
+    right = left + long + 2.0 * pad + viewport.text_size(text, small)[0]
+    plate = corner[0], corner[1], right, bottom + small + pad / 2.0
+    viewport.fill_box(plate, sensor_pictures.TITLE_PLATE)
+    viewport.fill_box((left, bottom, left + long, bottom + BAR_PX * scale), viewport.INK)
+    viewport.draw_text(text, left + long + pad, bottom, small, viewport.INK)
 
 
 def _draw_ground(

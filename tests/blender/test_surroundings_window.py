@@ -76,11 +76,15 @@ def redraws(count=6):
         bpy.ops.wm.redraw_timer(type="DRAW_WIN", iterations=1)
     return (time.perf_counter() - begun) / count
 kept["on"] = redraws()
-pictures.note_change()
-redraws(1)
-begun = time.perf_counter()
-pictures.render_requested()
-kept["picture"], kept["left"] = time.perf_counter() - begun, len(pictures._requested)
+took, kept["left"] = [], []
+for _ in range(14):
+    pictures.note_change()
+    redraws(1)
+    begun = time.perf_counter()
+    pictures.render_requested()
+    took.append(time.perf_counter() - begun)
+    kept["left"].append(len(pictures._requested))
+kept["picture"] = sum(took) / len(took)
 view.show_cameras = view.show_birds_eye = False
 redraws(2)
 kept["off"], kept["kept"] = redraws(), len(pictures._pictures)
@@ -119,6 +123,6 @@ def test_a_click_on_a_picture_of_the_strip_looks_through_its_camera(window, scre
     assert colors_in(shown, plate["box"]) > 500, "the road and the vehicle, in shades"
     cost = window.do(COST)
     print(cost)
-    assert cost["left"] == 6 and cost["kept"] == 0
+    assert set(cost["left"]) == {6} and cost["kept"] == 0, "one a redraw, in turn"
     assert cost["on"] + cost["picture"] < 1.5 * cost["off"] + 0.05
     assert "Traceback" not in window.log.read_text()

@@ -20,7 +20,7 @@ from ..overlay.birds_eye import FROM_ABOVE, BirdsEye
 from ..overlay.layer_cache import shown_of
 from ..overlay.layers import BIRDS_EYE, WHOLE_RIG
 from . import camera_pictures, sensor_pictures
-from .camera_pictures import NEAR_M, Look
+from .camera_pictures import NEAR_M, Exposure
 
 PLATE_NAME = "bird's-eye view"
 UNSEEN: viewport.Rgba = (0.05, 0.05, 0.05, 0.9)
@@ -115,7 +115,7 @@ def _draw_ground(
             over.draw_lines(context.region, LINE_PX, edged=False)
 
 
-def looks_of(scene: bpy.types.Scene, shape: BirdsEye) -> dict[str, Look]:
+def looks_of(scene: bpy.types.Scene, shape: BirdsEye) -> dict[str, Exposure]:
     """Return from where each picture is taken, by name; none of a camera below the ground."""
     middle = (sum(shape.x) / 2.0, sum(shape.y) / 2.0, ABOVE_M)
     eyes = {FROM_ABOVE: pe.Pose(middle)}
@@ -129,7 +129,7 @@ def looks_of(scene: bpy.types.Scene, shape: BirdsEye) -> dict[str, Look]:
     }
 
 
-def look_down(eye: pe.Pose, shape: BirdsEye, *, straight: bool) -> Look:
+def look_down(eye: pe.Pose, shape: BirdsEye, *, straight: bool) -> Exposure:
     """Return the look straight down from an eye whose picture is the ground of a plate; `straight`:
     by parallel rays, otherwise all of them through the eye."""
     ex, ey, height = eye.position
@@ -154,4 +154,4 @@ def look_down(eye: pe.Pose, shape: BirdsEye, *, straight: bool) -> Look:
             (0.0, 0.0, -(far + near) / deep, -2.0 * far * near / deep),
             (0.0, 0.0, -1.0, 0.0),
         )
-    return Look(eye, camera_from_ground, Matrix(rows), RAISED_M)
+    return Exposure(eye, camera_from_ground, Matrix(rows), RAISED_M)

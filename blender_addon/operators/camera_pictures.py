@@ -35,7 +35,7 @@ class PictureKey(NamedTuple):
     name: str = ""
 
 
-class Look(NamedTuple):
+class Exposure(NamedTuple):
     """From where and how a picture is taken: the eye, camera axes from the ground frame, clip space
     from camera axes. `raised` is how far the road that is drawn around the eye is raised [m]."""
 
@@ -49,7 +49,7 @@ class WantedPicture(NamedTuple):
     """A picture to be rendered; `made_of` is what it is made from."""
 
     made_of: Hashable
-    look: Look
+    look: Exposure
     size: PictureSize
 
 
@@ -115,16 +115,16 @@ def projection(model: pe.Camera) -> Matrix:
     )
 
 
-def look_of(pose: pe.Pose, model: pe.Camera) -> Look:
+def look_of(pose: pe.Pose, model: pe.Camera) -> Exposure:
     """Return the look of a camera at a pose."""
     turned = Matrix(pose.ground_from_sensor.tolist())
     ground_from_sensor = Matrix.LocRotScale(pose.position, turned, None)
     camera_from_ground = (ground_from_sensor @ bridge.CAMERA_FROM_SENSOR).inverted()
-    return Look(pose, camera_from_ground, projection(model))
+    return Exposure(pose, camera_from_ground, projection(model))
 
 
 def picture(
-    context: bpy.types.Context, plate: str, name: str, look: Look, size: PictureSize
+    context: bpy.types.Context, plate: str, name: str, look: Exposure, size: PictureSize
 ) -> InsetCamera | None:
     """Return the latest picture of a look; request a new one if anything has changed."""
     key, shading = PictureKey(context.region.as_pointer(), plate, name), context.space_data.shading
@@ -194,6 +194,6 @@ def _render(view: PictureView, camera: InsetCamera, wanted: WantedPicture) -> No
         overlay.show_overlays, _rendering = before, False
 
 
-def _draw_around(look: Look, size: PictureSize) -> None:
+def _draw_around(look: Exposure, size: PictureSize) -> None:
     gpu.matrix.translate((0.0, 0.0, look.raised))
     surroundings.draw_around(look.eye, size, not sensor_pictures.TAKES_SRGB)

@@ -141,8 +141,7 @@ def _ms(seconds: float, evaluations: int) -> float:
 
 
 def _evaluators(study: pe.Study) -> list[pe.Evaluator]:
-    levels = pe.METHODS[study.search.method].samples(study.search.samples)
-    return [study.evaluator(samples, 1) for samples in levels]
+    return [study.evaluator(samples, 1) for samples in study.level_samples]
 
 
 def _send(study: pe.Study, objectives: Sequence[Any], executor: Executor | None) -> None:

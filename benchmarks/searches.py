@@ -14,6 +14,7 @@ import argparse
 import sys
 import time
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -87,7 +88,8 @@ def _ours(
     study: pe.Study, last: pe.RigEvaluator, method: str, seed: int, evaluations: int
 ) -> tuple[list[EvaluatedRow], int, str]:
     """Search by a method of the engine, on its own levels."""
-    levels = OURS[method].samples(study.search.samples)
+    searched = replace(study.search, method=method, evaluations=evaluations)
+    levels = replace(study, search=searched).level_samples
     objectives = [last if n == study.search.samples else study.evaluator(n) for n in levels]
     schedule = None
     if method == "random":

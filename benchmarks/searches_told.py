@@ -46,6 +46,7 @@ def table(runs: list[Json]) -> list[str]:
         "highest. All methods have the same evaluator and the same number of evaluations. Shares",
         "and counts of race and images were chosen on experiment 4; that the race replaces other",
         "descents also for small budgets, on the first twelve; fewer images for those, on all.",
+        "Screening, and steps of two sensors together, on seeds 10 to 19 of experiment 4.",
         "`python -m benchmarks.searches` writes this; search_problems.py says what each is.",
         "",
         f"| problem | evaluations | {' | '.join(NAMES.get(m, m) for m in methods)} |",
@@ -95,6 +96,8 @@ def plot(runs: list[Json], path: Path) -> None:
                     draw_curve(axis, some, looks[method], NAMES.get(method, method))
             axis.set(xscale="log", title=name + (f" ({problem.mark})" if problem.mark else ""))
             plotting.remove_frame(axis)
+        for axis in grid.flat[len(PROBLEMS) :]:
+            axis.set_axis_off()
         for axis in grid[-1]:
             axis.set_xlabel("processor time [s]")
         for axis in grid[:, 0]:

@@ -151,7 +151,7 @@ def _steps(
     question, done = next(questions, None), 0
     while question is not None and step.evaluations < budget:
         objective = levels[question.level]
-        if question.level != step.level:  # the incumbent is evaluated on the new level
+        if question.level > step.level:  # the incumbent is evaluated on the new level
             entropy, count = objective.entropy(step.best), step.evaluations + 1
             place = step.fraction, question.round, True, question.level
             yield (step := Step(step.best, entropy, count, *place))
@@ -202,7 +202,7 @@ def _next_step(
     best, entropy, count, improved = step.best, step.entropy, step.evaluations, False
     if candidate is not None and answer is not None:
         count += 1
-        improved = answer < entropy
+        improved = answer < entropy and question.level == step.level
         if improved:
             best, entropy = candidate.rig, answer
     place = min(fraction, 1.0), question.round, improved, step.level

@@ -185,11 +185,6 @@ class Search(ShortRepr):
         known = checked_method(who, self.method or None, self.schedule != Schedule())
         object.__setattr__(self, "method", known)
 
-    @property
-    def level_samples(self) -> tuple[int, ...]:
-        """Number of voxels of each level of the method, the coarsest first."""
-        return METHODS[self.method].samples(self.samples)
-
 
 @dataclass(frozen=True, eq=False)
 class Study(Tabular):
@@ -310,6 +305,13 @@ class Study(Tabular):
         if samples == self.samples:
             return scenes
         return max(min(scenes, FEW_SCENES), round(scenes * share))
+
+    @property
+    def level_samples(self) -> tuple[int, ...]:
+        """Number of voxels of each level of the search, the coarsest first."""
+        search, sensors = self.search, len(self.coding().blocks)
+        evaluations = round(search.evaluations / (1 + len(search.goals.starts)))
+        return METHODS[search.method].samples(search.samples, evaluations, sensors)
 
     def sight(self) -> Sight:
         """Return the `Sight` of this study: what its rigs see of the ground."""

@@ -360,7 +360,7 @@ class FrontJob(Job):
         models that may be chosen go to the workers at once, with the evaluators of all levels."""
         if self._helpers is None:
             offered = [o.model for c in self.study.selection.choices for o in c.options]
-            levels = map(self.evaluators.searching, self.study.search.level_samples)
+            levels = map(self.evaluators.searching, self.study.level_samples)
             common = [*levels, *offered, *(sensor.model for sensor in self.study.rig)]
             self._helpers = self._open.enter_context(candidate_workers(self, objectives, common))
         return self._helpers

@@ -75,7 +75,7 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
     if outcome.conditions is not None:
         data["conditions"] = outcome.conditions.to_dict()
     data["method"] = start.search.method if is_search else None
-    data["level_samples"] = list(start.search.level_samples) if is_search else []
+    data["level_samples"] = list(start.level_samples) if is_search else []
     if outcome.in_traffic is not None:
         first, last = (each.to_dict() for each in outcome.in_traffic)
         data |= {"objective": EXPECTED_AP, EXPECTED_AP: {"before": first, "after": last}}

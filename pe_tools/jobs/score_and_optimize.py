@@ -144,11 +144,10 @@ class OptimizeJob(Job):
 
     @cached_property
     def _free(self) -> list[Objective]:
-        """Objectives without requirements, one for each level of the search method."""
-        return [
-            study_objective(self.study, self._evaluator_of(samples), samples, self.workers)
-            for samples in self.study.search.level_samples
-        ]
+        """Objectives without requirements, one for each level of the search method; levels that
+        look at the same scenes of objects are one."""
+        levels = {self._evaluator_of(n): n for n in self.study.level_samples}
+        return [study_objective(self.study, each, n, self.workers) for each, n in levels.items()]
 
     @cached_property
     def _objectives(self) -> list[Objective]:

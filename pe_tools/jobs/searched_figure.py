@@ -53,7 +53,7 @@ def searched_samples(study: Study, samples: int) -> int:
 def searched_on(study: Study) -> tuple[str, str]:
     """Return on what a study's search evaluates: "16,384, then 65,536" and "voxels"."""
     searched = searched_study(study)
-    few = [searched_samples(study, samples) for samples in study.search.level_samples]
+    few = [searched_samples(study, samples) for samples in study.level_samples]
     looks = [searched.looks_at(samples) for samples in few]
     levels = ", then ".join(dict.fromkeys(f"{n:,}" if n else "all" for n in looks))
     return levels, "scenes of objects" if searched.targets.are_objects else "voxels"

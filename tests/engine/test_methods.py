@@ -54,14 +54,21 @@ def test_algorithm_1_on_a_roof_with_a_no_go_area_takes_the_steps_it_always_took(
 
 
 @pytest.mark.parametrize(
-    ("seed", "told"), [(0, (600, "f90bd1c4503227bf")), (1, (600, "8c71b8fe194e68c9"))]
+    ("seed", "told"),
+    [
+        (0, (600, "f90bd1c4503227bf")),
+        (1, (600, "8c71b8fe194e68c9")),
+        (1, (640, "a0d62eb771879ae0")),
+    ],
 )
 def test_the_portfolio_takes_the_steps_it_always_took(seed, told):
-    """On two levels, with two sensors that hinder each other: surveys, corners, a race, steps."""
+    """With two sensors that hinder each other: surveys, corners, a race, steps. A large budget has
+    a third level."""
     rig = pe.Rig([shapes.lidar_on_roof(), shapes.camera()])
     space = pe.SearchSpace.on_vehicle(rig, shapes.box_car())
-    levels = [Recorder(rugged(wide)) for wide in (0.9, 1.0)]
-    steps = pe.optimize(levels, rig, space, seed, method="portfolio", evaluations=600)
+    wide = (0.9, 1.0, 1.001) if told[0] == 640 else (0.9, 1.0)
+    levels = [Recorder(rugged(each)) for each in wide]
+    steps = pe.optimize(levels, rig, space, seed, method="portfolio", evaluations=told[0])
     assert fingerprint(steps) == told
 
 
@@ -167,14 +174,33 @@ def test_a_corner_that_is_worse_than_the_start_is_left(coding):
     assert incumbent.best.vector[0] == given.parametrization.variables[0].low
 
 
+def test_a_lower_level_screens_candidates_but_makes_none_the_incumbent(monkeypatch):
+    rig, space = mounting.space(can())
+    coding = Parametrization(rig, space)
+    near, far = (coding.candidate([x, 0.0, 1.5, 0.0]) for x in (0.5, 0.9))
+
+    def ask(given):
+        assert (yield Question((near,), level=1)) == [0.5]
+        assert (yield Question((far,), level=0)) == [-1.0]
+        assert (yield Question((far,), level=1)) == [0.9]
+
+    monkeypatch.setitem(METHODS, "screened", pe.Method("Screened", "for a test", ask))
+    levels = [Recorder(lambda rig: -1.0), Recorder(lambda rig: rig["roof"].pose.position[0])]
+    *_, first, screened, last = pe.optimize(levels, rig, space, method="screened")
+    for step in (first, screened, last):
+        assert (step.best["roof"].pose, step.entropy, step.level) == (rig["roof"].pose, -0.43, 1)
+
+
 def test_the_last_placements_are_evaluated_on_all_voxels_of_the_search():
     samples = METHODS["portfolio"].samples
-    assert [samples(count) for count in (65_536, 4_096, 1_024, 0)] == [
+    assert [samples(count, 600, 2) for count in (65_536, 4_096, 1_024, 0)] == [
         (16_384, 65_536),
         (2_048, 4_096),
         (1_024, 1_024),
         (16_384, 0),
     ]
+    assert samples(65_536, 0, 2) == samples(65_536, 640, 2) == (16_384, 65_536, 262_144)
+    assert samples(2**24, 0, 1) == (2**22, 2**24, 2**24) and samples(0, 0, 1) == (16_384, 0)
     rig, space = mounting.space(can())
     both = [Recorder(distance_to({"x": 0.5})), Recorder(distance_to({"x": 0.6}))]
     steps = list(pe.optimize(both, rig, space, method="portfolio", evaluations=200))

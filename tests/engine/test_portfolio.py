@@ -121,6 +121,28 @@ def test_sensors_of_one_model_are_tried_beside_the_mirror_image_of_each_other():
     assert {tried["b"].pose == rig["b"].pose for tried in asked} == {True, False}
 
 
+def test_hollows_that_few_voxels_alone_have_are_left():
+    """Both lower levels have ripples. The last one evaluates few of the candidates."""
+    rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"))
+    truth = distance_to({"x": 0.5, "z": 1.7})
+
+    def coarse(rig):
+        z = sum(pose_values(sensor.pose)["z"] for sensor in rig)
+        return truth(rig) - 0.01 * math.sin(15.0 * z) ** 2
+
+    def found(levels, seed):
+        *_, end = pe.optimize(levels, rig, space, seed, method="portfolio", evaluations=700)
+        return truth(end.best)
+
+    ends = []
+    for seed in range(3):
+        levels = [Recorder(each) for each in (coarse, coarse, truth)]
+        ends.append((found(levels[:2], seed), found(levels, seed)))
+        assert 0 < len(levels[2].rigs) < len(levels[1].rigs) / 3
+    without, screened = np.median(ends, axis=0)
+    assert screened < 0.5 * without
+
+
 def test_a_valley_as_narrow_as_a_step_is_found_beside_a_wide_one():
     """A descent by a model or by a distribution ends in the wide valley, at 1."""
 

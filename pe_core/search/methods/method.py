@@ -18,7 +18,7 @@ one breaks no rule.
 """
 
 import math
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
@@ -58,7 +58,8 @@ class Question:
     `cutoff`: A value that is not below the cutoff is answered by inf [nats].
     `round`: From 0, for progress reports.
     `total`: Candidates of the whole search, as far as is known, for the progress bar.
-    `level`: The objective that evaluates. It never decreases in a search.
+    `level`: The objective that evaluates. After a question on a higher level, answers on a lower
+        one screen candidates: they make none the incumbent.
     `ends`: Where independent descents of the method ended so far, on the last level.
     """
 
@@ -85,19 +86,17 @@ class Method:
     ask : callable
         Makes the generator of questions.
     samples : callable
-        From the number of voxels that the search is set to: how many voxels each level evaluates;
-        the last level evaluates that number.
+        From the number of voxels that the search is set to, of its placements (0: as many as the
+        method takes) and of the sensors that move: how many voxels each level evaluates.
     """
 
     label: str
     about: str
     ask: Callable[[Given], QuestionStream]
-    samples: Callable[[int], tuple[int, ...]] = lambda samples: (samples,)
+    samples: Callable[[int, int, int], tuple[int, ...]] = lambda samples, *_: (samples,)
 
 
 T = TypeVar("T")
-Evaluated = list[tuple[Candidate, float]]
-"""Placements, and their entropies [nats]."""
 MethodPart = Generator[Question, Answered, T]
 """A part of a method: it yields questions, and returns its result."""
 
@@ -112,11 +111,11 @@ class Phase:
     ends: tuple[float, ...] = ()
 
     def evaluate(
-        self, candidates: Sequence[Candidate | None], cutoff: float = math.inf
+        self, candidates: Sequence[Candidate | None], cutoff: float = math.inf, below: int = 0
     ) -> MethodPart[list[float]]:
-        """Evaluate the candidates; return one value for each: inf for one that is missing or not
-        below the cutoff."""
-        shared = self.round, self.total, self.level, self.ends
+        """Evaluate the candidates, `below` levels lower; return one value for each: inf for one
+        that is missing or not below the cutoff."""
+        shared = self.round, self.total, self.level - below, self.ends
         answers = yield Question(candidates, cutoff, *shared)
         return [math.inf if answer is None else answer for answer in answers]
 
@@ -138,19 +137,42 @@ def sampled_candidate(
     return None
 
 
+SCREENED_WITHIN = 0.003
+"""A candidate passes the screening up to so much above the incumbent [nats]."""
+
+
 class Incumbent:
     """The best placement so far, its entropy on the level in use [nats], and what was evaluated.
-    Descents are incumbents of their own."""
+    Descents are incumbents of their own.
+
+    `screened` is its entropy on the level below, where candidates are screened; None: they are not.
+    A step found on few voxels is often better on those alone. So only a candidate that comes near
+    the incumbent there is evaluated on the level in use, which decides.
+    """
 
     def __init__(self, best: Candidate, entropy: float) -> None:
         self.best, self.entropy, self.count = best, entropy, 0
+        self.screened: float | None = None
 
-    def told(self, candidates: Iterable[tuple[Candidate, float]]) -> None:
-        """Take placements and their values."""
-        for candidate, value in candidates:
-            self.count += 1
-            self._take(candidate, value)
+    def raised(self, phase: Phase, screening: bool = False) -> MethodPart[None]:
+        """Evaluate the best on the next level, that of a phase; screen candidates on this one."""
+        self.screened = self.entropy if screening else None
+        [self.entropy] = yield from phase.evaluate([self.best])
 
-    def _take(self, candidate: Candidate, value: float) -> None:
-        if value < self.entropy:
-            self.best, self.entropy = candidate, value
+    def tried(self, candidates: Sequence[Candidate], phase: Phase) -> MethodPart[list[float]]:
+        """Evaluate placements, and take the best; return their entropies, inf where no better."""
+        passed: dict[int, float | None] = dict.fromkeys(range(len(candidates)))
+        if self.screened is not None:
+            cutoff = self.screened + SCREENED_WITHIN
+            coarse = yield from phase.evaluate(candidates, cutoff, below=1)
+            passed = {k: value for k, value in enumerate(coarse) if value < math.inf}
+            self.count += len(candidates)
+        values = [math.inf] * len(candidates)
+        if passed:
+            found = yield from phase.evaluate([candidates[k] for k in passed], self.entropy)
+            self.count += len(passed)
+            for (k, screened), value in zip(passed.items(), found, strict=True):
+                values[k] = value
+                if value < self.entropy:
+                    self.best, self.entropy, self.screened = candidates[k], value, screened
+        return values

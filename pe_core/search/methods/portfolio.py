@@ -2,26 +2,30 @@
 
 Surveys find the region: each sensor tries places all over its range, the others kept. Descents that
 share nothing but their start race then; the best of them goes on to the end, with surveys between.
+A large budget ends on more voxels: those of the search screen candidates then.
 Sensors of one model are tried beside images of each other, too.
 Sensors on lists of slots try all slots, exchange them, and move two at a time.
 """
 
+from ...scoring.sampling import MAX_SAMPLES
 from .method import Given, Incumbent, MethodPart, Phase, QuestionStream
-from .portfolio_steps import MultiscaleDescent
+from .portfolio_steps import EXPLORING, REFINING, MultiscaleDescent
 from .portfolio_survey import Survey, to_best_corners
 
-FEW, PER_SENSOR = (0, 400, 950, 1275), 400
+FEW, PER_SENSOR = (0, 375, 900, 1200), 375
 """Placements where no budget is given: for none to three sensors that move, and for each of
 more."""
 COARSENING, MIN_SAMPLES = 4, 2048
-"""The first level evaluates a fourth of the voxels, but at least so many."""
+"""The first level evaluates a fourth of the voxels, but at least so many; the third evaluates four
+times as many."""
 BELOW_GRID = 65_536
 """Where the last level is the grid, the first level is as if the last had so many voxels."""
 RACING, PLACEMENTS_PER_START = 4, 80
-"""Descents that race, but only one for each so many placements for each sensor."""
+"""Descents that race, but only one for each so many placements for each sensor. A budget for all of
+them is large: it comes so near an optimum that small steps and errors of the sample matter."""
 FIRST_LEVEL, RACE_SHARE = 0.4, 0.08
 """Share of the budget after which the first level ends; share of what is left then for each descent
-of the race, until half of them leave it, and twice that for each of the others."""
+of the race, and twice that for each of the better half."""
 SURVEYS, SURVEYED = 2, 6
 """Surveys before the first descent, and places that each of them tries for each sensor,"""
 SURVEY_SHARE = 0.3
@@ -35,16 +39,24 @@ STALLED = 8
 """A search of slots alone ends after so many batches of two moved that found nothing better."""
 
 
-def samples(last: int) -> tuple[int, ...]:
-    """Return how many voxels each level evaluates. The last level has as many as the study sets: a
-    search on a sample overestimates its own result, more so with fewer voxels."""
-    count = last or BELOW_GRID
-    return max(count // COARSENING, min(MIN_SAMPLES, count)), last
+def samples(count: int, evaluations: int, sensors: int) -> tuple[int, ...]:
+    """Return how many voxels each level evaluates. The second has as many as the study sets; a
+    third is for large budgets, as a search on a sample overestimates its own result."""
+    most = count or BELOW_GRID
+    first = max(most // COARSENING, min(MIN_SAMPLES, most))
+    if not count or _runners(evaluations or budget(sensors), sensors) < RACING:
+        return first, count
+    return first, count, min(COARSENING * count, MAX_SAMPLES)
 
 
 def budget(sensors: int) -> int:
     """Return how many placements are evaluated where no budget is given."""
     return FEW[sensors] if sensors < len(FEW) else PER_SENSOR * sensors
+
+
+def _runners(total: int, sensors: int) -> int:
+    """Return how many descents race."""
+    return min(RACING, max(1, total // (PLACEMENTS_PER_START * sensors)))
 
 
 def ask(given: Given) -> QuestionStream:
@@ -58,10 +70,10 @@ def ask(given: Given) -> QuestionStream:
         survey.reseed()
     steps, ends = None, tuple[float, ...]()
     if not survey.has_slots_alone:
-        steps, ends = yield from _race(given, incumbent, survey, total, count)
-    elif given.levels > 1:
-        last = Phase(1, total, given.levels - 1)
-        [incumbent.entropy] = yield from last.evaluate([incumbent.best])
+        incumbent, steps, ends = yield from _race(given, incumbent, survey, total, count)
+    else:
+        for level in range(1, given.levels):
+            yield from incumbent.raised(Phase(1, total, level), level > 1)
     number, stalled = 1, 0
     while incumbent.count < total and stalled < STALLED:
         before = incumbent.count, incumbent.entropy
@@ -83,17 +95,18 @@ def ask(given: Given) -> QuestionStream:
 
 def _race(
     given: Given, incumbent: Incumbent, survey: Survey, total: int, surveyed: int
-) -> MethodPart[tuple[MultiscaleDescent, tuple[float, ...]]]:
+) -> MethodPart[tuple[Incumbent, MultiscaleDescent, tuple[float, ...]]]:
     """Race descents from the best of the surveys and from the start, in turn.
 
-    All but two have a survey of their own first; in all of them each sensor tries its corners.
-    The race goes on on all voxels, where it is decided: a fourth of them cannot tell apart optima
-    that differ by less than 0.05 nats. Half of the descents leave it at a time. Returns the steps
-    of the winner, and where each ended; a small budget has one descent alone, which tells nothing.
+    All but two have a survey of their own first; in all of them each sensor tries its corners. The
+    race goes on on the voxels of the search: a fourth of them cannot tell apart optima that differ
+    by less than 0.05 nats. The better half goes on to the last level. Returns the winner, its
+    steps, and where each descent ended; a small budget has one descent, which tells nothing.
     """
     first, last = Phase(0, total), Phase(1, total, given.levels - 1)
-    per_start = PLACEMENTS_PER_START * len(given.parametrization.blocks)
-    runners = min(RACING, max(1, total // per_start))
+    second = Phase(1, total, min(1, last.level))
+    runners = _runners(total, len(given.parametrization.blocks))
+    stride = REFINING if runners == RACING else EXPLORING
     racing, before = list[tuple[Incumbent, MultiscaleDescent]](), incumbent.count
     for k in range(runners):
         begun = (given.start, given.entropy) if k % 2 else (incumbent.best, incumbent.entropy)
@@ -101,23 +114,31 @@ def _race(
         if k > 1:
             yield from survey.survey(own, first, surveyed)
         yield from to_best_corners(given, own, first)
-        racing.append((own, MultiscaleDescent(given, [given.seed, k])))
+        racing.append((own, MultiscaleDescent(given, [given.seed, k], stride)))
     used = before + sum(own.count for own, _ in racing)
     for own, steps in racing:
         yield from steps.descend(own, first, (FIRST_LEVEL * total - used) / runners)
-    if given.levels > 1:
-        values = yield from last.evaluate([own.best for own, _ in racing])
-        for (own, _), value in zip(racing, values, strict=True):
-            own.entropy = value
+    if second.level > 0:
+        for own, _ in racing:
+            yield from own.raised(second)
     left = total - before - sum(own.count for own, _ in racing)
-    on, share = racing, RACE_SHARE
-    while on:
-        for own, steps in on:
-            yield from survey.images(own, last)
-            yield from steps.descend(own, last, share * left)
-        on = sorted(on, key=lambda each: each[0].entropy)[: len(on) // 2] if len(on) > 2 else []
-        share *= 2.0
-    winner, steps = min(racing, key=lambda each: each[0].entropy)
-    incumbent.best, incumbent.entropy = winner.best, winner.entropy
-    incumbent.count = before + sum(own.count for own, _ in racing)
-    return steps, tuple(own.entropy for own, _ in racing) if runners > 1 else ()
+    yield from _go_on(racing, survey, second, RACE_SHARE * left)
+    finalists = sorted(racing, key=lambda each: each[0].entropy)[: max(1, runners // 2)]
+    if last.level > second.level:
+        for own, _ in finalists:
+            yield from own.raised(last, screening=True)
+    if runners > 2:
+        yield from _go_on(finalists, survey, last, 2.0 * RACE_SHARE * left)
+    winner, steps = min(finalists, key=lambda each: each[0].entropy)
+    ends = tuple(own.entropy for own, _ in racing) if runners > 1 else ()
+    winner.count = before + sum(own.count for own, _ in racing)
+    return winner, steps, ends
+
+
+def _go_on(
+    racing: list[tuple[Incumbent, MultiscaleDescent]], survey: Survey, phase: Phase, count: float
+) -> MethodPart[None]:
+    """Let each descent try images, and then so many steps."""
+    for own, steps in racing:
+        yield from survey.images(own, phase)
+        yield from steps.descend(own, phase, count)

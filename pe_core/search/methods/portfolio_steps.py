@@ -12,6 +12,7 @@ or move both alike: a valley that no step of one sensor follows.
 """
 
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,23 +21,35 @@ from ..parametrization import Candidate, Parametrization
 from .method import Given, Incumbent, MethodPart, Phase, sampled_candidate
 
 BATCH = 8  # Placements that are tried at once
-HALVINGS = 9
-"""The longest step is half a variable's range; the shortest ones are 2^-8 of that."""
 SECOND = 0.7  # Probability that a second variable of the same sensor moves, too
-COPIED, TOGETHER = 0.2, 0.2
-"""Where there is another sensor of the same model: probability that a sensor takes its values, and
-that both move by the same steps."""
 EVEN = 0.1  # Probability that a variable is chosen whatever its steps gained
 FULL_GAIN, MEMORY = 0.02, 0.1
 """The gain of a step counts up to this [nats], with this weight beside those of earlier steps."""
 
 
+class Stride(NamedTuple):
+    """How descents step. The longest step is half a variable's range; a step is halved less than
+    `halvings` times. Where there is another sensor of the same model: probability that a sensor
+    takes its values (`copied`), and that both move by the same steps (`together`). `hope`: what the
+    steps of each variable are taken to gain at first, as a share of `FULL_GAIN`."""
+
+    halvings: int
+    copied: float
+    together: float
+    hope: float
+
+
+EXPLORING, REFINING = Stride(9, 0.2, 0.2, 1.0), Stride(10, 0.1, 0.4, 0.1)
+"""Of small budgets and of large ones: once beams of a LiDAR fall between those of another, steps of
+both gain several times as much as those of one."""
+
+
 class MultiscaleDescent:
     """Steps of all lengths, the more of a variable the more its steps gained."""
 
-    def __init__(self, given: Given, seed: Sequence[int]) -> None:
+    def __init__(self, given: Given, seed: Sequence[int], stride: Stride = EXPLORING) -> None:
         self._parametrization, variables = given.parametrization, given.parametrization.variables
-        self._rng = np.random.default_rng(seed)
+        self._rng, self._stride = np.random.default_rng(seed), stride
         movable = [v.low < v.high and v.unit != SHARE for v in variables]
         blocks = given.parametrization.blocks
         self._free = [
@@ -45,7 +58,7 @@ class MultiscaleDescent:
             for number in block
             if movable[number]
         ]
-        self._gains = np.ones(len(self._free))
+        self._gains = np.full(len(self._free), stride.hope)
 
     def descend(self, incumbent: Incumbent, phase: Phase, count: float) -> MethodPart[None]:
         """Try about `count` placements; each batch starts from the best of those before."""
@@ -55,11 +68,10 @@ class MultiscaleDescent:
             if not tried:
                 return
             before, candidates = incumbent.entropy, [candidate for _, candidate in tried]
-            values = yield from phase.evaluate(candidates, before)
+            values = yield from incumbent.tried(candidates, phase)
             for (number, _), value in zip(tried, values, strict=True):
                 gain = min(max(before - value, 0.0) / FULL_GAIN, 1.0)
                 self._gains[number] += MEMORY * (gain - self._gains[number])
-            incumbent.told(zip(candidates, values, strict=True))
 
     def _batch(self, base: Candidate) -> list[tuple[int, Candidate]]:
         """Return placements a step away that break no rule, each with its variable's number."""
@@ -77,6 +89,7 @@ class MultiscaleDescent:
         self, base: Candidate, sensor: list[int], first: int, alike: list[int]
     ) -> Candidate | None:
         others = [k for k in sensor if k != first]
+        copied, together = self._stride.copied, self._stride.together
 
         def sample() -> list[float]:
             vector, moved = list(base.vector), [first]
@@ -89,9 +102,9 @@ class MultiscaleDescent:
                 variable = self._parametrization.variables[k]
                 step = (variable.high - variable.low) * self._step()
                 vector[k] += step
-                if COPIED <= way < COPIED + TOGETHER:
+                if copied <= way < copied + together:
                     vector[k + away] += step
-                if way < COPIED:
+                if way < copied:
                     vector[k] = base.vector[k + away]
             return vector
 
@@ -99,7 +112,8 @@ class MultiscaleDescent:
 
     def _step(self) -> float:
         """Return a step, as a share of a range: each halving of its length is as probable."""
-        length = 0.5 ** int(self._rng.integers(1, HALVINGS + 1)) * (0.5 + 0.5 * self._rng.random())
+        halved = int(self._rng.integers(1, self._stride.halvings + 1))
+        length = 0.5**halved * (0.5 + 0.5 * self._rng.random())
         return length if self._rng.random() < 0.5 else -length
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..domains import METRE, SHARE, DesignVariable
 from ..parametrization import Candidate
-from .method import Evaluated, Given, Incumbent, MethodPart, Phase, sampled_candidate
+from .method import Given, Incumbent, MethodPart, Phase, sampled_candidate
 from .portfolio_steps import alike
 
 TWO_MOVED = 16  # Placements with two sensors in other slots, tried at once
@@ -32,16 +32,11 @@ class SlotTurn:
         first = self._at_share(given.start, 0.0).vector[index]  # middle of the first slot's share
         self._count = round(0.5 / first)
 
-    def evaluate(self, base: Candidate, phase: Phase) -> MethodPart[Evaluated]:
-        """Evaluate the slots that are free."""
-        moved = [self._at_share(base, share) for share in self._shares()]
-        candidates = [
-            c for c in moved if c.vector != base.vector and self._parametrization.allowed(c.rig)
-        ]
-        if not candidates:
-            return []
-        values = yield from phase.evaluate(candidates)
-        return list(zip(candidates, values, strict=True))
+    def evaluate(self, incumbent: Incumbent, phase: Phase) -> MethodPart[None]:
+        """Try the slots that are free."""
+        moved = [self._at_share(incumbent.best, share) for share in self._shares()]
+        allowed = (c for c in moved if self._parametrization.allowed(c.rig))
+        yield from _evaluate(incumbent, phase, allowed)
 
     def _shares(self) -> list[float]:
         """Return the middles of the shares of the slots to evaluate."""
@@ -96,7 +91,7 @@ class Survey:
         """Try `count` places for each sensor, within a share of its range on each side."""
         for number, block in enumerate(self._parametrization.blocks):
             if number in self._turns:
-                incumbent.told((yield from self._turns[number].evaluate(incumbent.best, phase)))
+                yield from self._turns[number].evaluate(incumbent, phase)
                 continue
             sampled = [self._sampled(incumbent.best, number, block, reach) for _ in range(count)]
             yield from _evaluate(incumbent, phase, sampled)
@@ -201,8 +196,7 @@ def _evaluate(
     """Evaluate placements; only those better than the incumbent matter."""
     moved = [c for c in candidates if c is not None and c.vector != incumbent.best.vector]
     if moved:
-        values = yield from phase.evaluate(moved, incumbent.entropy)
-        incumbent.told(zip(moved, values, strict=True))
+        yield from incumbent.tried(moved, phase)
 
 
 def to_best_corners(given: Given, incumbent: Incumbent, phase: Phase) -> MethodPart[None]:
@@ -210,9 +204,7 @@ def to_best_corners(given: Given, incumbent: Incumbent, phase: Phase) -> MethodP
     for block in given.parametrization.blocks:
         corners = _corners(given, incumbent.best, block)
         allowed = [c for c in corners if given.parametrization.allowed(c.rig)]
-        if allowed:
-            values = yield from phase.evaluate(allowed, incumbent.entropy)
-            incumbent.told(zip(allowed, values, strict=True))
+        yield from incumbent.tried(allowed, phase)
 
 
 def _corners(given: Given, base: Candidate, block: range) -> Iterator[Candidate]:

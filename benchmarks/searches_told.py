@@ -46,7 +46,7 @@ def table(runs: list[Json]) -> list[str]:
         "highest. All methods have the same evaluator and the same number of evaluations. Shares",
         "and counts of race and images were chosen on experiment 4; that the race replaces other",
         "descents also for small budgets, on the first twelve; fewer images for those, on all.",
-        "Screening, and steps of two sensors together, on seeds 10 to 19 of experiment 4.",
+        "Of large budgets, of which none is here: on seeds 8 and 10 to 19 of experiment 4.",
         "`python -m benchmarks.searches` writes this; search_problems.py says what each is.",
         "",
         f"| problem | evaluations | {' | '.join(NAMES.get(m, m) for m in methods)} |",

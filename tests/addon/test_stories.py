@@ -136,19 +136,19 @@ def test_import_rigs_and_compare_them(car, tmp_path):
     # A known rig is fitted to this vehicle.
     bpy.ops.pe.switch_variant(key=settings.variants[0].key)
     count = len(settings.variants)
-    bpy.ops.pe.add_rig(key="nuscenes")
+    bpy.ops.pe.add_rig(key="kitti")
     assert len(settings.variants) == count + 1 and not settings.variant_changed
     top = scenes.study().vehicle.bounds[1][2]
-    lidar = scenes.study().rig["LIDAR_TOP"].pose.position
-    assert lidar[2] == pytest.approx(top + 1.8402 - 1.562, abs=1e-4)
+    lidar = scenes.study().rig["velodyne"].pose.position
+    assert lidar[2] == pytest.approx(top + 1.73 - 1.52, abs=1e-4)
 
     # Compared: each is scored as if it stood there, and nothing in the scene moves.
-    for name in [row.name for row in settings.variants if row.name not in ("Unsaved", "nuScenes")]:
+    for name in [row.name for row in settings.variants if row.name not in ("Unsaved", "KITTI")]:
         bpy.ops.pe.delete_variant(key=settings.variants[name].key)
     start, study = poses(), scenes.study()
     assert bpy.ops.pe.compare_variants() == {"FINISHED"} and poses() == start
     shown, table = compare_variants.comparison_of(car)
-    assert shown == ["nuScenes", "Unsaved"]
+    assert shown == ["KITTI", "Unsaved"]
     whole = next(row for row in table if row.group == "rig" and row.measure == "entropy")
     assert whole.values[0] == study.evaluator().score(study.rig).entropy
     columns = compare_variants.columns_of(shown, table)

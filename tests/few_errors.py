@@ -16,6 +16,7 @@ from pe_core.study import suggestion
 ROBUSTNESS = importlib.import_module("pe_core.search.tolerance")
 """The module: its package has a function of this name."""
 WORKSHOP, OBJECTS = ROBUSTNESS.WORKSHOP, sight.ObjectEvaluator
+HEIGHTS = sight.SECTOR_HEIGHTS_M
 FEW_SCENES = 16
 FEW_PLACES = {"HELP_PLACES": 8, "ADD_PLACES": 24, "ADD_COMPARED": 2}
 
@@ -28,9 +29,10 @@ def objects_of_few_scenes(*where, targets, **more):
 
 @pytest.fixture
 def few_errors(monkeypatch):
-    """Draw two mounting errors a sensor for the result of a search, not six, few scenes, places."""
+    """Draw two mounting errors a sensor, not six; few scenes and places, one height of sectors."""
     monkeypatch.setattr(ROBUSTNESS, "WORKSHOP", replace(WORKSHOP, draws=2))
     monkeypatch.setattr(sight, "ObjectEvaluator", objects_of_few_scenes)
+    monkeypatch.setattr(sight, "SECTOR_HEIGHTS_M", HEIGHTS[:1])
     for name, few in FEW_PLACES.items():
         monkeypatch.setattr(suggestion, name, few)
 
@@ -40,3 +42,4 @@ def all_errors(few_errors, monkeypatch):
     """Draw as many as the command does: for a comparison with another process."""
     monkeypatch.setattr(ROBUSTNESS, "WORKSHOP", WORKSHOP)
     monkeypatch.setattr(sight, "ObjectEvaluator", OBJECTS)
+    monkeypatch.setattr(sight, "SECTOR_HEIGHTS_M", HEIGHTS)

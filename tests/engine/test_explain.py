@@ -54,6 +54,21 @@ def test_explain_one_place(study, capsys):
     assert data == json.loads(json.dumps(place.to_dict())) and data["sensors"][0]["name"] == "roof"
 
 
+def test_a_body_stands_on_the_ground_and_is_told_with_who_sees_it(study, capsys):
+    loaded = pe.load_study(study)
+    near, far = (advice.StandingBody("adult", (x, 1.0), 90.0) for x in (8.0, 500.0))
+    seen, unseen = advice.see_bodies(loaded.rig, loaded.vehicle, (near, far))
+    assert near.objects.centers[0, 2] == pytest.approx(near.objects.sizes[0, 2] / 2.0)
+    assert seen.summary.startswith("seen by 1 of 1") and unseen.summary == "seen by no sensor"
+    assert seen.text == (
+        f"adult at (8, 1) m, heading 90 deg: {seen.summary}",
+        f"roof: {seen.sensors[0].m:g} beams",
+    )
+    where = ["--body", "adult", "--at", "8", "1", "--heading", "90"]
+    assert main(["explain", study, *where]) == 0
+    assert capsys.readouterr().out.splitlines() == list(seen.text)
+
+
 def test_compare_tells_blind_ground_reach_and_ap_and_a_known_rig_beside(tmp_path, capsys):
     """The table and the JSON have the engine's key figures; for a wrong rig nothing is scored."""
     study = saved(tmp_path, "car.toml")

@@ -24,8 +24,9 @@ from .camera_pictures import NEAR_M, Exposure
 
 PLATE_NAME = "bird's-eye view"
 UNSEEN: viewport.Rgba = (0.05, 0.05, 0.05, 0.9)
-ABOVE_M, BELOW_M = 20.0, 1.0
-"""Height of the eye that sees the vehicle, and how far below the ground pictures reach."""
+ABOVE_M, TALL_M, BELOW_M = 200.0, 20.0, 1.0
+"""Height of the eye that sees the vehicle, by rays that are all but parallel; how far above and
+below the ground pictures reach."""
 RAISED_M = 0.009
 """The drawn road is raised to below that of *Surroundings*: what lies lower is shown farther out,
 less from a higher camera, and would not fit at seams."""
@@ -123,35 +124,18 @@ def looks_of(scene: bpy.types.Scene, shape: BirdsEye) -> dict[str, Exposure]:
         if name != FROM_ABOVE and (obj := scene.objects.get(name)) is not None:
             eyes[name] = bridge.pose_of_matrix(np.array(obj.matrix_world, dtype=float))
     return {
-        name: look_down(eye, shape, straight=name == FROM_ABOVE)
+        name: look_down(eye, shape)
         for name, eye in eyes.items()
         if name in shape.painted and eye.position[2] > NEAR_M
     }
 
 
-def look_down(eye: pe.Pose, shape: BirdsEye, *, straight: bool) -> Exposure:
-    """Return the look straight down from an eye whose picture is the ground of a plate; `straight`:
-    by parallel rays, otherwise all of them through the eye."""
+def look_down(eye: pe.Pose, shape: BirdsEye) -> Exposure:
+    """Return the exposure straight down from an eye whose picture is the ground of a plate."""
     ex, ey, height = eye.position
     camera_from_ground = Matrix(((0, -1, 0, ey), (1, 0, 0, -ex), (0, 0, 1, -height), (0, 0, 0, 1)))
-    near, far = NEAR_M, height + BELOW_M
-    share = 1.0 if straight else near / height
-    low_x, high_x = share * (ey - shape.y[1]), share * (ey - shape.y[0])
-    low_y, high_y = share * (shape.x[0] - ex), share * (shape.x[1] - ex)
-    wide, high, deep = high_x - low_x, high_y - low_y, far - near
-    middle = (high_x + low_x) / wide, (high_y + low_y) / high
-    if straight:
-        rows = (
-            (2.0 / wide, 0.0, 0.0, -middle[0]),
-            (0.0, 2.0 / high, 0.0, -middle[1]),
-            (0.0, 0.0, -2.0 / deep, -(far + near) / deep),
-            (0.0, 0.0, 0.0, 1.0),
-        )
-    else:
-        rows = (
-            (2.0 * near / wide, 0.0, middle[0], 0.0),
-            (0.0, 2.0 * near / high, middle[1], 0.0),
-            (0.0, 0.0, -(far + near) / deep, -2.0 * far * near / deep),
-            (0.0, 0.0, -1.0, 0.0),
-        )
-    return Exposure(eye, camera_from_ground, Matrix(rows), RAISED_M)
+    across, up = (ey - shape.y[1], ey - shape.y[0]), (shape.x[0] - ex, shape.x[1] - ex)
+    near = max(NEAR_M, height - TALL_M)
+    window = (near / height * w for w in (*across, *up))
+    clip = camera_pictures.frustum(*window, near, height + BELOW_M)
+    return Exposure(eye, camera_from_ground, clip, RAISED_M)

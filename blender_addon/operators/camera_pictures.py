@@ -102,14 +102,21 @@ def keep_only(region: int, plate: str, names: Collection[str]) -> None:
 
 def projection(model: pe.Camera) -> Matrix:
     """Return the matrix (4, 4), clip space from camera, of the pinhole for a model's view."""
-    across = math.tan(bridge.shown_fov(model) / 2.0)
+    across = NEAR_M * math.tan(bridge.shown_fov(model) / 2.0)
     up = across * model.height / model.width
-    depth = FAR_M - NEAR_M
+    return frustum(-across, across, -up, up, NEAR_M, FAR_M)
+
+
+def frustum(
+    left: float, right: float, bottom: float, top: float, near: float, far: float
+) -> Matrix:
+    """Return the matrix (4, 4), clip space from camera, of a window in the near plane [m]."""
+    wide, high, deep = right - left, top - bottom, far - near
     return Matrix(
         (
-            (1.0 / across, 0.0, 0.0, 0.0),
-            (0.0, 1.0 / up, 0.0, 0.0),
-            (0.0, 0.0, -(FAR_M + NEAR_M) / depth, -2.0 * FAR_M * NEAR_M / depth),
+            (2.0 * near / wide, 0.0, (right + left) / wide, 0.0),
+            (0.0, 2.0 * near / high, (top + bottom) / high, 0.0),
+            (0.0, 0.0, -(far + near) / deep, -2.0 * far * near / deep),
             (0.0, 0.0, -1.0, 0.0),
         )
     )

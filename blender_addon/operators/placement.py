@@ -68,6 +68,7 @@ class HeldSensor:
     ) -> None:
         self.model, self.kind = model, kinds.kind_of(model)
         self.mirrored, self.name = False, "" if moved is None else moved.name
+        self._is_linked = moved is not None and bool(moved.perception_entropy.mirror_of)
         self._own = None if moved is None else moved.matrix_world.to_euler().to_matrix().to_4x4()
         self._axis, self._given = OFF, dict[int, float]()
         self.mount, self.stance = mount_for(model), stance
@@ -203,8 +204,10 @@ class HeldSensor:
         self._write()
 
     def _wanted(self, spot: SurfaceSpot) -> dict[int, float]:
-        """Return the typed coordinates; near the centre line, the magnet's too."""
-        is_near = self.stance.magnet and abs(spot.point.y) < MAGNET_M
+        """Return the typed coordinates; near the centre line, the magnet's too: not of one of a
+        pair, which would meet the other there."""
+        is_pulled = self.stance.magnet and not self._is_linked
+        is_near = is_pulled and abs(spot.point.y) < MAGNET_M
         return ({1: 0.0} if is_near else {}) | self._given
 
     def _moved_to(self, spot: SurfaceSpot, wanted: dict[int, float]) -> SurfaceSpot:

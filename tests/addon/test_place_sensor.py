@@ -9,7 +9,7 @@ from mathutils import Vector
 
 from blender_addon import engine_calls
 from blender_addon.engine import pe
-from blender_addon.operators import surface_pose
+from blender_addon.operators import placement, surface_pose
 from blender_addon.sensor_kinds import mount_for
 from tests.addon import scenes
 
@@ -105,6 +105,10 @@ def test_a_sensor_is_placed_on_both_sides_and_dragged_along_the_surface(bare):
     first = place("Camera 60 deg", location=(0.0, 0.9, 0.5), normal=(0.0, 1.0, 0.0), mirrored=True)
     other = bpy.data.objects[first.perception_entropy.mirror_of]
     assert other.location.y == pytest.approx(-first.location.y)
+    near, stance = spot_below(bare, 1.9, 0.04), surface_pose.Stance(0.1, magnet=True)
+    for moved, pulled in ((None, {1: 0.0}), (first, {})):  # a pair would meet on the centre line
+        held = placement.HeldSensor(bpy.context, pe.catalog.load("Pandar64"), stance, moved)
+        assert held._wanted(near) == pulled
     count = len(scenes.study().rig)
     again = place("Pandar64", sensor=first.name, location=(1.0, 0.9, 0.5), normal=(0.0, 1.0, 0.0))
     assert again == first and len(scenes.study().rig) == count == 2

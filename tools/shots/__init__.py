@@ -6,6 +6,7 @@ from .guide import GUIDE
 from .mounts import MOUNTS
 from .reel import Reel
 from .requirements import REQUIREMENTS
+from .surround import SURROUND
 from .tour import TOUR
 
 REELS = {
@@ -14,6 +15,7 @@ REELS = {
     "film": FILM,
     "mounts": MOUNTS,
     "requirements": REQUIREMENTS,
+    "surround": SURROUND,
     "tour": TOUR,
 }
 """By the name that `tools/screenshots.py` takes."""

@@ -41,7 +41,7 @@ from .blind_ground import (
 )
 from .ground_cells import GroundCells, widened
 from .reach import AP, AT_LEAST_M, BEARINGS, Reach, Spokes, density_of, object_reach
-from .surround_view import SurroundView, cameras_of, surround_view
+from .surround_view import SurroundView, surround_view
 from .visibility import (
     GroundSight,
     VisibleShares,
@@ -173,10 +173,9 @@ class Sight:
 
         `InputError` when the rig has no camera; otherwise as `blind`.
         """
-        cameras = cameras_of(rig)
         with self._lock:
-            search = self._blind_search(self._cells_round_body(0.0, within), 0.0)
-            return surround_view(search, cameras, float(within))
+            cells = self._cells_round_body(0.0, within)
+            return surround_view(self._blind_search(cells, 0.0), rig)
 
     def blind_sectors(self, rig: Rig) -> tuple[BlindSector, ...]:
         """Return the widest blind sector for bodies of each of `SECTOR_HEIGHTS_M`.

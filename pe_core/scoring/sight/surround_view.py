@@ -40,8 +40,6 @@ class SurroundView(ShortRepr):
         Squares that are blind to all cameras together: those of `Sight.blind`.
     area : float
         Area of the blind squares [m2].
-    within : float
-        Distance from the body's rectangle up to which the ground was evaluated [m].
     """
 
     x: Floats
@@ -51,19 +49,15 @@ class SurroundView(ShortRepr):
     camera: Ints
     blind: Flags
     area: float
-    within: float
 
 
-def cameras_of(rig: Rig) -> Rig:
-    """Return the sensors of a rig that have a picture; `InputError` when there is none."""
-    cameras = [sensor for sensor in rig if kind_of(sensor).pixels_per_radian(sensor.model)]
-    if not cameras:
+def surround_view(search: BlindSearch, rig: Rig) -> SurroundView:
+    """Return what the sensors of a rig that have a picture show of the squares of a search for
+    bodies that lie flat; `InputError` when there is none."""
+    pictured = [sensor for sensor in rig if kind_of(sensor).pixels_per_radian(sensor.model)]
+    if not pictured:
         raise InputError("sight", "surround view", "a rig with a camera", "none")
-    return Rig(cameras)
-
-
-def surround_view(search: BlindSearch, cameras: Rig, within: float) -> SurroundView:
-    """Return what cameras show of the squares of a search for bodies that lie flat."""
+    cameras = Rig(pictured)
     cells, blind = search.cells, search.blind(cameras)
     blind_alone, covered = search.by_sensor(), search.covered
     camera = np.where(covered, VEHICLE, NO_CAMERA)
@@ -76,7 +70,7 @@ def surround_view(search: BlindSearch, cameras: Rig, within: float) -> SurroundV
     names = tuple(sensor.name for sensor in cameras)
     squares = read_only(cells.x), read_only(cells.y), cells.step
     found = names, read_only(camera), read_only(blind)
-    return SurroundView(*squares, *found, area_of(cells, blind), within)
+    return SurroundView(*squares, *found, area_of(cells, blind))
 
 
 def pixels_per_m(sensor: Sensor, points: Floats) -> Floats:

@@ -136,6 +136,6 @@ def look_down(eye: pe.Pose, shape: BirdsEye) -> Exposure:
     camera_from_ground = Matrix(((0, -1, 0, ey), (1, 0, 0, -ex), (0, 0, 1, -height), (0, 0, 0, 1)))
     across, up = (ey - shape.y[1], ey - shape.y[0]), (shape.x[0] - ex, shape.x[1] - ex)
     near = max(NEAR_M, height - TALL_M)
-    window = (near / height * w for w in (*across, *up))
-    clip = camera_pictures.frustum(*window, near, height + BELOW_M)
+    left, right, bottom, top = (near / height * w for w in (*across, *up))
+    clip = camera_pictures.frustum(left, right, bottom, top, near, height + BELOW_M)
     return Exposure(eye, camera_from_ground, clip, RAISED_M)

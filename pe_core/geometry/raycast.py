@@ -65,11 +65,14 @@ class BinnedRays:
         ray = ray[index]
         return cls(ray, u[index], v[index], d[:, ray], len(look.tree.number)) if len(ray) else None
 
-    def but_nearer(self, distance: Floats, than: float) -> "BinnedRays":
-        """Return the rays without a hit nearer than `than` [m]; all if few have one."""
+    def but_nearer(self, distance: Floats, than: float) -> "BinnedRays | None":
+        """Return the rays without a hit nearer than `than` [m], None if there are none; all if few
+        have one."""
         left = np.flatnonzero(distance[self.ray] >= than)
-        if not 0 < len(left) <= SORTING_SHARE * len(self.ray):
-            return self  # also when none is left: the loop then ends soon
+        if not len(left):
+            return None
+        if len(left) > SORTING_SHARE * len(self.ray):
+            return self
         return BinnedRays(
             self.ray[left], self.u[left], self.v[left], self.directions[:, left], self._triangles
         )
@@ -115,6 +118,8 @@ PAIRS_AT_ONCE = 1 << 15
 MANY = np.iinfo(np.int64).max
 """A number larger than any index or count."""
 RAYS_AT_ONCE = 1 << 18  # Maximum rays that are cast at once, to limit memory
+MAX_FOLLOWED = 512
+"""Rays up to this number are followed down the tree one by one: sorting them would take longer."""
 FINE = 16
 """Ratio of triangles to rays above which rays are followed down the tree one by one."""
 MIN_BOXES_TO_SORT = 256
@@ -149,10 +154,24 @@ class VisibleTriangles:
     def first_hit(self, directions: Floats) -> Hits:
         """Return the first hits along (B, 3) unit directions; ties: the lowest triangle index."""
         hits = Hits(np.full(len(directions), np.inf), np.full(len(directions), -1))
+        if len(directions) <= MAX_FOLLOWED:
+            self._follow(np.ascontiguousarray(directions.T), hits)
+            return hits
         for block in blocks(len(directions), RAYS_AT_ONCE):
             part = Hits(hits.distance[block], hits.face[block])
             self._cast(np.ascontiguousarray(directions[block].T), part)
         return hits
+
+    def _follow(self, d: Floats, hits: Hits) -> None:
+        """Follow each of a few rays (3, B) down the tree; the results go into `hits`."""
+        levels, rays = len(self.tree.boxes), d.shape[1]
+        if levels and rays:
+            none = RayBoxes(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0, np.float32))
+            box = np.repeat(np.arange(len(self.tree.boxes[-1])), rays)
+            ray = np.tile(np.arange(rays), len(self.tree.boxes[-1]))
+            starts = [none] * (levels - 1) + [RayBoxes(box, ray, np.zeros(len(box), np.float32))]
+            walk = RayWalk(self.tree, self.origin, d)
+            walk.follow(starts, hits.distance, partial(_keep, hits))
 
     def _cast(self, d: Floats, hits: Hits) -> None:
         """Cast rays (3, B), face by face; the results go into `hits`."""
@@ -177,6 +196,8 @@ def _cast(look: FaceLook, rays: BinnedRays, walk: RayWalk, hits: Hits) -> None:
     count = FIRST_BOXES
     while len(boxes.number):
         unfinished = rays.but_nearer(hits.distance, boxes.near[0])
+        if unfinished is None:
+            return
         if unfinished is not rays:
             rays, boxes = unfinished, boxes[np.flatnonzero(unfinished.any_in(boxes.u, boxes.v))]
         few, many = look.opened(boxes[:count], level, rays.count_in, FEW_RAYS if fine else 0)

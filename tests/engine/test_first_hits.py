@@ -95,10 +95,15 @@ MESHES = {f.__name__: f for f in (soup, slivers, coincident, edge_on, lattice)}
 
 
 def assert_same(triangles, directions):
-    hits = VisibleTriangles(TriangleTree(triangles), np.zeros(3)).first_hit(directions)
+    """Of rays that are sorted, and of rays that are followed one by one from the start."""
+    mesh = VisibleTriangles(TriangleTree(triangles), np.zeros(3))
     distance, face = every_triangle(triangles, directions)
-    assert hits.distance.tobytes() == distance.tobytes()
-    assert hits.face.tolist() == face.tolist()
+    for followed in (raycast.MANY, 0):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(raycast, "MAX_FOLLOWED", followed)
+            hits = mesh.first_hit(directions)
+        assert hits.distance.tobytes() == distance.tobytes()
+        assert hits.face.tolist() == face.tolist()
     return hits
 
 

@@ -118,7 +118,7 @@ PAIRS_AT_ONCE = 1 << 15
 MANY = np.iinfo(np.int64).max
 """A number larger than any index or count."""
 RAYS_AT_ONCE = 1 << 18  # Maximum rays that are cast at once, to limit memory
-MAX_FOLLOWED = 512
+MAX_FOLLOWED = 256
 """Rays up to this number are followed down the tree one by one: sorting them would take longer."""
 FINE = 16
 """Ratio of triangles to rays above which rays are followed down the tree one by one."""

@@ -91,24 +91,24 @@ def test_nothing_is_read_cast_or_worked_out_while_drawing(window, rig, monkeypat
     assert "mesh" in vars(sheet), "its triangles would be made by the first redraw"
     rig.objects["roof"].location.x += 0.5  # even when the scene has moved on
     redraw()
-    assert len(window.card.drawn) == 13 and "roof" in window.card.written
+    assert len(window.card.drawn) == 14 and "roof" in window.card.written
 
 
 def test_shapes_are_uploaded_once(window, rig):
     scenes.drawn(rig)
     for _ in range(3):
         redraw()
-    assert window.card.uploaded == 13 and len(window.card.drawn) == 39
+    assert window.card.uploaded == 14 and len(window.card.drawn) == 42
     rig.objects["eye"].location.z += 0.1
     bpy.context.view_layer.update()
     scenes.drawn(rig)
     redraw()
-    # its frustum and name, and the map, blind ground, reach, requirements and story of the rig
-    assert window.card.uploaded == 13 + 7
+    # its frustum and name; map, blind ground, its view from above, reach, requirements, story
+    assert window.card.uploaded == 14 + 8
     rig.perception_entropy.view.show_ground = False
     scenes.drawn(rig)
     redraw()
-    assert len(draw_handler._batches) == 12
+    assert len(draw_handler._batches) == 13
 
 
 def test_overlays_off_hides_all(window, rig):

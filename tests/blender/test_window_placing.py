@@ -108,7 +108,7 @@ def test_both_sides_a_typed_height_and_a_drag_along_the_surface(window, screensh
     )
     over(window, (-0.4, 0.03, 1.45))
     held_at(window, lambda place: place is not None and place[2] > 1.4)
-    assert window.state["held"][1] == pytest.approx(0.0), "the magnet"
+    assert 0.0 < window.state["held"][1] < 0.1, "the magnet leaves linked mirror images apart"
     window.screenshot(screenshots / "window_drag_along.png", aside=False)
     window.press_button()
     window.wait_for(lambda: not window.state["placing"], EFFECT_TIMEOUT_S, "the end")

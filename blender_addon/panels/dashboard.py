@@ -12,7 +12,7 @@ from .layout import columns, draw_sentence, is_simple
 
 MET_ICONS = {True: "COLORSET_03_VEC", False: "ERROR"}
 """Blender's own green, and its orange triangle."""
-NAME_SHARE, VALUE_SHARE = 0.4, 0.45
+NAME_SHARE, VALUE_SHARE = 0.39, 0.42
 ENTROPY = "entropy"
 KEEP = {"requirements": "keep_requirements"} | {key: f"keep_{key}" for key in search.KEPT}
 """Properties of what *Optimize* keeps, by figure."""
@@ -75,10 +75,10 @@ def draw_row(layout: UILayout, scene: Scene, row: search.Reading, values: list[f
         line.prop(settings, lock, text="", icon=icon, emboss=False)
     else:
         line.label(text="", icon="BLANK1")
-    name, rest = columns(line, NAME_SHARE)
+    name, rest = columns(line, NAME_SHARE, align=True)
     is_score = figure.key == ENTROPY and is_simple(scene)
     draw_label(name, "Score" if is_score else figure.label)
-    value, wanted = columns(rest, VALUE_SHARE)
+    value, wanted = columns(rest, VALUE_SHARE, align=True)
     text, sense = change_text(figure, values)
     text = text.rpartition(ARROW)[2].removesuffix(" nats" if is_score else " met")
     value.label(text=text, translate=False)

@@ -190,9 +190,9 @@ def draw_stale_mark(layout: UILayout, settings: PropertyGroup) -> None:
         draw_label(layout, "From the last score, before a change", "FILE_REFRESH")
 
 
-def columns(layout: UILayout, factor: float) -> tuple[UILayout, UILayout]:
+def columns(layout: UILayout, factor: float, align: bool = False) -> tuple[UILayout, UILayout]:
     """Return two rows beside each other; the first takes that share of the width."""
-    split = layout.split(factor=factor)
+    split = layout.split(factor=factor, align=align)
     return split.row(), split.row()
 
 

@@ -86,8 +86,8 @@ option = [
 """
 FIRST = ["pe optimize car.toml -o results", "pe new car.glb -o start.toml"]
 """What a reader has done before, in Blender and on the command line."""
-OF_THEIR_OWN = ("docs/howto/choose_sensors.md", "docs/howto/vehicle.md")
-"""Pages that begin with another study, or with none."""
+OF_THEIR_OWN = ("README.md", "docs/howto/choose_sensors.md", "docs/howto/vehicle.md")
+"""Pages that begin with another study or with none, or that show what a whole one prints."""
 NOT_MET = 3
 TYPE_ALL = r"""
 import contextlib, importlib, io, json, os, re, shlex, shutil, sys, traceback
@@ -96,6 +96,7 @@ from pathlib import Path
 from pe_core.scoring.sight import sight
 from pe_core.study import suggestion
 from pe_tools.__main__ import main
+from pe_tools.jobs import where_job
 from pe_tools.page.pictures import sensor_views, vehicle_picture
 small, pages = json.load(sys.stdin)
 robustness = importlib.import_module("pe_core.search.tolerance")
@@ -109,6 +110,7 @@ for page, (folder, lines) in pages.items():
         sight.ObjectEvaluator = of_few
         sight.SECTOR_HEIGHTS_M, sight.SAMPLES = (0.5,), 4096
         suggestion.HELP_PLACES, suggestion.ADD_PLACES, suggestion.ADD_COMPARED = 8, 16, 2
+        where_job.COMPARED = 2
     os.chdir(folder)
     for made in ("sweep", "review", "cad"):
         shutil.rmtree(made, ignore_errors=True)
@@ -163,9 +165,7 @@ def files_of_a_reader(folder, page):
     for name in ("robotaxi_sedan", "crossing_child"):
         if not (made := folder / "examples" / name).exists():
             shutil.copytree(ROOT / "examples" / name, made)
-            for path in set(made.glob("*.toml")) - {
-                made / "1_roof.toml"
-            }:  # README prints its score
+            for path in [] if page == "README.md" else made.glob("*.toml"):
                 text = re.sub(r"(?m)^samples = \d+", "samples = 1024", path.read_text("utf-8"))
                 path.write_text(re.sub(r"(?m)^interval = 0.1", "interval = 0.5", text), "utf-8")
     pt.write_mesh(folder / "box.npz", car)
@@ -178,16 +178,19 @@ def files_of_a_reader(folder, page):
 def typed(bare_python, tmp_path_factory):
     """Answers to every line of the pages: page, line, status, stdout, stderr."""
     shared = tmp_path_factory.mktemp("typed")
-    pages, known = {}, set()
+    pages, own = {}, {page: tmp_path_factory.mktemp("own") for page in OF_THEIR_OWN}
+    shown = [each for each in command_lines() if each[0] in TYPED]
+    told = [{*line.split()} for page, line in shown if page not in own]
     for page in TYPED:
-        folder = tmp_path_factory.mktemp("own") if page in OF_THEIR_OWN else shared
-        files_of_a_reader(folder, page)
-        lines = [*FIRST] if page == TYPED[0] else []
-        for of, line in command_lines():
-            if of == page and (folder is not shared or line not in known):  # the same twice is slow
-                lines.append(line)
-                known.add(line)
-        pages[page] = str(folder), lines
+        files_of_a_reader(own.get(page, shared), page)
+        lines = [line for of, line in shown if of == page]
+        if page not in own:  # the same with more options is typed elsewhere, and twice is slow
+            whole = [line for line in lines if not any({*line.split()} < more for more in told)]
+            typed_before = {line for _, before in pages.values() for line in before}
+            lines = [line for line in whole if line not in typed_before]
+        pages[page] = str(own.get(page, shared)), lines
+    first = next(page for page in TYPED if page not in own)
+    pages[first][1][:0] = FIRST
     (Path(pages["docs/howto/vehicle.md"][0]) / "study.toml").unlink()
     run = subprocess.run(
         [bare_python, "-c", TYPE_ALL],

@@ -7,7 +7,6 @@ import tomllib
 import warnings
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import pe_core as pe
@@ -66,7 +65,6 @@ STUDY = tomllib.loads((STUDIES / "study.toml").read_text("utf-8"))
 MORE = tomllib.loads((STUDIES / "more.toml").read_text("utf-8"))
 """A study with the tables that the first one lacks."""
 PINHOLE = {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 90.0}
-SPACE = shapes.small_space()
 BOXES = {"boxes": "boxes.csv", "origin": [0.0, 0.0, 0.0], "focus": []}
 
 
@@ -269,61 +267,3 @@ def test_the_extremes_that_are_taken_score_to_finite_numbers(folder, change, sam
             return
     json.dumps(score.to_dict(), allow_nan=False)
     assert math.isfinite(score.entropy)
-
-
-NUMBERS = [v for v in VALUES.values() if isinstance(v, (int, float))]
-
-
-MADE = [
-    lambda v: pe.Pose((v, 0, 0)),
-    lambda v: pe.Pose((0, 0, 0), (v, 0, 0)),
-    lambda v: pe.PerceptionSpace(interval=v),
-    lambda v: pe.PerceptionSpace(x=(0, v)),
-    lambda v: pe.Vehicle(shapes.box((0, 0, 0), (1, 1, 1)), clearance=v),
-    lambda v: pe.Vehicle([[[v] * 3] * 3]),
-    lambda v: pe.Vehicle(shapes.box((0, 0, 0), (1, 1, 1)), [v] * 12),
-    lambda v: pe.Boxes(["car"], *([v] for _ in range(7))),
-    lambda v: pe.Boxes.of([("car", v, 0, 0, 1, 1, 1, 0)]),
-    lambda v: pe.Focus(v),
-    lambda v: pe.Focus(1.0, (0, v)),
-    lambda v: pe.ApCurve(v, 0.0),
-    lambda v: pe.ApCurve(0.1, v),
-    lambda v: pe.Schedule(candidates=v),
-    lambda v: pe.Schedule(decay=v),
-    lambda v: pe.Schedule(reach_m=v),
-    lambda v: pe.Schedule(floor_rad=v),
-    lambda v: pe.Search(seed=v),
-    lambda v: pe.Search(samples=v),
-    lambda v: pe.Search(limits={"a": {"x": (0, v)}}),
-    lambda v: pe.SurfaceMount(["a"], v),
-    lambda v: pe.Constraints(max_height=v),
-    lambda v: pe.Constraints(max_width=v),
-    lambda v: pe.Constraints(min_distance=v),
-    lambda v: pe.NoGo("a", x=(-1e9, v)),
-    lambda v: pe.Mounting(mounts=v),
-    lambda v: pe.Mounting(on=v),
-    lambda v: pe.Mounting(pairs=v),
-    lambda v: pe.Mounting(groups=[v]),
-    lambda v: pe.Lidar("a", [0.0], v, 10.0),
-    lambda v: pe.Lidar("a", [v], 10, 10.0),
-    lambda v: pe.Lidar("a", [0.0], 10, v),
-    lambda v: pe.Lidar("a", [0.0], 10, 10.0, [v]),
-    lambda v: pe.Lidar("a", [0.0], 10, 10.0, None, (0, v)),
-    lambda v: pe.Camera("a", v, 10, 1.0),
-    lambda v: pe.Camera("a", 10, 10, v),
-    lambda v: pe.Evaluator(SPACE, pe.Prior.uniform(), samples=v if v != 10**18 else 5),
-    lambda v: pe.Evaluator(SPACE, pe.Prior.uniform(), workers=v),
-    lambda v: pe.Evaluator(SPACE, pe.Prior.uniform(), samples=1024, shift=(v, 0.5, 0.5)),
-]
-NEVER = (math.nan, np.float64("nan"), 10**400, 10**5000, True, np.True_, "1", "x" * 10**6)
-
-
-def test_what_is_made_in_python_is_checked_by_the_same_rules():
-    taken = []
-    for number, make in enumerate(MADE):
-        for value in NUMBERS:
-            refused(lambda v=value, make=make: make(v), "")
-        for value in NEVER:
-            if not refused(lambda v=value, make=make: make(v), ""):
-                taken.append((number, value))
-    assert not taken

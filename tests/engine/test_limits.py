@@ -18,8 +18,8 @@ def lidar(**options):
     return pe.Lidar("mine", **values)
 
 
-def camera(width=640, height=480, hfov_deg=60.0):
-    return pe.Camera("mine", width, height, hfov_deg * DEG)
+def camera(width=640, height=480, hfov=1.0):
+    return pe.Camera("mine", width, height, hfov)
 
 
 def cls(**changes):
@@ -40,6 +40,7 @@ def vehicle(**options):
     return pe.Vehicle(shapes.box((0, 0, 0), (1, 1, 1)), **options)
 
 
+BOX = ("car", 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0)
 # what is made, the option, values that are taken, values that are not
 LIMITS = [
     (lidar, "azimuth_count", (1, 360_000, 1800.0), (0, -1, 360_001, 180.7, True, "4", None)),
@@ -59,7 +60,7 @@ LIMITS = [
     ),
     (camera, "width", (1, 1_000_000), (0, 1_000_001, 100.9, True, -5)),
     (camera, "height", (1, 1_000_000), (0, 1_000_001, 100.9, True, -5)),
-    (camera, "hfov_deg", (0.0011, 179.999), (0.0009, 180.0, 200.0, -60.0, math.nan)),
+    (camera, "hfov", (0.0011 * DEG, 179.999 * DEG), (0.0009 * DEG, math.pi, 4.0, -1.0, math.nan)),
     (pe.ApCurve, "a", (1e-12, 1e3), (9e-13, 0.0, -1.0, 1.1e3, math.inf, math.nan, True, "x")),
     (pe.ApCurve, "b", (-1e3, 0.0, 1e3), (-1.1e3, 1.1e3, math.inf, math.nan, True, None)),
     (cls, "laplace_share", (0.0, 1.0), (-0.001, 1.001, math.nan)),
@@ -83,14 +84,36 @@ LIMITS = [
     (pe.Schedule, "floor_m", (1e-6, 1e4), (0.0, -0.1, 1.1e4)),
     (pe.Schedule, "floor_rad", (1e-6, 359.9 * DEG), (0.0, -0.1, 361 * DEG)),
     (pe.Schedule, "decay", (0.001, 0.99), (0.0, 1.0, -0.5, 1.5, math.nan)),
+    (pe.Pose, "position", ((0, 0, 1),), ((math.nan, 0, 0), (0, 0), (10**400, 0, 0))),
+    (pe.Pose, "rpy", ((0, 0, 1),), ((math.nan, 0, 0), (0, 0))),
+    (pe.Vehicle, "triangles", (np.zeros((1, 3, 3)),), ([[[math.nan] * 3] * 3], [[[10**400] * 3]])),
+    (pe.Boxes.of, "table", ([BOX],), ([("car", math.nan, *BOX[2:])], [("car", True, *BOX[2:])])),
+    (pe.Search, "limits", ({"a": {"x": (0, 1)}},), ({"a": {"x": (0, math.nan)}},)),
+    (pe.SurfaceMount, "standoff", (0.0,), (-1.0, math.nan)),
+    (pe.Constraints, "max_height", (1.0, None), (-1.0, math.nan)),
+    (pe.Constraints, "max_width", (1.0, None), (-1.0, math.nan)),
+    (pe.Constraints, "min_distance", (0.0, 1.0), (-1.0, math.nan)),
+    (pe.NoGo, "x", ((-1e9, 0.0),), ((-1e9, math.nan), (1.0, 0.0))),
+    (pe.Mounting, "groups", ([],), ([1], [["a"]])),
+    *((pe.Mounting, key, ({},), (1, math.nan)) for key in ("mounts", "on")),
+    (pe.Mounting, "pairs", ([],), (1,)),
 ]
-OTHERS = {pe.ApCurve: {"a": 0.1, "b": 0.1}, pe.Focus: {}}
+OTHERS = {
+    pe.ApCurve: {"a": 0.1, "b": 0.1},
+    pe.Pose: {"position": (0, 0, 0)},
+    pe.SurfaceMount: {"parts": ["a"]},
+    pe.NoGo: {"name": "a"},
+}
+NEVER = [math.nan, np.float64("nan"), 10**400, 10**5000, True, np.True_, "1", "x" * 10**6]
+"""What no setting takes, whatever it is of."""
 
 
 def is_taken(make, **options):
     try:
         make(**options)
-    except pe.InputError:
+    except pe.InputError as error:
+        line = str(error)
+        assert line.isprintable() and len(line) < 300
         return False
     return True
 
@@ -99,7 +122,7 @@ def test_limits():
     offenders = [
         (key, value)
         for make, key, good, bad in LIMITS
-        for values, taken in ((good, True), (bad, False))
+        for values, taken in ((good, True), ((*bad, *NEVER), False))
         for value in values
         if is_taken(make, **OTHERS.get(make, {}) | {key: value}) is not taken
     ]

@@ -90,6 +90,7 @@ def test_what_is_not_said_has_the_paper_s_values(write):
     assert study.space == pe.PerceptionSpace()
     assert study.model == pe.PerceptionModel()
     assert study.vehicle is None and study.samples == 0
+    assert study.rig["roof"].pose == pe.Pose((-0.43, 0.0, 1.80)), "upright"
     assert study.search.free == {"roof": ("x", "y", "z", "pitch")}
     assert study.search.schedule.candidates == 1000
 
@@ -100,7 +101,11 @@ def test_everything_that_is_said_arrives(write):
     assert study.prior.focus[0] == pe.Focus(2.0, (5.0, math.inf), classes=("cone", "car"))
     assert study.model == pe.PerceptionModel(lidar=pe.ApCurve(0.2, 0.5), blind="literal")
     assert study.vehicle.glass == ("cabin",) and study.vehicle.clearance == 0.05
-    assert study.rig["own"].model.beam_count == 3 * 900
+    assert study.rig["roof"].pose.rpy == tuple(map(math.radians, (0.1, -0.2, 0.3)))
+    own = study.rig["own"].model
+    assert own.beam_count == 3 * 900 and own.elevations.tolist() == [
+        math.radians(each) for each in (-10, 0.1, 5)
+    ]
     assert study.search.free == {"roof": ("z", "yaw"), "own": ("x",), "cam": ("x",)}
     bounds = study.search_space().bounds["roof"]
     assert bounds["z"] == (1.5, 2.0)

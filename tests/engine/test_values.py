@@ -64,6 +64,7 @@ def test_infinity_is_a_number_where_the_rule_says_so():
         (values.Number(-5.0, 5.0, unit="m"), [-5, 5], [6], "a number within +-5 m"),
         (values.Number(0.0, 1.0, below=True), [0], [1], "a number >= 0 and below 1"),
         (values.Whole(1), [1, 10**30], [0, -1, 1.5], "a whole number >= 1"),
+        (values.Whole(), [0], [-1], "a whole number >= 0"),
         (values.Whole(1, 9000, "pixels"), [1, 9e3], [9001], "number of pixels from 1 to 9000"),
         (values.Whole(1, 9000, "pixels"), [1], [0, 1.5], "a whole number of pixels >= 1"),
         (values.LENGTH, [1e9], [0.0, -1.0, math.inf], "a length above 0 m"),
@@ -76,6 +77,12 @@ def test_a_range_holds_its_ends_and_is_reported_in_words(rule, good, bad, words)
         assert rule.checked("a", "b", value) == value
     for value in bad:
         assert words in refused(rule, value)
+
+
+def test_a_list_is_taken_one_beyond_what_it_may_hold():
+    assert values.listed(iter(range(9)), 3) == [0, 1, 2, 3]
+    assert values.listed(iter(range(4))) == [0, 1, 2, 3] and values.listed(range(2), 3) == [0, 1]
+    assert [values.listed(each) for each in ("abc", {"a": 1}, 3)] == [None] * 3
 
 
 def test_numbers_beyond_a_float_are_reported_by_their_digits():

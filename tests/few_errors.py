@@ -27,14 +27,19 @@ def objects_of_few_scenes(*where, targets, **more):
     return OBJECTS(*where, targets=few, **more)
 
 
-@pytest.fixture
-def few_errors(monkeypatch):
+def draw_few(monkeypatch):
     """Draw two mounting errors a sensor, not six; few scenes and places, one height of sectors."""
     monkeypatch.setattr(ROBUSTNESS, "WORKSHOP", replace(WORKSHOP, draws=2))
     monkeypatch.setattr(sight, "ObjectEvaluator", objects_of_few_scenes)
     monkeypatch.setattr(sight, "SECTOR_HEIGHTS_M", HEIGHTS[:1])
     for name, few in FEW_PLACES.items():
         monkeypatch.setattr(suggestion, name, few)
+
+
+@pytest.fixture
+def few_errors(monkeypatch):
+    """The same for one test."""
+    draw_few(monkeypatch)
 
 
 @pytest.fixture

@@ -14,11 +14,11 @@ EXPORTS = {
     "obj": lambda path: bpy.ops.wm.obj_export(filepath=path),
     "ply": lambda path: bpy.ops.wm.ply_export(filepath=path),
     "stl": lambda path: bpy.ops.wm.stl_export(filepath=path),
-    **dict.fromkeys(("usda", "usdc", "usdz"), lambda path: bpy.ops.wm.usd_export(filepath=path)),
+    **dict.fromkeys(("usdc", "usdz"), lambda path: bpy.ops.wm.usd_export(filepath=path)),
 }
 if hasattr(bpy.ops.wm, "collada_export") and bpy.app.version < (5, 0, 0):
     EXPORTS["dae"] = lambda path: bpy.ops.wm.collada_export(filepath=path)
-LIBRARIES = {"dae": "collada", "usda": "pxr", "usdc": "pxr", "usdz": "pxr"}
+LIBRARIES = {"dae": "collada", "usdc": "pxr", "usdz": "pxr"}
 SPACE = pe.PerceptionSpace((-20.0, 20.0), (-10.0, 10.0), (0.0, 3.0), 0.5)
 
 

@@ -87,21 +87,19 @@ def other_value(setting):
     return least + 0.37 * (min(rule.maximum, least + 1.0) - least)
 
 
-@pytest.mark.parametrize(
-    ("section", "setting"), IN_SCENE, ids=[f"{s.table}.{each.name}" for s, each in IN_SCENE]
-)
-def test_each_declared_setting_is_held_by_the_scene_as_it_was(scene, section, setting):
+def test_each_declared_setting_is_held_by_the_scene_as_it_was(scene):
     settings = scene.perception_entropy
-    group = getattr(settings, ROWS[section.table]).add() if section.rows else settings
-    name, value = setting.panel.property, other_value(setting)
-    value = setting.rule.checked("test", setting.name, value)
-    setattr(group, name, bridge.property_value(setting, value))
-    found = bridge.value_of_property(setting, getattr(group, name))
-    assert found == value or found == pytest.approx(value, rel=1e-7)
-    assert setting.rule.checked("test", setting.name, found) == found
-    if setting.is_optional:
-        setattr(group, name, bridge.property_value(setting, None))
-        assert bridge.value_of_property(setting, getattr(group, name)) is None
+    for section, setting in IN_SCENE:
+        group = getattr(settings, ROWS[section.table]).add() if section.rows else settings
+        name, value = setting.panel.property, other_value(setting)
+        value = setting.rule.checked("test", setting.name, value)
+        setattr(group, name, bridge.property_value(setting, value))
+        found = bridge.value_of_property(setting, getattr(group, name))
+        assert found == value or found == pytest.approx(value, rel=1e-7), (section.table, name)
+        assert setting.rule.checked("test", setting.name, found) == found
+        if setting.is_optional:
+            setattr(group, name, bridge.property_value(setting, None))
+            assert bridge.value_of_property(setting, getattr(group, name)) is None, name
 
 
 def test_coordinates_in_double_precision_come_back_to_the_bit(scene):

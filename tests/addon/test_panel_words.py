@@ -3,7 +3,6 @@
 import itertools
 
 import bpy
-import pytest
 
 from blender_addon import bridge
 from blender_addon.engine import advice
@@ -13,20 +12,18 @@ from tests.addon import layouts
 SENTENCE = "the vehicle collection Sedan is excluded from the view layer: nothing of it is scored"
 
 
-@pytest.mark.parametrize("size", [11.0, 22.0])
-@pytest.mark.parametrize("room", [60.0, 120.0, 260.0, 2000.0])
-@pytest.mark.parametrize(
-    "text", [SENTENCE, "bl_ext_a_name_without_any_gap_that_is_long", "WWWW ii", ""]
-)
-def test_no_line_is_wider_than_its_room_and_no_word_is_lost(addon, text, room, size):
-    lines = layout.wrapped_lines(text, room, size)
+TEXTS = (SENTENCE, "bl_ext_a_name_without_any_gap_that_is_long", "WWWW ii", "")
+
+
+def test_no_line_is_wider_than_its_room_and_no_word_is_lost(addon):
     blf = layout.blf  # Blender has it once bpy is there
-    blf.size(0, size)
-    assert all(blf.dimensions(0, line)[0] <= room for line in lines)
-    assert "".join(lines).replace(" ", "") == text.replace(" ", "")
-    for line, after in itertools.pairwise(lines):  # as much as fits stands in a line
-        joined = f"{line} {after.split()[0]}"
-        assert blf.dimensions(0, joined)[0] > room
+    for text, room, size in itertools.product(TEXTS, (60.0, 120.0, 260.0, 2000.0), (11.0, 22.0)):
+        lines = layout.wrapped_lines(text, room, size)
+        blf.size(0, size)
+        assert all(blf.dimensions(0, line)[0] <= room for line in lines)
+        assert "".join(lines).replace(" ", "") == text.replace(" ", "")
+        for line, after in itertools.pairwise(lines):  # as much as fits stands in a line
+            assert blf.dimensions(0, f"{line} {after.split()[0]}")[0] > room, (text, room, size)
 
 
 def drawn_of(scene):

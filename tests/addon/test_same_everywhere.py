@@ -70,7 +70,7 @@ def told(result: dict) -> dict:
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_panel_headless_and_pe_find_the_same_bits(car, tmp_path, all_errors, name):
+def test_panel_headless_and_pe_find_the_same_bits(car, tmp_path, name):
     settings, verb = car.perception_entropy, "optimize" if "search" in name else "score"
     before = result_staleness.fingerprint(car).text
     SCENES[name](settings, tmp_path)

@@ -63,11 +63,12 @@ def assert_alike(found, expected, model):
         np.testing.assert_allclose(found.sum(), expected.sum(), rtol=0.002)
 
 
-def assert_defined(sensor, space, index, vehicle=None):
+def assert_defined(sensor, space, index, vehicle=None, grid=None):
     """Hold grid and sample to the definition in some voxels (V, 3), and return m (V,)."""
+    grid = on_grid(sensor, space, vehicle) if grid is None else grid
     expected = pe.measure(sensor, space.center_of(index), space.interval, vehicle)
     held = np.minimum(expected, MAX_COUNT) if sensor.kind == "lidar" else expected
-    assert_alike(on_grid(sensor, space, vehicle)[tuple(index.T)], held, sensor.model)
+    assert_alike(grid[tuple(index.T)], held, sensor.model)
     assert_alike(on_sample(sensor, space, index, vehicle), expected, sensor.model)
     return expected
 

@@ -124,17 +124,6 @@ def counted(*boxes, space=BY_HAND_SPACE):
     return density.ground, density.profile.tolist(), str(prior.report(space))
 
 
-def test_a_box_turned_by_45_degrees():
-    """Four centres are 0.5 m away along x and along y: inside where half a diagonal is over 1 m.
-
-    It is 1.025 m for a side of 1.45 m; 0.990 m for 1.40 m, a box without any centre.
-    """
-    for side, held in ((1.45, 4), (1.40, 1)):
-        ground, _, _ = counted((1.0, 1.0, 0.5, side, side, 1.0, 45.0))
-        assert np.count_nonzero(ground[:2]) == held
-        assert ground[2].tolist() == [0.0, 0.0]
-
-
 @pytest.mark.parametrize(
     ("x", "y", "z", "voxel"),
     [
@@ -166,21 +155,6 @@ def test_a_box_outside_is_left_out_and_counted():
         assert -1 in [voxel_of(np.array(box[a]), BY_HAND_SPACE, a) for a in range(3)], box
         assert report == "boxes: 1 box taken, 1 left out (1 outside the space)"
     assert wrongly_refused(counted, [("boxes", box) for box in OUTSIDE], "boxes") == []
-
-
-def test_what_sticks_out_is_cut_off():
-    """From -2 to 1 along x and 1 to 5 in height."""
-    ground, profile, _ = counted((-0.5, 0.5, 3.0, 3.0, 1.0, 4.0, 0.0))
-    assert ground.tolist() == [[1.0, 0.0], [0.0, 0.0], [0.0, 0.0]] and profile == [0.0, 1.0]
-
-
-def test_columns_count_layers_and_layers_count_columns():
-    """A low box over two columns, a high one over one: of 4 voxels 2 in the high one's column,
-    and 3 in the lower layer."""
-    low, high = (1.0, 0.5, 0.5, 2.0, 1.0, 1.0, 0.0), (2.5, 1.5, 1.0, 1.0, 1.0, 2.0, 0.0)
-    ground, profile, report = counted(low, high)
-    assert ground.tolist() == [[0.25, 0.0], [0.25, 0.0], [0.0, 0.5]]
-    assert profile == [0.75, 0.25] and report == "boxes: 2 boxes taken"
 
 
 ROW = ("car", 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 0.5)

@@ -152,15 +152,6 @@ def test_listed_coefficients_are_opencv_s():
     assert one.lens == other.lens
 
 
-@pytest.mark.parametrize("lens", [WIDE, RATIONAL, FISHEYE, ROUND])
-def test_the_axis_falls_on_the_principal_point(lens):
-    lens, none = pe.Camera("mine", *SIZES[lens], lens=lens).projection, np.zeros(1)
-    right, down = lens.project(np.ones(1), none, none)
-    assert (right[0], down[0]) == pytest.approx((lens.cx, lens.cy), abs=1e-9)
-    direction = lens.unproject(np.array([lens.cx]), np.array([lens.cy]))[0]
-    assert direction == pytest.approx([1.0, 0.0, 0.0], abs=1e-9)
-
-
 def test_the_outline_of_a_picture_goes_round_its_border_and_where_it_is_dark_round_the_field():
     """A circle of 70 px in 480 x 270: corners see nothing, and have the direction of the edge."""
     edge = math.radians(50.0)

@@ -13,6 +13,8 @@ import pe_tools as pt
 from pe_tools.jobs import HistoryRow, score_and_optimize
 from tests.engine import shapes
 
+pytestmark = pytest.mark.usefixtures("few_errors", "no_key_figures")
+
 
 def study(candidates=6, position=(-0.43, 0.0, 1.8)):
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180), position)])

@@ -8,7 +8,6 @@ import pytest
 import pe_core as pe
 from pe_core import catalog
 from pe_core.sensors import Voxels, kind_of
-from pe_core.sensors.camera.sample_areas import pixel_areas
 from pe_core.sensors.lidar.grid_sweep import MAX_COUNT, BeamGrid
 from tests.engine import shapes
 from tests.engine.kernels import (
@@ -101,9 +100,9 @@ MODELS = {
 }
 
 
-def some_voxels(sensor, space, vehicle, rng, count):
+def some_voxels(sensor, space, grid, rng, count):
     """Indices of voxels that are seen, of any voxels, and of voxels round and level with it."""
-    seen, shape = np.flatnonzero(on_grid(sensor, space, vehicle)), np.array(space.shape)
+    seen, shape = np.flatnonzero(grid), np.array(space.shape)
     flat = np.concatenate([rng.choice(seen, count), rng.integers(0, space.size, count)])
     index = np.stack(np.unravel_index(flat, space.shape), axis=1)
     here = ((np.array(sensor.pose.position) - space.origin) / space.interval).astype(int)
@@ -127,11 +126,11 @@ def test_grid_and_sample_equal_the_definition(model, pose):
     number = list(MODELS).index(model) + list(POSES).index(pose)
     vehicle = CAR if number % 2 else None
     sensor = pe.Sensor("s", MODELS[model], pe.Pose.from_degrees(*POSES[pose]))
-    if not on_grid(sensor, SPACE, vehicle).any():  # nothing in view: not of a small cone up there
+    grid = on_grid(sensor, SPACE, vehicle)
+    if not grid.any():  # nothing in view: not of a small cone up there
         return
-    rng = np.random.default_rng(number)
-    index = some_voxels(sensor, SPACE, vehicle, rng, 300)
-    assert np.count_nonzero(assert_defined(sensor, SPACE, index, vehicle)) > 100
+    index = some_voxels(sensor, SPACE, grid, np.random.default_rng(number), 200)
+    assert np.count_nonzero(assert_defined(sensor, SPACE, index, vehicle, grid)) > 100
 
 
 @pytest.mark.parametrize("seed", range(tries(2, 3)))
@@ -140,15 +139,16 @@ def test_a_lidar_anywhere_on_the_vehicle(seed):
     place = rng.uniform((-2.5, -1.0, 0.5), (2.5, 1.0, 2.2)).round(2)
     yaw = float(rng.choice([0.0, rng.uniform(-180, 180)]))
     sensor = pe.Sensor("s", MODELS["paper"], pe.Pose.from_degrees(place, (0.0, 0.0, yaw)))
-    index = some_voxels(sensor, SPACE, CAR, rng, 100)
-    expected = assert_defined(sensor, SPACE, index, CAR)
+    grid = on_grid(sensor, SPACE, CAR)
+    index = some_voxels(sensor, SPACE, grid, rng, 100)
+    expected = assert_defined(sensor, SPACE, index, CAR, grid)
     voxels = Voxels(SPACE, index, SPACE.center_of(index))
     few = kind_of(sensor).on_sample(voxels, CAR, 10).measure(sensor).m
     assert np.minimum(few, 10).tolist() == np.minimum(expected, 10).tolist()
 
 
 def test_every_voxel_of_the_grid_equals_the_sample():
-    """Two kernels that share no method, over all 384,000 voxels."""
+    """Two kernels that share no method, over all 192,000 voxels."""
     pose = pe.Pose.from_degrees((0.0, 0.0, 1.8), (0, 1.5, 45.0))
     sensor = pe.Sensor("s", MODELS["offsets"], pose)
     sample = on_sample(sensor, SPACE, every_voxel(SPACE).index, CAR)
@@ -160,19 +160,6 @@ def test_planes_do_not_depend_on_how_many_are_asked_for(model):
     sensor = pe.Sensor("s", MODELS[model], pe.Pose.from_degrees((0.2, -0.3, 1.6), (4, 5, 30)))
     one, *others = (on_grid(sensor, shapes.small_space(), CAR, run) for run in (1, 7, 80))
     assert all(np.array_equal(one, other) for other in others)
-
-
-@pytest.mark.parametrize("hfov", [30.0, 60.0, 120.0])
-@pytest.mark.parametrize("rotation", [(0, 0, 0), (0, 10, 0), (15, 40, 120), (90, -30, -60)])
-def test_areas_are_within_one_percent_beyond_a_metre(hfov, rotation):
-    rng = np.random.default_rng(1)
-    sensor = shapes.camera(hfov, (0.3, -0.2, 1.4), rotation)
-    centers = np.array(sensor.pose.position) + rng.uniform(-8, 8, (20_000, 3))
-    exact = pe.measure(sensor, centers, 0.1)
-    fast = pixel_areas(sensor.model, sensor.pose, centers, 0.1, None)
-    seen = exact > 1e-6
-    assert (fast[~seen] <= 1e-6).all() and seen.sum() > 100
-    assert np.abs(fast[seen] / exact[seen] - 1.0).max() < 0.01
 
 
 def counts_of(*sensors, space=SMALL):

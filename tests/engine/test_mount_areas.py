@@ -61,6 +61,7 @@ def test_the_faces_of_a_file_s_part_are_those_of_the_area(folder):
     assert study.coding().candidate((-1.0, 0.0, TOP, 0.0)).rig["roof"].pose.position[0] == 0.0
 
 
+@pytest.mark.usefixtures("few_errors", "no_key_figures")
 def test_a_study_with_areas_is_written_with_them_and_searches_the_same(folder, tmp_path):
     rig, space = mounting.space(mounting.can(START), mount={"roof": area_mount()})
     search = pe.Search(

@@ -1,14 +1,13 @@
 """The prior: normalised, against numerical integrals, focus, and the samples drawn from it."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import pe_core as pe
 from pe_core.prior.classes import sampled_positions
-from pe_core.scoring.sampling import draw, outside_masses, scrambled_sobol
+from pe_core.scoring.sampling import draw, scrambled_sobol
 from tests.engine import shapes
 
 SPACE = shapes.small_space()
@@ -16,48 +15,6 @@ SPACE = shapes.small_space()
 
 def total(densities):
     return sum(d.ground.sum() * d.profile.sum() for d in densities)
-
-
-@pytest.mark.parametrize("name", ["road", "highway", "uniform"])
-def test_the_prior_sums_to_one(name):
-    assert total(getattr(pe.Prior, name)().densities(SPACE)) == pytest.approx(1.0)
-
-
-def test_classes_of_the_road_share_alike_and_stand_on_the_ground():
-    densities = {d.name: d for d in pe.Prior.road().densities(SPACE)}
-    assert list(densities) == ["car", "pedestrian", "cyclist", "truck", "cone"]
-    for density in densities.values():
-        assert density.ground.sum() == pytest.approx(0.2)
-        assert (np.diff(density.profile) <= 0).all()
-    z = SPACE.centers(2)
-    assert densities["car"].profile[z > 2.6].sum() < 1e-4
-    assert densities["truck"].profile[z > 2.6].sum() > 0.05
-
-
-def test_the_highway_s_vehicles_keep_to_their_lanes_and_its_cones_between_them():
-    space = pe.PerceptionSpace(interval=0.25)
-    densities = {d.name: d for d in pe.Prior.highway().densities(space)}
-    shares = {name: d.ground.sum() for name, d in densities.items()}
-    assert shares == pytest.approx({"car": 0.4, "truck": 0.4, "cyclist": 0.1, "cone": 0.1})
-    across = {name: d.ground.sum(axis=0) for name, d in densities.items()}
-
-    def at(name, y):
-        return across[name][int((y + 40.0) / 0.25)]
-
-    for lane in (-3.75, 0.0, 3.75):
-        assert at("car", lane) > 4 * at("car", lane + 1.875) > 0
-        assert at("cone", lane + 1.875) > 100 * at("cone", lane)
-    np.testing.assert_allclose(across["truck"], across["truck"][::-1], rtol=1e-9)
-    assert densities["truck"].profile[space.centers(2) > 3.0].sum() > 0.1
-
-
-def test_parameters_of_the_road_can_be_varied():
-    car, *others = pe.Prior.road().classes
-    far = pe.Prior("road", (replace(car, decay_x=200.0, share=2.0), *others)).densities(SPACE)
-    plain = pe.Prior.road().densities(SPACE)
-    assert far[0].ground.sum() == pytest.approx(2 / 6)
-    assert far[0].ground[0].sum() / far[0].ground.sum() > 5 * plain[0].ground[0].sum()
-    np.testing.assert_allclose(far[1].ground * 6 / 5, plain[1].ground, rtol=1e-12)
 
 
 def test_a_class_that_is_not_met_in_the_space_has_no_mass():
@@ -90,16 +47,6 @@ def test_bad_focus_is_refused():
         pe.Prior.road([pe.Focus(0.0)]).densities(SPACE)
 
 
-def test_the_vehicle_s_own_volume_carries_no_weight():
-    densities = pe.Prior.uniform().densities(SPACE)
-    tops = shapes.box_car().top(SPACE)
-    columns = np.isfinite(tops)
-    z = SPACE.centers(2)
-    inside = sum(int((z < top).sum()) for top in tops[columns])
-    assert inside > 0
-    assert outside_masses(densities, SPACE, tops)[0] == pytest.approx(1 - inside / SPACE.size)
-
-
 def test_samples_follow_the_prior_and_each_of_its_classes():
     densities = pe.Prior.road().densities(SPACE)
     sample = draw(densities, SPACE, 50_000)
@@ -113,12 +60,6 @@ def test_samples_follow_the_prior_and_each_of_its_classes():
         assert np.abs(heights - density.profile).max() < 5e-3
 
 
-def test_no_sample_lies_inside_the_vehicle():
-    tops = shapes.box_car().top(SPACE)
-    sample = draw(pe.Prior.uniform().densities(SPACE), SPACE, 20_000, tops)
-    assert (sample.centers[:, 2] >= tops[sample.index[:, 0], sample.index[:, 1]]).all()
-
-
 @pytest.mark.parametrize("shift", [(0.5, 0.5, 0.5), (0.0, 0.1, 0.9)])
 def test_azimuth_and_height_are_a_net(shift):
     """Each of 4096 boxes of any shape of that area holds one of 4096 points, scrambled or not."""
@@ -126,12 +67,6 @@ def test_azimuth_and_height_are_a_net(shift):
     for bits in range(13):
         cells = np.floor(points * [1 << bits, 1 << (12 - bits)]).astype(int)
         assert len(np.unique(cells, axis=0)) == 4096
-
-
-def test_voxels_come_nearest_first_and_know_their_run():
-    sample = draw(pe.Prior.road().densities(SPACE), SPACE, 16_000)
-    assert (np.diff(np.hypot(sample.centers[:, 0], sample.centers[:, 1])) > -1e-9).all()
-    assert np.bincount(sample.run).tolist() == [1000] * 16
 
 
 DENSITY_SPACE = pe.PerceptionSpace((-60.0, 60.0), (-30.0, 30.0), (0.0, 5.0), 0.5)

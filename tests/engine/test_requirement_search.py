@@ -61,6 +61,7 @@ def study(**search):
     )
 
 
+@pytest.mark.usefixtures("few_errors", "no_key_figures")
 def test_a_search_that_starts_with_two_requirements_broken_ends_with_none():
     start = study(evaluations=400)
     assert [v.met for v in start.verdicts()] == [True, False, False]
@@ -188,7 +189,7 @@ def test_shortfalls_are_zero_exactly_where_a_verdict_says_met():
     )
     checker = RequirementChecker((*own.requirements, *strict), own.vehicle, space=own.space)
     rng, found = np.random.default_rng(3), []
-    for _ in range(6):
+    for _ in range(4):
         poses = [
             pe.Pose(s.pose.position, (0.0, float(rng.uniform(-0.6, 0.9)), s.pose.rpy[2]))
             for s in own.rig
@@ -224,6 +225,7 @@ def tilted(keep=(), method="portfolio", **wanted):
     return pe.Study(rig, van, space, samples=1024, search=search)
 
 
+@pytest.mark.usefixtures("few_errors")
 @pytest.mark.parametrize("method", ["portfolio", "random"])
 def test_a_search_that_keeps_blind_ground_ends_with_no_more_of_it(method):
     """Without the key the same search pays its gain with blind ground, and says so."""
@@ -244,6 +246,7 @@ def test_a_search_that_keeps_blind_ground_ends_with_no_more_of_it(method):
     assert told["cost"] == kept.cost
 
 
+@pytest.mark.usefixtures("few_errors")
 def test_workers_and_cutoffs_keep_the_same_blind_ground():
     given = tilted(BLIND)
     assert constraints_of(tilted()) == ()

@@ -278,13 +278,6 @@ def test_a_cone_is_cut_in_a_circle():
     assert signed_area(ring) == pytest.approx(4 * np.pi, rel=0.003)
 
 
-def test_a_hole_runs_the_other_way_round():
-    ring_shaped = 1.0 - np.abs(np.hypot(X[:, None], Y) - 3.0)
-    outer, inner = outlines(ring_shaped, 0.0, X, Y)
-    assert signed_area(outer) == pytest.approx(16 * np.pi, rel=0.01)
-    assert signed_area(inner) == pytest.approx(-4 * np.pi, rel=0.01)
-
-
 def test_a_middle_that_is_inside_joins_two_corners():
     field = np.array([[-1.0, 3.0], [3.0, -1.0]])
     assert len(outlines(field, 0.0, np.arange(2.0), np.arange(2.0))) == 1

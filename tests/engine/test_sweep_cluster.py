@@ -1,4 +1,4 @@
-"""A sweep by a real Dask scheduler with two workers on the loopback; one of them is killed."""
+"""A search and a sweep by a real Dask scheduler with two workers; one of them is killed."""
 
 import json
 import os
@@ -7,6 +7,7 @@ import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 
 import pytest
 
@@ -93,6 +94,43 @@ def cluster(tmp_path_factory):
     cluster = Cluster(tmp_path_factory.mktemp("cluster"))
     yield cluster
     cluster.end()
+
+
+class Noted:
+    """An evaluator that notes each time a worker unpickles it, with the mesh."""
+
+    def __init__(self, folder, evaluator):
+        self.folder, self.evaluator = folder, evaluator
+
+    def __setstate__(self, state):
+        vars(self).update(state)
+        (Path(self.folder) / f"unpickled {os.getpid()} {time.monotonic_ns()}").touch()
+
+    def entropy(self, rig):
+        return self.evaluator.entropy(rig)
+
+
+def steps(objective, study, executor=None):
+    asked = {"evaluations": 30, "executor": executor}
+    found = pe.optimize(objective, study.rig, study.search_space(), **asked)
+    return [(s.entropy, s.improved, [own.pose for own in s.best]) for s in found]
+
+
+def test_a_search_by_its_workers_takes_the_steps_of_one_process(study, cluster, tmp_path):
+    """Here, before one of them is killed; and the mesh comes once to each."""
+    given = pe.load_study(study)
+    by_one_process = steps(given.evaluator(1024), given)
+    with Client(cluster.address) as client:
+        addresses = list(client.scheduler_info()["workers"])
+        for count in (1, 2):
+            executor = client.get_executor(workers=addresses[:count], pure=False)
+            noted = Noted(str(tmp_path), given.evaluator(1024))
+            assert steps(noted, given, executor) == by_one_process
+            files = list(tmp_path.glob("unpickled *"))
+            unpickled = [path.name.split()[1] for path in files]
+            assert 0 < len(unpickled) == len(set(unpickled)) <= count
+            for path in files:
+                path.unlink()
 
 
 def at_first_result(monkeypatch, do):

@@ -13,9 +13,10 @@ from unittest import mock
 
 import pytest
 
+import pe_tools as pt
 from pe_core import InputError
 from pe_core.search.key_figures import KeyFigures
-from studies import results_file
+from studies import plotting, results_file
 
 ROOT = Path(__file__).parents[2]
 
@@ -52,11 +53,19 @@ def no_figures(*_):
     raise InputError("space", "z", "the ground", "none")
 
 
+def search_alone(patch):
+    """Have a search end with its result: no study reads what is analysed of it."""
+    patch.setattr(KeyFigures, "of_rig", no_figures)
+    patch.setattr(pt.OptimizeJob, "_robustness", lambda *_: None)
+    patch.setattr(pt.OptimizeJob, "analyses", False)
+
+
 def quick_run(name, folder):
     """The folder, the data and the run of a study's ``--quick``, its tasks in this process."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(results_file, "Processes", lambda _: ThreadPoolExecutor(1))
-        patch.setattr(KeyFigures, "of_rig", no_figures)
+        search_alone(patch)
+        patch.setitem(plotting.STYLE, "savefig.dpi", 30)
         run = study(name, "--quick", "--output", folder)
     assert run.returncode == 0, run.stdout + run.stderr
     data = json.loads((folder / "results.json").read_text("utf-8"))

@@ -29,7 +29,7 @@ from studies.detectors.plan import (
 from studies.detectors.runs import RunFiles, seed_by_seed
 from studies.paper.paper import STUDIES
 from studies.ranks import student_interval
-from tests.studies.conftest import ROOT, study
+from tests.studies.conftest import ROOT, search_alone, study
 
 PLAN = full_after_search_plan()
 DIGEST = "21f71ed6d5e047cc"
@@ -77,8 +77,11 @@ def test_rigs_are_the_lidars_of_the_studies_that_the_plan_names():
     )
 
 
-def test_a_short_search_is_kept_and_its_runs_are_gone_on_with_by_resume_alone(tmp_path):
+def test_a_short_search_is_kept_and_its_runs_are_gone_on_with_by_resume_alone(
+    tmp_path, monkeypatch
+):
     """It ends within its bounds, and its file is not searched again."""
+    search_alone(monkeypatch)
     plan, said = quick_after_search_plan(), []
     assert [p.name for p in searched_placements(plan, tmp_path / AFTER_SEARCH)] == [
         "after-shuttle-start"

@@ -13,6 +13,7 @@ from studies.published.tasks import QUICK, plan
 from tests.studies.conftest import ROOT, study
 
 STUDY = "published"
+FOLDER = ROOT / "docs" / "validity"
 
 
 def test_placements_are_the_published_ones():
@@ -95,21 +96,24 @@ def test_a_changed_score_is_noticed(quick, tmp_path):
     assert run.returncode != 0 and run.stderr.count("\n") == 1 and "correlations" in run.stderr
 
 
-def test_the_page_of_the_docs_is_that_of_its_results():
-    """Whole: correlations are worked out again from the scores, and every word from them."""
-    folder = ROOT / "docs" / "validity" / "published"
-    results = ValidityResults(read_results(folder / "results.json"))
-    assert (folder / "README.md").read_text("utf-8") == page(results)
+@pytest.fixture(scope="module")
+def committed():
+    """The committed results: correlations are worked out again from the scores."""
+    return ValidityResults(read_results(FOLDER / "published" / "results.json"))
 
 
-def test_the_page_of_all_studies_has_their_figures():
-    folder = ROOT / "docs" / "validity"
+def test_the_page_of_the_docs_is_that_of_its_results(committed):
+    """Whole: every word follows from the results."""
+    assert (FOLDER / "published" / "README.md").read_text("utf-8") == page(committed)
+
+
+def test_the_page_of_all_studies_has_their_figures(committed):
     own, road, law, published = (
-        json.loads((folder / name).read_text("utf-8"))
+        json.loads((FOLDER / name).read_text("utf-8"))
         for name in ("own/results.json", "road/results.json", "own/second/law.json",
                      "published/results.json")
     )  # fmt: skip
-    told = " ".join((folder / "README.md").read_text("utf-8").split())
+    told = " ".join((FOLDER / "README.md").read_text("utf-8").split())
     statements, afterwards = own["statements"], own["afterwards"]
     rows = [s["figures"] for s in (statements[0], statements[2], statements[3])]
     rows += [afterwards["beyond_coverage"]]
@@ -134,7 +138,6 @@ def test_the_page_of_all_studies_has_their_figures():
     low, high = found["interval"]
     assert f"RMSE {found['difference']:.4f} ({low:+.4f} to {high:+.4f})" in told
     assert f"worth {w / (1 - w):.1f} columns, w {w:.2f}" in told
-    results = ValidityResults(read_results(folder / "published" / "results.json"))
-    opposite = len(results.opposite_in_papers())
-    assert f"none of {len(results.scores)}; {opposite} change their sign" in told
-    assert not results.significant()["always"] and published["over_papers"]
+    opposite = len(committed.opposite_in_papers())
+    assert f"none of {len(committed.scores)}; {opposite} change their sign" in told
+    assert not committed.significant()["always"] and published["over_papers"]

@@ -1,12 +1,16 @@
-"""A search on a painted roof in a real window: the mount, the best placement so far, Esc, undo."""
+"""From a new sensor to a page on disk, by clicks: score, a search on a painted roof, Esc, undo."""
 
-START_TIMEOUT_S, BETTER_TIMEOUT_S = 60, 120
+import math
+
+START_TIMEOUT_S, BETTER_TIMEOUT_S = 60, 180
 ADDON = "bl_ext.user_default.perception_entropy"
 ON_THE_ROOF_M = 1.45 + 0.04 + 0.12
 """No sensor on a base plate of 40 mm is higher than this."""
 
 
-def test_a_search_on_a_painted_roof_shows_the_best_so_far(stage, screenshots):
+def test_a_search_beside_the_window_esc_keeps_the_best_undo_brings_back_and_a_page_is_left(
+    stage, screenshots
+):
     stage.do("""
         settings, roof = window.scene.perception_entropy, bpy.data.objects["roof"]
         settings.score_samples = settings.search_samples = 1024
@@ -20,23 +24,37 @@ def test_a_search_on_a_painted_roof_shows_the_best_so_far(stage, screenshots):
             bpy.ops.pe.mount_sensor(name="roof_lidar", mount="roof")
             bpy.ops.ed.undo_push(message="on the roof")
     """)
-    start = place(stage)
-    assert start[2] < ON_THE_ROOF_M
+    before = len(stage.state["sensors"])
+    stage.press_until(
+        "pe.add_sensor", lambda: len(stage.state["sensors"]) == before + 1, "a new sensor"
+    )
+    assert not stage.state["has_result"], "a result that nobody asked for"
+    stage.press_until("pe.score", lambda: stage.state["has_result"], "a score")
+    stage.screenshot(screenshots / "window_score.png")
+    assert math.isfinite(stage.state["entropy"])
+    assert 0.0 <= stage.state["coverage"] <= 1.0
+
+    start = stage.state["places"]
+    assert place(stage)[2] < ON_THE_ROOF_M
     stage.press_until("pe.optimize", lambda: stage.state["running"], "the search to start")
+    stage.wait_for(lambda: stage.state["better_found"], BETTER_TIMEOUT_S, "a better placement")
     stage.wait_until(f"bool({VIEW})", BETTER_TIMEOUT_S)
     stage.point_at_view()
     stage.rest()  # the search goes on drawing
     stage.photograph(screenshots / "window_search.png")
+    assert stage.state["running"], "the search was over before anyone could press Esc"
 
+    stage.key("ctrl+z")
+    assert stage.state["running"] and stage.state["places"] == start
     stage.key("Escape")
-    found = "getattr(window.scene.perception_entropy.result, 'kind', '')"
-    stage.wait_until(f"{found} == 'optimize'", BETTER_TIMEOUT_S)
+    stage.wait_for(lambda: stage.state["kind"] == "optimize", BETTER_TIMEOUT_S, "a result")
     stage.wait_until(f"not {VIEW}")
-    found = place(stage)
-    assert found != start and found[2] < ON_THE_ROOF_M
+    assert stage.state["places"] != start, "the best so far was not kept"
+    assert place(stage)[2] < ON_THE_ROOF_M
     stage.point_at_view()
     stage.key("ctrl+z")
-    stage.wait_until(f"abs({PLACE}.x - {start[0]}) < 1e-6", START_TIMEOUT_S)
+    stage.wait_for(lambda: stage.state["places"] == start, START_TIMEOUT_S, "the old placement")
+    assert len(stage.state["variants"]) == 2, "undo has lost what the search found"
     check_an_export(stage, screenshots)
     assert "Traceback" not in stage.log.read_text()
 

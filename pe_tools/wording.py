@@ -9,10 +9,12 @@ from pe_core.scoring.requirements import Reason, VerdictSummary
 
 
 def percent(share: float, digits: int | None = None) -> str:
-    """Return a share, 0 to 1, in percent with `digits` decimals: "81.4%". Without `digits`: "85%"
-    as in a sentence, with one decimal for shares near 0 or 1: "0.4%"."""
+    """Return a share, 0 to 1, in percent with `digits` decimals: "81.4%"; less than 1 is less than
+    100%. Without `digits`: "85%" as in a sentence, with one decimal for shares near 0 or 1: "0.4%".
+    """
     if digits is not None:
-        return f"{100.0 * share:.{digits}f}%"
+        most = 100.0 if share >= 1.0 else 100.0 - 10.0**-digits
+        return f"{min(100.0 * share, most):.{digits}f}%"
     value = 100.0 * share
     if 0.0 < value < 0.05:
         return "under 0.1%"

@@ -214,19 +214,18 @@ class ConditionedChecker(RequirementChecker):
             parts.append((condition, numbers, checker.steps(moved, preview=preview, cases=others)))
         number = 0
         for step in drawn:
-            worst = step.verdict
-            if worst is None:
+            if step.verdict is None:
                 yield step
                 continue
+            found = [step.verdict]
             for condition, numbers, steps in parts:
                 for other in steps if number in numbers else ():
                     if other.verdict is not None:  # the next one is of another requirement
-                        if _rank(other.verdict) < _rank(worst):
-                            worst = replace(other.verdict, condition=condition.name)
+                        found.append(replace(other.verdict, condition=condition.name))
                         break
                     yield CheckStep(step.fraction)
             number += 1
-            yield CheckStep(step.fraction, worst)
+            yield CheckStep(step.fraction, _worst(found))
 
     def shortfalls(self, rig: Rig, cases: Sequence[Rig] = ()) -> tuple[float, ...]:
         """Return for each requirement the largest shortfall under its conditions."""
@@ -255,6 +254,16 @@ def conditions_of(requirement: Requirement, conditions: Conditions) -> Iterator[
 
 def _expanded(names: Sequence[str], known: Sequence[str]) -> list[str]:
     return list(dict.fromkeys(n for name in names for n in (known if name == EVERY else [name])))
+
+
+def _worst(verdicts: Sequence[Verdict]) -> Verdict:
+    """Return the worst of the verdicts on one requirement, the first of equal ones. What it says of
+    lost sensors holds under all conditions: each may need another sensor."""
+    worst = min(verdicts, key=_rank)
+    without = {name: all(v.without[name] for v in verdicts) for name in worst.without}
+    fewest, most = zip(*(v.sensors for v in verdicts), strict=True)
+    whole = all(v.met_whole for v in verdicts)
+    return replace(worst, without=without, sensors=(min(fewest), max(most)), met_whole=whole)
 
 
 def _rank(verdict: Verdict) -> tuple[bool, float, float]:

@@ -59,11 +59,15 @@ class RequirementConstraint:
     def __init__(self, checker: RequirementChecker, tolerance: Tolerance, seed: int = 0) -> None:
         self._checker, self._tolerance, self._seed = checker, tolerance, seed
 
-    def violation(self, rig: Rig) -> float:
-        """Return the sum of the violations of all requirements; 0 where all are met."""
+    def shortfalls(self, rig: Rig) -> tuple[float, ...]:
+        """Return for each requirement 0 where it is met, else how far it is off."""
         wanted = self._checker.requirements
         cases = mounting_cases(wanted, rig, self._tolerance, self._seed)
-        return rounded(sum(self._checker.shortfalls(rig, cases)))
+        return self._checker.shortfalls(rig, cases)
+
+    def violation(self, rig: Rig) -> float:
+        """Return the sum of the violations of all requirements; 0 where all are met."""
+        return rounded(sum(self.shortfalls(rig)))
 
 
 FeasibilityRule = FiguresLimit | RequirementConstraint

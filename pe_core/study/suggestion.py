@@ -34,6 +34,7 @@ from ..search.key_figures import blind_area
 from ..search.methods.method import sampled_candidate
 from ..search.parametrization import Candidate
 from ..sensors import kind_of
+from .requirement_search import RequirementConstraint
 from .study import Study
 
 Watch = Callable[[float], bool]
@@ -145,7 +146,7 @@ def with_blind_spot(study: Study, x: float, y: float) -> Study:
 
 def suggestions(study: Study) -> dict[str, Suggestion | None]:
     """Return by requirement that is not met the nearest placement found that meets it. None where
-    no placement that was tried is enough. Mounting errors are left out."""
+    no placement that was tried is enough."""
     mender = _Mender(study, (), None)
     mender.move()
     return {name: mender.moved.get(name) for name in mender.names}
@@ -192,8 +193,9 @@ class _Mender:
             expected = "one that the rig can be held to"
             raise InputError("suggest", f"requirement {name!r}", expected, unchecked[name])
         self._study = study = replace(study, requirements=fitting)
-        self._watch, self._checker = watch or (lambda _: True), study.checker()
-        self._before = self._checker.shortfalls(study.rig)
+        self._watch = watch or (lambda _: True)
+        self._held = self._held_to(study.requirements)
+        self._before = self._held.shortfalls(study.rig)
         rows = zip(study.requirements, self._before, strict=True)
         self._left = tuple(r for r, off in rows if off and (not names or r.name in names))
         self.names = [each.name for each in self._left]
@@ -212,7 +214,7 @@ class _Mender:
                 break
             self._goes_on(number / most)
             for each, off in zip(self._left, checker.shortfalls(rig), strict=True):
-                if not off and each.name in left:
+                if not off and each.name in left and self._is_met_mounted(each, rig):
                     moved = [s.name for s in rig if s.pose != study.rig[s.name].pose]
                     found = self._suggestion(rig, moved)
                     if each.name != BLIND_SPOT or found.is_gain:
@@ -235,7 +237,9 @@ class _Mender:
             for at, place in enumerate(places):
                 self._goes_on((number + at / ADD_PLACES) / len(pairs))
                 rig = places.with_sensor(place.pose)
-                if not (place.reason or checker.shortfalls(rig)[0]):
+                if place.reason or checker.shortfalls(rig)[0]:
+                    continue
+                if self._is_met_mounted(requirement, rig):
                     found = self._evaluator.entropy(rig), rig
                     best[name] = min(best.get(name, found), found, key=lambda pair: pair[0])
                     if (count := count + 1) == ADD_COMPARED:
@@ -246,12 +250,21 @@ class _Mender:
     def _checker_of(self, wanted: tuple[Requirement, ...]) -> RequirementChecker:
         return replace(self._study, requirements=wanted).checker()
 
+    def _held_to(self, wanted: tuple[Requirement, ...]) -> RequirementConstraint:
+        """Return what holds rigs to requirements with the mounting errors that these ask for."""
+        search = self._study.search
+        return RequirementConstraint(self._checker_of(wanted), search.tolerance, search.seed)
+
+    def _is_met_mounted(self, each: Requirement, rig: Rig) -> bool:
+        """Whether a requirement that is met is met with the mounting errors that it asks for."""
+        return not (each.under.mounting and self._held_to((each,)).violation(rig))
+
     def _goes_on(self, share: float) -> None:
         if not self._watch(min(share, 1.0)):
             raise ScoreStopped
 
     def _suggestion(self, rig: Rig, moved: Sequence[str], added: bool = False) -> Suggestion:
-        after = self._checker.shortfalls(rig)
+        after = self._held.shortfalls(rig)
         rows = zip(self._study.requirements, self._before, after, strict=True)
         breaks = tuple(each.name for each, was, off in rows if off and not was)
         effects = self._before_figures, self._effect(rig)

@@ -17,7 +17,7 @@ from pe_core.study.suggestion import Suggestion
 
 from ..advice import curve_note
 from ..jobs import CheckJob, SuggestJob
-from ..wording import aligned, margin_text, reason_text, unseen_text
+from ..wording import aligned, margin_text, percent, reason_text, unseen_text
 from .command import add_curve_option, with_curves
 from .drive_by_verb import story_lines
 from .interrupts import stop_at_first
@@ -167,7 +167,7 @@ def _row(verdict: Verdict) -> tuple[str, str, str, str, str, str]:
         blind = "" if verdict.blind_m2 is None else f"blind {verdict.blind_m2:.2f} m2, "
         margin = f"{blind}{'>= ' if verdict.at_least else ''}{verdict.margin:+.2f} m"
     met = "met" if verdict.met else "NOT MET"
-    share = f"{verdict.share:.1%}"
+    share = percent(verdict.share, 1)
     return met, name, verdict.requirement.after, margin, share, _reason(verdict)
 
 

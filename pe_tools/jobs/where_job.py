@@ -13,11 +13,11 @@ from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError, one_of, shown
 from pe_core.base.values import rounded
 from pe_core.scene.rig import Rig, Sensor
-from pe_core.scoring.requirements import RequirementChecker
 from pe_core.scoring.score import Objective
 from pe_core.scoring.sight import Sight
 from pe_core.search import MountingPlaces, SurfaceMount, SurfacePlace, evaluate_all
 from pe_core.study.condition_table import search_evaluator
+from pe_core.study.requirement_search import RequirementConstraint
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, EXPECTED_AP, Study
 from pe_core.study.suggestion import with_free_name
 
@@ -33,7 +33,7 @@ the best to the worst: they tell the error."""
 class _RigValue(NamedTuple):
     """Minimises the widest blind sector [deg], or minus the number of requirements met."""
 
-    of: Sight | RequirementChecker
+    of: Sight | RequirementConstraint
 
     def entropy(self, rig: Rig) -> float:
         """Return the value of a rig."""
@@ -53,7 +53,8 @@ def _sector(study: Study, _samples: int) -> Objective:
 
 def _met(study: Study, _samples: int) -> Objective:
     if study.requirements:
-        return _RigValue(study.checker())
+        search = study.search
+        return _RigValue(RequirementConstraint(study.checker(), search.tolerance, search.seed))
     raise InputError("where", "requirements", "at least one, to count verdicts", "none")
 
 

@@ -20,7 +20,7 @@ from pe_core.scoring.requirements import (
     Zone,
 )
 from pe_core.scoring.sight import BLIND_TO_M
-from pe_core.search import Goals, Wanted
+from pe_core.search import Goals, Tolerance, Wanted
 from pe_core.search.dispatch import value_below
 from pe_core.study.requirement_search import INFEASIBLE, constraints_of, feasible_first
 from pe_core.study.suggestion import BLIND_SPOT, SAMPLES, mended, suggestions, with_blind_spot
@@ -119,6 +119,14 @@ def test_the_nearest_change_of_one_sensor_is_suggested():
         )
     ]
     assert not {v.name: v.met for v in start.verdicts(start.rig.with_poses(half))}["behind"]
+
+
+def test_what_is_suggested_is_met_with_the_mounting_errors_that_are_asked_for():
+    start = study()
+    wanted = replace(start.requirements[1], under=Under(mounting=True))
+    loose = replace(start.search, tolerance=Tolerance(angle=math.radians(45.0)))
+    found = suggestions(replace(start, requirements=(wanted,), search=loose))
+    assert found == {"behind": None}  # without the errors there is one: as above
 
 
 def test_one_more_sensor_meets_what_no_move_meets():

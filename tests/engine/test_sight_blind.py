@@ -141,6 +141,16 @@ def test_the_vehicle_s_own_footprint_is_not_blind():
     assert set(blind.seen_from.values()) == set(blind.zone.values()) == {0.0}
 
 
+@pytest.mark.parametrize(("lowest", "room"), [(1.2, False), (1.9, True)])
+def test_what_stands_below_an_open_tailgate_may_be_blind(lowest, room):
+    gate = shapes.box((-3.0, -0.5, lowest), (-2.0, 0.5, lowest + 0.1))
+    parted = pe.Vehicle(np.concatenate([BOX.triangles, gate]))
+    ahead = pe.Rig([shapes.camera(100.0, (2.1, 0.0, 0.9), name="ahead")])
+    areas = [Sight(SPACE, pe.Prior.road(), v).blind(ahead, 0.5, 1.0).area for v in (BOX, parted)]
+    beyond = 3.0 - 1.0  # a metre of ground behind the gate, 3 m wide, more than behind the box
+    assert areas[1] - areas[0] == pytest.approx(beyond + room, abs=0.1)
+
+
 @pytest.mark.parametrize(("gap", "is_blind"), [(0.14, False), (0.31, True), (0.6, True)])
 def test_a_gap_between_rings_is_none_until_a_body_fits_in(gap, is_blind):
     """Rings on the ground 5 cm apart, and two that are farther from each other, 3 m away."""

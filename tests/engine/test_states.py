@@ -166,6 +166,17 @@ def test_a_requirement_is_met_under_each_state_and_weather_that_it_names():
         parked(states=["opne"]).verdicts()
 
 
+def test_a_lost_sensor_is_told_of_under_each_state():
+    study = parked(states=["*"])
+    back = study.rig["back"]
+    pair = pe.Rig([back, replace(back, name="spare")])
+    turn = {"rotation": (0.0, 0.0, math.pi), "about": back.pose.position}
+    states = [pe.State(f"{s.name} turned", [pe.Motion([], sensors=[s.name], **turn)]) for s in pair]
+    (verdict,) = replace(study, rig=pair, conditions=Conditions(states)).verdicts()
+    assert verdict.met and verdict.breaks_without == ("back", "spare")
+    assert verdict.sensors == (1, 2)  # fewest when one is turned, most as drawn
+
+
 @pytest.mark.parametrize("how", ["mean", "worst"])
 def test_a_search_minimises_the_mean_or_the_worst_of_the_table(how):
     weathers = [pe.Weather("sun", 0.75), pe.Weather("fog", 0.25, fog_mor_m=40.0)]

@@ -27,7 +27,7 @@ import numpy as np
 from ...base.arrays import Flags, Floats, Ints, ReadOnlyDict, read_only
 from ...base.notebook import ShortRepr
 from ...base.values import rounded
-from ...geometry.grids import GroundGrid, PerceptionSpace
+from ...geometry.grids import GroundGrid, PerceptionSpace, top_heights
 from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
 from ...sensors import GroundView, VisibleGroundCache
@@ -57,6 +57,8 @@ SIDES = {"front": (0, 1), "rear": (0, -1), "left": (1, 1), "right": (1, -1)}
 BODY_M = 0.3
 """Diameter of the test body: that of the cylinders of FMVSS 111 and UN regulation 158, less than a
 small child is wide."""
+STANDING_M = 1.7
+"""Height of an adult: below an open tailgate or a truck's mirror that is higher, somebody can stand."""
 STEP_M = 0.05
 """Side of the squares: with those of more than 0.1 m no body would be certainly visible."""
 TOO_FAR_M = 3 * STEP_M
@@ -288,7 +290,7 @@ class BlindSearch:
         margin = math.ceil(BODY_M / cells.step) + 2
         inner = GroundGrid((float(cells.x0[0]), float(cells.y0[0])), cells.shape, cells.step)
         view = GroundView(inner.widened(margin), height, vehicle)
-        own = _under(vehicle, view.grid)
+        own = _under(vehicle, view.grid, max(height, STANDING_M))
         return cls(cells, VisibleGroundCache(view, kernel_cache), margin, own)
 
     @property
@@ -334,8 +336,10 @@ def blind_squares(marked: Flags, covered: Flags, step: float) -> Flags:
     return dilated(blind, squares_touching(PARTLY_VISIBLE)) & may_be_blind
 
 
-def _under(vehicle: Vehicle | None, grid: GroundGrid) -> Flags:
-    """Return the squares (NX, NY) with the vehicle over their centres."""
+def _under(vehicle: Vehicle | None, grid: GroundGrid, room: float) -> Flags:
+    """Return the squares (NX, NY) with the vehicle over their centres. Of what is higher than
+    `room` [m] only what is above the lower parts' rectangle counts: a body has no need of a floor.
+    """
     covered = np.zeros(grid.shape, bool)
     if vehicle is None:
         return covered
@@ -349,5 +353,12 @@ def _under(vehicle: Vehicle | None, grid: GroundGrid) -> Flags:
         for w, a, b in zip(grid.origin, first, last, strict=True)
     ]
     space = PerceptionSpace(ends[0], ends[1], (0.0, grid.step), grid.step)
-    covered[i:i1, j:j1] = np.isfinite(vehicle.top(space))
+    lowest = -top_heights(vehicle.triangles * (1.0, 1.0, -1.0), space)
+    corners = vehicle.triangles.reshape(-1, 3)
+    low = corners[corners[:, 2] < room, :2]
+    spans = zip(low.min(axis=0, initial=np.inf), low.max(axis=0, initial=-np.inf), strict=True)
+    x, y = (
+        (space.centers(axis) >= a) & (space.centers(axis) <= b) for axis, (a, b) in enumerate(spans)
+    )
+    covered[i:i1, j:j1] = np.isfinite(lowest) & ((lowest < room) | (x[:, None] & y))
     return covered

@@ -36,6 +36,7 @@ from .ground_cells import (
     GroundCells,
     Rectangle,
     dilated,
+    opened,
     outlines,
     squares_touching,
     squares_within,
@@ -58,7 +59,7 @@ BODY_M = 0.3
 """Diameter of the test body: that of the cylinders of FMVSS 111 and UN regulation 158, less than a
 small child is wide."""
 STANDING_M = 1.7
-"""Height of an adult: below an open tailgate or a truck's mirror that is higher, somebody can stand."""
+"""Height of an adult: somebody can stand below an open tailgate that is higher."""
 STEP_M = 0.05
 """Side of the squares: with those of more than 0.1 m no body would be certainly visible."""
 TOO_FAR_M = 3 * STEP_M
@@ -337,9 +338,8 @@ def blind_squares(marked: Flags, covered: Flags, step: float) -> Flags:
 
 
 def _under(vehicle: Vehicle | None, grid: GroundGrid, room: float) -> Flags:
-    """Return the squares (NX, NY) with the vehicle over their centres. Of what is higher than
-    `room` [m] only what is above the lower parts' rectangle counts: a body has no need of a floor.
-    """
+    """Return the squares (NX, NY) with the vehicle over their centres. A part beyond the rectangle
+    of what is lower than `room` [m] does not count, unless it is narrower than a body."""
     covered = np.zeros(grid.shape, bool)
     if vehicle is None:
         return covered
@@ -360,5 +360,6 @@ def _under(vehicle: Vehicle | None, grid: GroundGrid, room: float) -> Flags:
     x, y = (
         (space.centers(axis) >= a) & (space.centers(axis) <= b) for axis, (a, b) in enumerate(spans)
     )
-    covered[i:i1, j:j1] = np.isfinite(lowest) & ((lowest < room) | (x[:, None] & y))
+    beyond = np.isfinite(lowest) & (lowest >= room) & ~(x[:, None] & y)
+    covered[i:i1, j:j1] = np.isfinite(lowest) & ~opened(beyond, BODY_M / 2.0 / grid.step)
     return covered

@@ -185,6 +185,12 @@ class Search(ShortRepr):
         known = checked_method(who, self.method or None, self.schedule != Schedule())
         object.__setattr__(self, "method", known)
 
+    @property
+    def from_each_start(self) -> int:
+        """How many of `evaluations` each start has; 0: as many as the method takes."""
+        share = round(self.evaluations / (1 + len(self.goals.starts)))
+        return max(1, share) if self.evaluations else 0
+
 
 @dataclass(frozen=True, eq=False)
 class Study(Tabular):
@@ -310,8 +316,7 @@ class Study(Tabular):
     def level_samples(self) -> tuple[int, ...]:
         """Number of voxels of each level of the search, the coarsest first."""
         search, sensors = self.search, len(self.coding().blocks)
-        evaluations = round(search.evaluations / (1 + len(search.goals.starts)))
-        return METHODS[search.method].samples(search.samples, evaluations, sensors)
+        return METHODS[search.method].samples(search.samples, search.from_each_start, sensors)
 
     def sight(self) -> Sight:
         """Return the `Sight` of this study: what its rigs see of the ground."""

@@ -283,7 +283,7 @@ class FrontJob(Job):
         study, moving = self._study_of(picks), self._measured.names
         search, points = study.search, weights_of(max(self.points, len(moving)), len(moving))
         least = max(LEAST_EVALUATIONS, EVALUATIONS_A_VARIABLE * len(study.coding().variables))
-        budget = search.evaluations // self.points if search.evaluations else least
+        budget = max(1, search.evaluations // self.points) if search.evaluations else least
         goals = replace(search.goals, starts=[], stop=Stop())
         study = replace(study, search=replace(search, evaluations=budget, goals=goals))
         archive: list[Rig] = []

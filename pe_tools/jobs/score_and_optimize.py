@@ -321,7 +321,7 @@ class OptimizeJob(Job):
             search.seed,
             search.schedule,
             method=search.method,
-            evaluations=round(search.evaluations * share[1]),
+            evaluations=search.from_each_start,
             executor=self._helpers,
         )
         while step := (

@@ -131,6 +131,12 @@ def test_several_starts_share_the_budget_and_the_best_end_is_the_result(plain):
     assert result_dict(again)["placements"] == result_dict(outcome)["placements"]
 
 
+def test_a_budget_below_the_number_of_starts_is_no_unlimited_one():
+    starts = [Start(f"at {z}", {"roof": pe.Pose((0.0, 0.0, z))}) for z in (1.8, 2.0, 2.2)]
+    outcome = finished(study(Goals(starts=starts), evaluations=2))
+    assert [end.evaluations for end in outcome.starts] == [1, 2, 3, 4]
+
+
 def test_the_curve_of_a_search_never_rises_and_ends_at_its_last_value(plain):
     """Neither with a further start, nor where the best is evaluated again with more samples."""
     poses = {"roof": pe.Pose((0.0, 0.0, 2.2))}

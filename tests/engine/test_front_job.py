@@ -69,6 +69,13 @@ def test_no_design_of_the_front_is_beaten_and_its_figures_are_those_of_its_rig(f
     assert best.figures["entropy"] <= plain.outcome.before.entropy
 
 
+def test_a_budget_below_the_number_of_points_is_no_unlimited_one():
+    given = study()
+    job = FrontJob(replace(given, search=replace(given.search, evaluations=2)), 1)
+    list(job)
+    assert 1 <= job.evaluations <= 4
+
+
 def test_figures_are_those_of_plain_functions():
     given = study(NAMES)
     evaluator = given.evaluator(1024)

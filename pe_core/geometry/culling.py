@@ -151,18 +151,7 @@ class FaceLook:
         u, v = boxes.u, boxes.v
         return (float(u[0].min()), float(u[1].max())), (float(v[0].min()), float(v[1].max()))
 
-    def boxes(self, select: Select) -> VisibleBoxes:
-        """Return the selected boxes of the lowest level, nearest first."""
-        level = len(self.tree.boxes) - 1
-        boxes = self._shown(np.arange(len(self.tree.boxes[level])), level)
-        while True:
-            boxes = boxes[np.flatnonzero(select(boxes.u, boxes.v))]
-            if level == 0:
-                return boxes[np.argsort(boxes.near, kind="stable")]
-            boxes = self._shown(self.tree.below(boxes.number, level), level - 1)
-            level -= 1
-
-    def largest(self, count_rays: CountRays, min_count: int) -> tuple[int, VisibleBoxes]:
+    def largest(self, count_rays: CountRays | Select, min_count: int) -> tuple[int, VisibleBoxes]:
         """Return the highest level with `min_count` boxes with rays, and these, nearest first."""
         level = len(self.tree.boxes) - 1
         boxes = self._shown(np.arange(len(self.tree.boxes[level])), level)

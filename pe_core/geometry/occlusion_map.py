@@ -52,7 +52,7 @@ class OcclusionMap:
         self.raster, self._look = raster, look
         self.near = np.full(raster.count**2, np.inf, np.float32)
         self.far = np.full(raster.count**2, np.inf, np.float32)
-        boxes = self._look.boxes(raster.touches).number
+        boxes = look.largest(raster.touches, len(look.tree.number))[1].number  # all of them
         sheets = [_Sheet(raster, side, self._look) for side in (1.0, -1.0)]
         for start in range(0, len(boxes), BOXES_AT_ONCE):
             some = boxes[start : start + BOXES_AT_ONCE]

@@ -211,13 +211,9 @@ def _cast(look: FaceLook, rays: BinnedRays, walk: RayWalk, hits: Hits) -> None:
 
 def _scatter(triangles: Facing, look: FaceLook, rays: BinnedRays, hits: Hits) -> None:
     """Test triangles, nearest first, against the rays in the bins that they may cover."""
-    distance = min_distance(triangles.corners)
-    order = np.argsort(distance, kind="stable")
-    _meet(Targets(triangles[order]), distance[order], look, rays, hits)
-
-
-def _meet(targets: Targets, near: Floats, look: FaceLook, rays: BinnedRays, hits: Hits) -> None:
-    """Test triangles, at least `near` (G,) [m] away, against the rays in their bins."""
+    near = min_distance(triangles.corners)
+    order = np.argsort(near, kind="stable")
+    targets, near = Targets(triangles[order]), near[order]
     u, v = targets.triangles.u, targets.triangles.v
     spans = targets.spans(look.face, rays.raster, rays.count_in(u, v) > MIN_RAYS_TO_CUT)
     first, count = rays.in_bins(spans)

@@ -157,7 +157,8 @@ def test_a_blind_place_is_mended_and_what_is_seen_needs_nothing():
     sight = start.sight()
 
     def is_blind(rig):
-        cells, blind = sight._blind_cells(rig, BLIND_TO_M, 10.0)
+        cells = sight._cells_round_body(BLIND_TO_M, 10.0)
+        blind = sight._blind_of(cells, rig, BLIND_TO_M)
         at = [np.abs(w - v).argmin() for w, v in zip((cells.x, cells.y), place, strict=True)]
         return bool(blind[at[0], at[1]])
 

@@ -157,14 +157,14 @@ class Sight:
         within : float
             How far from the rectangle of the vehicle's body the ground is evaluated [m].
         """
-        body = body_rectangle(self.vehicle)
-        cells, blind = self._blind_cells(rig, height, within)
+        cells = self._cells_round_body(height, within)
+        blind, body = self._blind_of(cells, rig, height), body_rectangle(self.vehicle)
         return blind_ground(cells, blind, body, float(height), float(within))
 
     def blind_area(self, rig: Rig, height: float = 0.0) -> float:
         """Return the area of `blind` [m2], without its outlines: quicker."""
-        cells, blind = self._blind_cells(rig, height, WITHIN_M)
-        return area_of(cells, blind)
+        cells = self._cells_round_body(height, WITHIN_M)
+        return area_of(cells, self._blind_of(cells, rig, height))
 
     def surround_view(self, rig: Rig, within: float = WITHIN_M) -> SurroundView:
         """Return which camera of the rig shows each square of the ground round the vehicle best.
@@ -236,13 +236,6 @@ class Sight:
             names: Evaluator(*where, samples=self._samples, model=self._model.with_model(own, each))
             for each, names in classes.items()
         }
-
-    def _blind_cells(
-        self, rig: Rig, height: float, within: float
-    ) -> tuple[GroundCells, NDArray[np.bool_]]:
-        """Return cells, and which of them (NX, NY) are blind."""
-        cells = self._cells_round_body(height, within)
-        return cells, self._blind_of(cells, rig, height)
 
     def _cells_round_body(self, height: float, within: float) -> GroundCells:
         area = widened(body_rectangle(self.vehicle), within)

@@ -363,7 +363,8 @@ class DesignSpace:
         names = list(self.limits)
         for name in list(names):
             fewer = [other for other in names if other != name]
-            if not self._limited_by(fewer).first(1):
+            limits = {other: self.limits[other] for other in fewer}
+            if not replace(self, limits=limits).first(1):
                 names = fewer
         if not names:
             return InputError("selection", "choice", "a design with a sensor", "none")
@@ -372,10 +373,6 @@ class DesignSpace:
             least = f"; the least possible is {self._least(names[0], (), len(self.others)):g}"
         expected = "limits that leave a design"
         return InputError("selection", " and ".join(names), expected, f"none{least}")
-
-    def _limited_by(self, names: Sequence[str]) -> "DesignSpace":
-        """Return the designs under the named limits only."""
-        return replace(self, limits={name: self.limits[name] for name in names})
 
 
 def pareto_front(costs: Sequence[Sequence[float]]) -> list[int]:

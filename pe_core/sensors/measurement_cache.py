@@ -89,11 +89,6 @@ class MeasurementCache:
         self._stayed: dict[str, Hashable] = {}  # where each sensor last was for two rigs in a row
 
     @property
-    def last(self) -> Mapping[str, Measured]:
-        """Measurements of the last rig, by sensor."""
-        return MappingProxyType(self._measured)
-
-    @property
     def m(self) -> dict[str, NDArray]:
         """m (V,) of the sensors of the last rig."""
         return {name: measured.m for name, measured in self._measured.items()}

@@ -11,10 +11,9 @@ from collections.abc import Sequence
 from ..base.errors import InputError
 from ..base.values import rounded
 from ..scene.rig import Rig
-from ..scoring.requirements import RequirementChecker
 from ..scoring.score import Objective
 from ..scoring.sight import Sight
-from ..search import Tolerance, shared_parts
+from ..search import shared_parts
 from ..search.dispatch import value_below
 from ..search.key_figures import KEPT, KEY_FIGURES, PARTS, Wanted
 from .conditions import mounting_cases
@@ -56,8 +55,9 @@ class FiguresLimit:
 class RequirementConstraint:
     """The constraint that all requirements of a study are met, with the tolerance's errors."""
 
-    def __init__(self, checker: RequirementChecker, tolerance: Tolerance, seed: int = 0) -> None:
-        self._checker, self._tolerance, self._seed = checker, tolerance, seed
+    def __init__(self, study: Study) -> None:
+        self._checker, search = study.checker(), study.search
+        self._tolerance, self._seed = search.tolerance, search.seed
 
     def shortfalls(self, rig: Rig) -> tuple[float, ...]:
         """Return for each requirement 0 where it is met, else how far it is off."""
@@ -111,8 +111,7 @@ def constraints_of(study: Study) -> tuple[FeasibilityRule, ...]:
     `InputError` when a zone of a requirement that is to be kept cannot be placed."""
     search, constraints = study.search, list[FeasibilityRule]()
     if search.requirements == KEEP and study.requirements:
-        checker = study.checker()
-        constraints.append(RequirementConstraint(checker, search.tolerance, search.seed))
+        constraints.append(RequirementConstraint(study))
     if keep := [key for key in KEPT if key in search.goals.keep]:
         if "reach" in keep and study.targets.are_objects:
             raise InputError("optimize", "keep", "a reach of voxels", "a study on objects")

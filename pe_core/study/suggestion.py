@@ -252,8 +252,7 @@ class _Mender:
 
     def _held_to(self, wanted: tuple[Requirement, ...]) -> RequirementConstraint:
         """Return what holds rigs to requirements with the mounting errors that these ask for."""
-        search = self._study.search
-        return RequirementConstraint(self._checker_of(wanted), search.tolerance, search.seed)
+        return RequirementConstraint(replace(self._study, requirements=wanted))
 
     def _is_met_mounted(self, each: Requirement, rig: Rig) -> bool:
         """Whether a requirement that is met is met with the mounting errors that it asks for."""

@@ -15,7 +15,7 @@ from pe_core.geometry.poses import METRES
 from pe_core.metric import average_precision
 from pe_core.metric.entropy import ap_of_entropy, ranged
 from pe_core.metric.fusion import Fusion
-from pe_core.prior.prior import ClassDensity, Prior
+from pe_core.prior.prior import Prior
 from pe_core.scene.rig import Rig, Sensor
 from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.requirements import part_in_the_way
@@ -85,13 +85,10 @@ def ask_place(
     vehicle: Vehicle | None,
     point: Sequence[float],
     model: PerceptionModel | None = None,
-    *,
-    densities: Sequence[ClassDensity] | None = None,
 ) -> AskedPlace:
     """Evaluate a rig at the voxel that contains a point. `point` (2,): ground frame [m]; z is 0 if
     it is missing or None. One outside the space raises `InputError`. `model`: AP curves and fusion
-    rule; the paper's by default. `densities`: ``prior.densities(space)`` if the caller has it: that
-    takes longer than the rest of the query."""
+    rule; the paper's by default."""
     model, side = model or PerceptionModel(), space.interval
     values = listed(point, 3) or []
     if len(values) == 2 or values[2:] == [None]:
@@ -108,7 +105,7 @@ def ask_place(
     if vehicle is not None:  # below its top over the column of the voxel
         over_x, over_y = ((w - side / 2.0, w + side / 2.0) for w in (x, y))
         inside = z < float(vehicle.top(PerceptionSpace(over_x, over_y, space.z, side))[0, 0])
-    densities = () if inside else densities or prior.densities(space)
+    densities = [] if inside else prior.densities(space)
     i, j, k = index
     density = sum((float(d.ground[i, j] * d.profile[k]) for d in densities), 0.0) * space.size
     return AskedPlace(

@@ -53,8 +53,7 @@ def _sector(study: Study, _samples: int) -> Objective:
 
 def _met(study: Study, _samples: int) -> Objective:
     if study.requirements:
-        search = study.search
-        return _RigValue(RequirementConstraint(study.checker(), search.tolerance, search.seed))
+        return _RigValue(RequirementConstraint(study))
     raise InputError("where", "requirements", "at least one, to count verdicts", "none")
 
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
-from pe_core.scene.rig import Rig
 from pe_core.search import AXES, Objective
 from pe_core.search.goals import FULL, OFF
 from pe_core.study.condition_table import is_by_ap
+from pe_core.study.requirement_search import RequirementConstraint
 from pe_core.study.study import EXPECTED_AP, Study
 
 from .flatness import (
@@ -119,13 +119,8 @@ def _unmet_by(study: Study) -> Unmet | None:
     """Return what names the kept requirements that a rig does not meet; None without any."""
     if not study.search.requirements or not study.requirements:
         return None
-    checker = study.checker()
-    names = [each.name for each in checker.requirements]
-
-    def unmet(rig: Rig) -> list[str]:
-        return [n for n, off in zip(names, checker.shortfalls(rig), strict=True) if off]
-
-    return unmet
+    held, names = RequirementConstraint(study), [each.name for each in study.requirements]
+    return lambda rig: [n for n, off in zip(names, held.shortfalls(rig), strict=True) if off]
 
 
 def sensitivity_lines(found: Sensitivity) -> Iterator[str]:

@@ -356,10 +356,9 @@ def _under(vehicle: Vehicle | None, grid: GroundGrid, room: float) -> Flags:
     lowest = -top_heights(vehicle.triangles * (1.0, 1.0, -1.0), space)
     corners = vehicle.triangles.reshape(-1, 3)
     low = corners[corners[:, 2] < room, :2]
-    spans = zip(low.min(axis=0, initial=np.inf), low.max(axis=0, initial=-np.inf), strict=True)
-    x, y = (
-        (space.centers(axis) >= a) & (space.centers(axis) <= b) for axis, (a, b) in enumerate(spans)
-    )
-    beyond = np.isfinite(lowest) & (lowest >= room) & ~(x[:, None] & y)
+    (x0, y0), (x1, y1) = low.min(axis=0, initial=np.inf), low.max(axis=0, initial=-np.inf)
+    x, y = space.centers(0)[:, None], space.centers(1)
+    over_body = (x >= x0) & (x <= x1) & (y >= y0) & (y <= y1)
+    beyond = np.isfinite(lowest) & (lowest >= room) & ~over_body
     covered[i:i1, j:j1] = np.isfinite(lowest) & ~opened(beyond, BODY_M / 2.0 / grid.step)
     return covered

@@ -335,11 +335,6 @@ class Sight:
             m = measured.measured(rig)
             return visible_shares(measured.voxels, m, self._rises(rig, m))
 
-    @property
-    def densities(self) -> tuple[ClassDensity, ...]:
-        """The prior on the space, class by class."""
-        return tuple(self._densities)
-
     def _sampled(self) -> VoxelSample:
         return draw(self._densities, self.space, SAMPLES, self._tops)
 

@@ -111,9 +111,9 @@ class State:
         return any((self.heave, self.roll_rad, self.pitch_rad))
 
     def moves(self, vehicle: Vehicle | None, rig: Rig | None = None) -> "list[_Moved]":
-        """Return what moves, in order, with its parts and sensors.
+        """Return what moves, in order, with its parts and those of its sensors that a rig has.
 
-        `InputError` for a part or a sensor that there is not, with the nearest names.
+        `InputError` for a part that there is not, with the nearest names.
         """
         if self.is_as_drawn:
             return []
@@ -196,9 +196,6 @@ def _named(
     parts = _parts(who, "move.parts", motion.parts, vehicle)
     if motion.sensors is None:
         return parts, frozenset(name for name, part in carriers.items() if part in parts)
-    if carriers:
-        for name in motion.sensors:
-            require_name(who, "move.sensors", name, carriers)
     return parts, frozenset(name for name in motion.sensors if name in carriers)
 
 

@@ -116,6 +116,8 @@ class Conditions:
         """Raise `InputError` for a state with parts or sensors that there are not."""
         for state in self.states:
             state.moves(vehicle, rig)
+            for name in (name for motion in state.motions for name in motion.sensors or ()):
+                require_name(f"state {state.name!r}", "move.sensors", name, [s.name for s in rig])
 
 
 def _named(kind: str, name: str | None, items: Sequence[T]) -> T | None:

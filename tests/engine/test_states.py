@@ -9,6 +9,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.base.table_reader import Table
+from pe_core.search import Tolerance
 from pe_core.study import Conditions, condition_table, study_from_dict, study_to_dict
 from pe_core.study.condition_table import study_objective
 from pe_core.study.conditions import read_conditions, state_table
@@ -175,6 +176,19 @@ def test_a_lost_sensor_is_told_of_under_each_state():
     (verdict,) = replace(study, rig=pair, conditions=Conditions(states)).verdicts()
     assert verdict.met and verdict.breaks_without == ("back", "spare")
     assert verdict.sensors == (1, 2)  # fewest when one is turned, most as drawn
+
+
+def test_a_sensor_that_a_state_moves_may_fail_in_a_search():
+    door = replace(OPEN.motions[0], sensors=["mirror"])
+    search = pe.Search(samples=1024, conditions="mean", tolerance=Tolerance(failures=True))
+    given = {"conditions": Conditions([pe.State("open", [door])]), "search": search}
+    study = pe.Study(rig(), car(), shapes.small_space(), samples=1024, **given)
+    evaluator = pe.Evaluator(study.space, study.prior, OPEN.vehicle(car()), samples=1024)
+    worths = [evaluator.entropy(pe.Rig([sensor])) for sensor in OPEN.rig(rig(), car())]
+    objective = study_objective(study, study.evaluator(), 1024)
+    assert objective.entropy(study.rig) == pytest.approx(np.mean(worths), abs=2e-9)
+    with pytest.raises(pe.InputError, match=r"move\.sensors"):
+        study.with_rig(pe.Rig([study.rig["roof"]]))
 
 
 @pytest.mark.parametrize("how", ["mean", "worst"])

@@ -299,7 +299,8 @@ class OptimizeJob(Job):
             yield from self._search_from(rig, objectives, watch, share)
             if len(rigs) > 1 and self.history:
                 ended.append(self.history)
-                entropy = objectives[-1].entropy(self.history[-1].rig)
+                told = self._objectives if self.stopped else objectives  # resumed, it goes on first
+                entropy = told[-1].entropy(self.history[-1].rig)
                 self.ends.append(StartEnd(name, entropy, self.evaluations))
                 best = min(range(len(ended)), key=lambda k: self.ends[k].entropy)
                 self.history = self._ended = ended[best]

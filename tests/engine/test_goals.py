@@ -129,6 +129,13 @@ def test_several_starts_share_the_budget_and_the_best_end_is_the_result(plain):
     assert "the start high ended at" in summary(outcome)
     again = finished(study(Goals(starts=[Start("high", poses)])), journal=journal_of(outcome, 40))
     assert result_dict(again)["placements"] == result_dict(outcome)["placements"]
+    job = pt.OptimizeJob(study(Goals(starts=[Start("high", poses)])), 1)
+    for _ in job:
+        if job.evaluations == 40 and not job.stopped:
+            job.stop()
+    assert len(job.outcome.starts) == 2 and job.outcome.stopped
+    goes_on = finished(job.study, journal=journal_of(job.outcome, None))
+    assert goes_on.evaluated == outcome.evaluated
 
 
 def test_a_budget_below_the_number_of_starts_is_no_unlimited_one():

@@ -3,8 +3,8 @@
 A detector finds the object at frame k with probability p_k, and a track is confirmed when M of the
 last N frames found it. A frame is not independent of the one before: with a correlation r it finds
 the object with probability ``p_k + r (1 - p_k)`` after a frame that did, and ``p_k (1 - r)`` after
-one that did not. At a steady p it is p on average. r = 0 is independence; r = 1 is one chance for
-all frames.
+one that did not; never where p_k is 0: nothing sees it. At a steady p it is p on average. r = 0 is
+independence; r = 1 is one chance for all frames.
 """
 
 from dataclasses import dataclass
@@ -95,7 +95,7 @@ class Confirmation:
         reached, done = np.zeros(found.shape), np.zeros(found.shape[:-1])
         for k in range(found.shape[-1]):
             p = found[..., k, None]
-            r = self.correlation if k else 0.0
+            r = self.correlation * (p > 0.0) if k else 0.0
             hit = state * np.where(masks & 1, p + r * (1.0 - p), p * (1.0 - r))
             moved = np.zeros_like(state)
             half = len(masks) // 2  # two states, with and without the oldest bit, lead to each

@@ -106,11 +106,12 @@ def test_a_class_has_its_own_noise():
 def test_tracks_are_those_of_all_outcomes(correlation, needed, window):
     rule = Confirmation(needed, window, correlation)
     found = np.random.default_rng(7).random((2, 8))
+    found[1, [2, 5]] = 0.0  # hidden: not found, whatever was before
     confirmed, kept = np.zeros((2, 8)), np.zeros((2, 8))
     for row, outcome in itertools.product((0, 1), itertools.product((0, 1), repeat=8)):
         chance = 1.0
         for k, hit in enumerate(outcome):
-            p, r = found[row, k], correlation if k else 0.0
+            p, r = found[row, k], correlation if k and found[row, k] else 0.0
             p = p + r * (1.0 - p) if k and outcome[k - 1] else p * (1.0 - r)
             chance *= p if hit else 1.0 - p
         enough = [sum(outcome[max(0, k + 1 - window) : k + 1]) >= needed for k in range(8)]

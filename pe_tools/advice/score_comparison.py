@@ -7,6 +7,7 @@ from itertools import permutations
 from statistics import NormalDist
 from typing import Any
 
+from pe_core.motion.drive_by import shown_margin
 from pe_core.scene.rig import SensorModel
 from pe_core.scoring.sampling import BLOCKS
 from pe_core.scoring.score import BY_DISTANCE, FigureKey, PartScore, Score, TrafficAp, paired_error
@@ -218,7 +219,7 @@ def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...
     if any(value is not None for value in over_frames):
         rows.append(ComparedRow("rig", "over frames", ENTROPY, over_frames, none))
     for story in dict.fromkeys(name for own in columns for name in own.margins):
-        margins = tuple(own.margins.get(story) for own in columns)
+        margins = tuple(shown_margin(own.margins.get(story)) for own in columns)
         rows.append(ComparedRow("story", story, MARGIN, margins, none))
     height_text = f"{columns[0].height:g} m tall, within {columns[0].within:g} m"
     rows.append(ComparedRow("rig", height_text, BLIND, tuple(f.blind_m2 for f in columns), none))

@@ -152,3 +152,10 @@ def test_errors_of_objects_that_are_not_paired_are_their_own():
         (("class", "car", "entropy"), car.stderr),
     ):
         assert difference_errors([one, one], figure)[0][1] == pytest.approx(math.sqrt(2.0) * error)
+
+
+def test_a_story_that_is_missed_by_little_shows_no_margin_of_zero():
+    margins = {"late": -0.04, "in time": 0.96, "never": None}
+    figures = advice.KeyFigures(None, (), 0.0, 0.5, 10.0, margins=margins)
+    rows = advice.compare_figures({"a": figures})
+    assert [r.values[0] for r in rows if r.measure == "margin"] == [-0.1, 0.9, None]

@@ -6,9 +6,14 @@ the moving signal, after a file was opened and before one is saved: at these tim
 written.
 """
 
+from functools import partial
+
 import bpy
 
 from . import bridge, sensor_cache
+from .language import shown
+
+TOLD_S = 8.0
 
 
 def after_load(*_: object) -> None:
@@ -31,9 +36,18 @@ def repair_scenes() -> None:
         bridge.update_view_cameras(scene, sensors)
     if bpy.context.view_layer is not None:  # other scenes are not evaluated
         scene = bpy.context.scene
-        bridge.follow_mirrors(
-            scene, bpy.context.evaluated_depsgraph_get(), sensor_cache.sensors(scene)
-        )
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        released = bridge.follow_mirrors(scene, depsgraph, sensor_cache.sensors(scene))
+        if released and not bpy.app.background:
+            _tell(f"No longer linked: {', '.join(released)} is in the middle of the vehicle")
+
+
+def _tell(text: str) -> None:
+    """Write a line into the status bar, for a while."""
+    for workspace in bpy.data.workspaces[:1]:  # any one: it is written for all
+        workspace.status_text_set(shown(text))
+        clear = partial(workspace.status_text_set, None)
+        bpy.app.timers.register(clear, first_interval=TOLD_S)
 
 
 def unregister() -> None:

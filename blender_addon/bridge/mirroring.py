@@ -65,11 +65,13 @@ def mirror_of(obj: Object, scene: Scene) -> Object | None:
 
 
 def follow_mirrors(scene: Scene, depsgraph: Depsgraph, sensors: Sequence[Object]) -> list[str]:
-    """Move linked sensors whose mirror image has moved; return their names. If both have moved and
-    are no longer mirror images, the first by name leads. Links of duplicates and links to deleted
-    sensors are removed."""
+    """Move linked sensors whose mirror image has moved. If both have moved and are no longer mirror
+    images, the first by name leads. Links of duplicates and links to deleted sensors are removed;
+    so is that of a sensor that is its own mirror image, as two would be in one place: return
+    the names of these."""
     _repair_links(scene, sensors)
     moved: dict[str, pe.Pose] = {}
+    released: list[str] = []
     current_poses: dict[tuple[str, str], pe.Pose] = {}
     for obj in sensors:
         other = mirror_of(obj, scene)
@@ -77,6 +79,12 @@ def follow_mirrors(scene: Scene, depsgraph: Depsgraph, sensors: Sequence[Object]
             continue
         with contextlib.suppress(pe.InputError):  # a scaled sensor has no pose
             poses = pose_of(obj, depsgraph), pose_of(other, depsgraph)
+            if middle := [
+                o.name for o, p in zip((obj, other), poses, strict=True) if in_the_middle(p)
+            ]:
+                unlink_mirror(obj)
+                released += middle[:1]
+                continue
             poses = _mirror_images(scene, (obj.name, other.name), poses, moved)
             current_poses |= {
                 (scene.name, o.name): p for o, p in zip((obj, other), poses, strict=True)
@@ -87,7 +95,7 @@ def follow_mirrors(scene: Scene, depsgraph: Depsgraph, sensors: Sequence[Object]
     for key in [key for key in _last_poses if key[0] == scene.name]:
         del _last_poses[key]
     _last_poses.update(current_poses)
-    return list(moved)
+    return released
 
 
 def clear_mirrors() -> None:

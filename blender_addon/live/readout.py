@@ -55,7 +55,6 @@ def unregister() -> None:
 
 def draw() -> None:
     """Draw into the current 3D view, if it shows overlays; Blender calls this at each redraw."""
-    engine_process.deliver_for_view()
     context = bpy.context
     space, scene = context.space_data, context.scene
     overlays = space is None or space.type != "VIEW_3D" or space.overlay.show_overlays

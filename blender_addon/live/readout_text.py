@@ -15,7 +15,7 @@ SENSE_ICONS = {BETTER: "COLORSET_04_VEC", SAME: "NONE", WORSE: "COLORSET_02_VEC"
 MAX_LABEL_LETTERS = 32  # Letters of a variant's name that the read-out has room for
 MINUS = "\N{MINUS SIGN}"
 BEFORE_SEARCH = "before the search"
-NO_FIGURE, ARROW = "\N{EN DASH}", " \N{RIGHTWARDS ARROW} "
+NO_FIGURE = "\N{EN DASH}"
 
 
 class TextPiece(NamedTuple):
@@ -111,12 +111,11 @@ def zone_lines(now: pe.Score, before: pe.Score | None) -> list[ReadoutLine]:
 
 
 def change_text(row: search.FigureOfMerit, values: Sequence[float]) -> tuple[str, int]:
-    """Return a figure of a rig or of two, before and now, and whether it became better."""
-    texts = list(dict.fromkeys(map(row.text, values))) or [NO_FIGURE]
-    *before, now = (text.replace("m2", "m²") for text in texts)
+    """Return a figure of a rig, the last of `values`, and whether it is better than the first."""
+    texts = list(map(row.text, values)) or [NO_FIGURE]
     costs = [row.cost_of(value) for value in values]
-    sense = SAME if not before else WORSE if costs[-1] > costs[0] else BETTER
-    return ARROW.join([*(text.split(" ")[0] for text in before), now]), sense
+    sense = SAME if texts[0] == texts[-1] else WORSE if costs[-1] > costs[0] else BETTER
+    return texts[-1], sense
 
 
 def change_of(by: float | None, digits: int) -> ReadoutLine:

@@ -56,13 +56,11 @@ def draw(context: bpy.types.Context) -> None:
     shape, scale = item.shape, viewport.ui_scale()
     assert isinstance(shape, BirdsEye)
     proportions = shape.y[1] - shape.y[0], shape.x[1] - shape.x[0]
-    wide, high = context.region.width, context.region.height
-    size = sensor_pictures.size_of((wide, high), proportions, scale)
+    size = sensor_pictures.size_in(context, proportions)
     left, bottom = sensor_pictures.corner(context, PLATE_NAME, size)
-    share = (high - bottom - HEADER * scale) / size.height
+    share = (context.region.height - bottom - HEADER * scale) / size.height
     if share < 1.0:
-        shrunk = max(share, LEAST_SHARE) * high
-        size = sensor_pictures.size_of((wide, int(shrunk)), proportions, scale)
+        size = sensor_pictures.size_in(context, proportions, max(share, LEAST_SHARE))
     box = left, bottom, left + size.width, bottom + size.height
     viewport.fill_box(box, UNSEEN)
     _draw_ground(context, shape, size, box)

@@ -90,17 +90,14 @@ def _draw_camera(
     context: bpy.types.Context, sensor: pe.Sensor, model: pe.Camera
 ) -> viewport.PlateBox | None:
     """Draw the latest picture of a camera; request a new one if anything has changed."""
-    scale, region = context.preferences.system.ui_scale, context.region
-    size = sensor_pictures.size_of(
-        (region.width, region.height), (model.width, model.height), scale
-    )
+    size = sensor_pictures.size_in(context, (model.width, model.height))
     look = camera_pictures.look_of(sensor.pose, model)
     camera = camera_pictures.picture(context, CORNER, "", look, size)
     if camera is None:
         return None
     corner = sensor_pictures.corner(context, CORNER, camera.size)
     sensor_pictures.draw_picture(camera.texture, corner, camera.size)
-    return sensor_pictures.draw_frame(corner, camera.size, title_of(sensor), scale)
+    return sensor_pictures.draw_frame(corner, camera.size, title_of(sensor), viewport.ui_scale())
 
 
 def _draw_ranges(context: bpy.types.Context, sensor: pe.Sensor) -> viewport.PlateBox | None:
@@ -113,13 +110,11 @@ def _draw_ranges(context: bpy.types.Context, sensor: pe.Sensor) -> viewport.Plat
             bpy.app.timers.register(request_ranges, first_interval=0.0)
     if _ranges is None or _ranges[0] != (sensor.name, sensor.model.name):
         return None
-    scale, region, image = context.preferences.system.ui_scale, context.region, _ranges[1]
-    size = sensor_pictures.size_of(
-        (region.width, region.height), (image.width, image.height), scale
-    )
-    left, bottom = sensor_pictures.corner(context, CORNER, size)
-    sensor_pictures.draw_picture(image.texture, (left, bottom), size)
-    return sensor_pictures.draw_frame((left, bottom), size, title_of(sensor), scale)
+    image = _ranges[1]
+    size = sensor_pictures.size_in(context, (image.width, image.height))
+    corner = sensor_pictures.corner(context, CORNER, size)
+    sensor_pictures.draw_picture(image.texture, corner, size)
+    return sensor_pictures.draw_frame(corner, size, title_of(sensor), viewport.ui_scale())
 
 
 def request_ranges() -> None:

@@ -168,7 +168,8 @@ def draw_status(header: bpy.types.Header, _context: bpy.types.Context) -> None:
     """Draw the progress in the status bar, in place of Blender's own hints."""
     if current is not None:
         row = header.layout.row()
-        draw_label(row, current.on_escape, "EVENT_ESC")
+        row.label(text="", icon="EVENT_ESC")  # it may be wider than the room for an icon
+        draw_label(row, current.on_escape)
         bar = row.row()
         bar.ui_units_x = STATUS_BAR_WIDTH
         bar.progress(text=shown(current.text), factor=current.progress.fraction, translate=False)

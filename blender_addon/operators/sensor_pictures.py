@@ -121,10 +121,11 @@ def draw_frame(
     (left, bottom), (width, height) = corner, size
     right, top = left + width, bottom + height
     above = top + TITLE_PX * scale
-    viewport.fill_box((left, top, right, above), TITLE_PLATE)
+    pad, small = PAD_PX * scale, viewport.SMALL * scale
+    end = max(right, left + viewport.text_size(title, small)[0] + 2.0 * pad)
+    viewport.fill_box((left, top, end, above), TITLE_PLATE)
     viewport.draw_outline((left, bottom, right, top), EDGE)
-    pad = PAD_PX * scale
-    viewport.draw_text(title, left + pad, top + pad, viewport.SMALL * scale, INK)
+    viewport.draw_text(title, left + pad, top + pad, small, INK)
     return left, bottom, right, above
 
 
@@ -144,7 +145,18 @@ def sensor_of(obj: bpy.types.Object) -> pe.Sensor | None:
         return None
 
 
-def size_of(region: tuple[int, int], picture: tuple[float, float], scale: float) -> PictureSize:
+def size_in(
+    context: bpy.types.Context, picture: tuple[float, float], share: float = 1.0
+) -> PictureSize:
+    """Return the size of a picture of these proportions in a region, between toolbar and sidebar
+    [px]; its height is at most that `share` of the largest one."""
+    region, scale = context.region, viewport.ui_scale()
+    free = viewport.sidebar_left(context) - viewport.beside_toolbar(context)
+    wide = min(region.width, (free - viewport.MARGIN * scale) / WIDTH_SHARE)
+    return size_of((wide, region.height * share), picture, scale)
+
+
+def size_of(region: tuple[float, float], picture: tuple[float, float], scale: float) -> PictureSize:
     """Return the size of a picture of these proportions in a region [px]."""
     ratio = picture[1] / picture[0]
     width = min(WIDTH_SHARE * region[0], MAX_WIDTH_PX * scale, MAX_HEIGHT_SHARE * region[1] / ratio)

@@ -39,7 +39,8 @@ def birds_eye(seen: sight.SurroundView, palette: graphics.Palette = graphics.VIE
     x, y = ((float(w[0]) - half, float(w[-1]) + half) for w in (seen.x, seen.y))
     own = seen.camera == sight.VEHICLE
     flags = {name: seen.camera == number for number, name in enumerate(seen.cameras)}
-    flags[FROM_ABOVE] = own
+    narrow = (seen.camera == sight.NO_CAMERA) & ~seen.blind  # no test body fits in there
+    flags[FROM_ABOVE] = own | narrow
     painted = {name: rectangles(each) for name, each in flags.items() if each.any()}
 
     def on_plate(points: Floats) -> Floats:

@@ -80,9 +80,9 @@ def clear(*_: object) -> None:
 def draw() -> None:
     """Draw areas and lines into the current 3D view; Blender calls this at each redraw."""
     context = bpy.context
+    engine_process.deliver_for_view()  # before all that is drawn: Blender ignores a tag meanwhile
     if not _overlays_shown(context):
         return
-    engine_process.deliver_for_view()
     scene = context.scene.name
     eye = _eye(context)
     if eye is not None:

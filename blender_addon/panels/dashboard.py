@@ -5,14 +5,14 @@ from bpy.types import Context, Scene, UILayout
 from ..bridge import shown_state, wanted_of
 from ..engine import advice, search
 from ..language import draw_label
-from ..live import ARROW, BETTER, SAME, SENSE_ICONS, WORSE, change_text, shown_score, told_figures
+from ..live import BETTER, SAME, SENSE_ICONS, WORSE, change_text, shown_score, told_figures
 from ..operators import known_rigs, shown_verdicts
 from ..sensor_cache import sensors as listed_sensors
 from .layout import columns, draw_sentence, is_simple
 
 MET_ICONS = {True: "COLORSET_03_VEC", False: "ERROR"}
 """Blender's own green, and its orange triangle."""
-NAME_SHARE, VALUE_SHARE = 0.39, 0.42
+NAME_SHARE, VALUE_SHARE = 0.37, 0.4
 ENTROPY = "entropy"
 KEEP = {"requirements": "keep_requirements"} | {key: f"keep_{key}" for key in search.KEPT}
 """Properties of what *Optimize* keeps, by figure."""
@@ -37,7 +37,7 @@ def draw_dashboard(layout: UILayout, context: Context) -> None:
     elif result is None:
         draw_label(head, "Not scored yet", "BLANK1")
     elif settings.result_stale:
-        draw_label(head, "Changed since it was scored", "FILE_REFRESH")
+        draw_label(head, "Out of date", "FILE_REFRESH")
     else:
         draw_label(head, "As scored", "CHECKMARK")
     figures = [] if now is None else told_figures(scene, live=live is not None)
@@ -80,8 +80,7 @@ def draw_row(layout: UILayout, scene: Scene, row: search.Reading, values: list[f
     draw_label(name, "Score" if is_score else figure.label)
     value, wanted = columns(rest, VALUE_SHARE, align=True)
     text, sense = change_text(figure, values)
-    text = text.rpartition(ARROW)[2].removesuffix(" nats" if is_score else " met")
-    value.label(text=text, translate=False)
+    draw_label(value, text.removesuffix(" nats" if is_score else " met"))
     wanted = wanted.row(align=True)
     if row.wanted is None and sense != SAME:
         before = figure.text(values[0]).partition(" ")[0]

@@ -206,12 +206,23 @@ FONT = 0
 
 def wrapped(context: Context, text: str, beside_px: float = 0.0) -> tuple[str, ...]:
     """Return a sentence in lines that fit the sidebar, measured in its font."""
+    return wrapped_lines(text, *_room(context, beside_px))
+
+
+def fitted(context: Context, text: str, beside_px: float, share: float) -> str:
+    """Return a text that fits that share of the sidebar: its middle is left out where there is no
+    room, as names differ at their ends."""
+    return _without_middle(text, *_room(context, beside_px, share))
+
+
+def _room(context: Context, beside_px: float, share: float = 1.0) -> tuple[float, float]:
+    """Return the room for a text, and the size of its font [px]."""
     scale = _scale(context)
     is_popup = getattr(context.region, "type", "UI") != "UI"  # its own width is not known
     width = POPUP_PX * scale if is_popup else context.region.width
-    room = width - (BESIDE_PX + beside_px) * scale
+    room = (width - (BESIDE_PX + beside_px) * scale) * share
     points = context.preferences.ui_styles[0].widget.points
-    return wrapped_lines(text, max(room, MIN_ROOM_PX * scale), points * scale)
+    return max(room, MIN_ROOM_PX * scale), points * scale
 
 
 WIDE = "\u3000-\u30ff\u3400-\u9fff\uff00-\uffef"
@@ -234,6 +245,16 @@ def wrapped_lines(text: str, room_px: float, size_px: float) -> tuple[str, ...]:
         *full, line = _pieces(longer, room_px)
         lines += full
     return (*lines, line)
+
+
+@lru_cache(maxsize=512)
+def _without_middle(text: str, room_px: float, size_px: float) -> str:
+    blf.size(FONT, size_px)
+    shorter, half = text, (len(text) + 1) // 2
+    while half > 1 and _width(shorter) > room_px:
+        half -= 1
+        shorter = f"{text[:half]}\N{HORIZONTAL ELLIPSIS}{text[-half:]}"
+    return shorter
 
 
 def _pieces(text: str, room_px: float) -> list[str]:

@@ -8,7 +8,7 @@ from ..bridge import figures_of_sensor, sensor_loss
 from ..diagnostics import explanation
 from ..language import draw_label
 from ..sensor_cache import sensors as listed_sensors
-from .layout import is_simple, row_list
+from .layout import ICON_PX, fitted, is_simple, row_list
 
 MODEL_FROM = 0.64  # Where the model begins, in shares of the room for name and model
 MAX_ROWS = 7  # More sensors are a list that scrolls: the panel stays as long as it is
@@ -79,16 +79,24 @@ def draw_sensor(layout: UILayout, context: Context, obj: Object) -> None:
     row.prop(settings, "show", text="", icon=rays, emboss=False)
     draw_swatch(row, settings)
     name, model, figure = row_cells(row, context)
+    share = (1.0 - FIGURE_SHARE) * (MODEL_FROM if model else 1.0)
     row.active = counts  # a hidden sensor is not scored
-    active = obj == context.active_object
     warned = any(w.subject == obj.name for w in context.scene.perception_entropy.result_warnings)
-    icon = "ERROR" if warned else "NONE"
-    name.operator(
-        "pe.select_sensor", text=obj.name, depress=active, icon=icon, translate=False
-    ).name = obj.name
+    draw_name(name, context, obj, 3.0 * ICON_PX, share, warned)
     if model:
         model.label(text=settings.model, translate=False)
     draw_label(figure, loss_text(obj))
+
+
+def draw_name(
+    layout: UILayout, context: Context, obj: Object, beside_px: float, share: float, warned: bool
+) -> None:
+    """Draw the button that selects a sensor, with as much of its name as there is room for."""
+    text = fitted(context, obj.name, beside_px + (ICON_PX / share if warned else 0.0), share)
+    active, icon = obj == context.active_object, "ERROR" if warned else "NONE"
+    layout.operator(
+        "pe.select_sensor", text=text, depress=active, icon=icon, translate=False
+    ).name = obj.name
 
 
 def draw_swatch(layout: UILayout, settings: PropertyGroup) -> None:
@@ -132,14 +140,11 @@ def draw_sensor_table(layout: UILayout, context: Context) -> None:
 
 
 def _draw_row(layout: UILayout, context: Context, obj: Object) -> None:
-    active = obj == context.active_object
     words = explanation(context.scene)
     known = None if words is None else words.rows.get(obj.name)
     name, loss, where = _cells(layout)
     draw_swatch(name, obj.perception_entropy)
-    name.operator(
-        "pe.select_sensor", text=obj.name, depress=active, translate=False
-    ).name = obj.name
+    draw_name(name, context, obj, ICON_PX / NAME_SHARE, NAME_SHARE, False)
     if figures_of_sensor(obj) is None:
         draw_label(loss, "not scored")
         return

@@ -10,6 +10,7 @@ from mathutils import Vector
 from blender_addon.engine import catalog, pe, sight
 from blender_addon.operators import birds_eye
 from blender_addon.overlay.birds_eye import FROM_ABOVE, BirdsEye, rectangles
+from blender_addon.overlay.birds_eye import birds_eye as birds_eye_of
 from blender_addon.overlay.layers import WHOLE_RIG
 from tests.addon import scenes
 
@@ -36,8 +37,13 @@ def test_its_squares_and_its_blind_area_are_the_engine_s(seen):
     cameras = pe.Rig([each for each in study.rig if each.kind == "camera"])
     assert found.blind_m2 == look.blind(cameras, 0.0, 6.0).area > 0.0
     assert set(found.painted) == {"ahead", "left", FROM_ABOVE}
-    for number, name in ((-2, FROM_ABOVE), *enumerate(expected.cameras)):
-        assert (found.painted[name] == rectangles(expected.camera == number)).all()
+    filled = {name: expected.camera == number for number, name in enumerate(expected.cameras)}
+    filled[FROM_ABOVE] = own = expected.camera == sight.VEHICLE
+    for name, squares in filled.items():
+        assert (found.painted[name] == rectangles(squares)).all()
+    narrow = expected.blind & (expected.y < -3.0)  # no test body would fit in there
+    filled = birds_eye_of(replace(expected, blind=expected.blind & ~narrow)).painted
+    assert narrow.any() and (filled[FROM_ABOVE] == rectangles(own | narrow)).all()
     assert len(found.over.thin.points) and len(found.over.lines.points)
     seen.objects["ahead"].hide_set(True)
     assert set(scenes.drawn(seen)["birds_eye"][WHOLE_RIG].painted) == {"left", FROM_ABOVE}

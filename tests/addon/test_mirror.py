@@ -91,6 +91,16 @@ def test_a_linked_pair_moves_whichever_is_moved(left):
     assert alike(left, right) and left.location.x == pytest.approx(-1.0)
 
 
+def test_a_sensor_in_the_middle_is_released_as_two_would_be_in_one_place(left):
+    right = mirror(linked=True)
+    moved(left, location=(1.2, 0.0, 0.9))
+    assert alike(left, right), "turned, two in one place look to both sides"
+    moved(left, location=(1.2, 0.7, 0.9), rotation_euler=(0.0, 0.2, 0.0))
+    moved(left, location=(1.2, 0.0, 0.9))
+    assert not left.perception_entropy.mirror_of and not right.perception_entropy.mirror_of
+    assert right.location.y == pytest.approx(-0.7), "it stays"
+
+
 def test_no_mirror_image_is_put_in_the_air(car):
     """Beside its axis the vehicle is not where the image would be; nor without its other half."""
     scenes.add_sensor("corner_left", location=(1.9, 0.8, 1.0))

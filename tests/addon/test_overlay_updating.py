@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import analysis_calls, bridge, signals
+from blender_addon import analysis_calls, bridge, engine_process, signals
 from blender_addon.engine import graphics, sight
 from blender_addon.live import state
 from blender_addon.overlay import draw_handler, ground_layers, layers, scheduler
@@ -67,6 +67,15 @@ def test_each_layer_has_a_switch_and_all_of_them_one(rig):
     assert not scenes.drawn(rig)
     rig.perception_entropy.show_overlay = True
     assert set(scenes.drawn(rig)) == ALL_LAYERS
+
+
+def test_what_is_ready_is_taken_before_anything_is_drawn(rig, monkeypatch):
+    """Also where this view shows no overlay: later Blender drops the tag for another redraw."""
+    taken = []
+    monkeypatch.setattr(engine_process, "deliver_for_view", lambda: taken.append(True))
+    rig.perception_entropy.show_overlay = False
+    draw_handler.draw()
+    assert taken
 
 
 def test_nothing_is_worked_out_without_a_change(rig, worked):

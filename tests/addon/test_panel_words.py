@@ -31,6 +31,19 @@ def drawn_of(scene):
     return layouts.drawn(main.main, **vars(layouts.Window(scene)))
 
 
+def test_names_that_differ_at_their_ends_differ_where_the_room_is_narrow(car):
+    names = [f"Camera fender front {side}" for side in ("left", "right")]
+    window = layouts.Window(car)
+    assert [layout.fitted(window, each, 60.0, 0.74) for each in names] == names
+    window.region.width = 280
+    first, second = (layout.fitted(window, each, 60.0, 0.5) for each in names)
+    assert first != second and len(first) < len(names[0])
+    assert all(
+        text.startswith("Cam") and text[-4:] == name[-4:]
+        for text, name in zip((first, second), names, strict=True)
+    )
+
+
 def test_score_live_and_optimize_stand_first_and_late_lines_have_their_room(car):
     settings = car.perception_entropy
     before = drawn_of(car)
@@ -45,7 +58,7 @@ def test_score_live_and_optimize_stand_first_and_late_lines_have_their_room(car)
     counts.append(len(drawn_of(car).texts("label")))
     settings.result_stale = True
     shown = drawn_of(car).texts("label")
-    assert "Changed since it was scored" in shown
+    assert "Out of date" in shown
     assert {*counts, len(shown)} == {counts[0]}, "as many lines before, after and when it is stale"
     bridge.store_warnings(settings, [advice.Advice("roof", "clear", {"gap": 0.6})])
     assert len(drawn_of(car).texts("label")) == counts[0], "warnings move nothing"

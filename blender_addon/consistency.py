@@ -11,7 +11,6 @@ from functools import partial
 import bpy
 
 from . import bridge, sensor_cache
-from .language import shown
 
 TOLD_S = 8.0
 
@@ -45,7 +44,7 @@ def repair_scenes() -> None:
 def _tell(text: str) -> None:
     """Write a line into the status bar, for a while."""
     for workspace in bpy.data.workspaces[:1]:  # any one: it is written for all
-        workspace.status_text_set(shown(text))
+        workspace.status_text_set(text)
         clear = partial(workspace.status_text_set, None)
         bpy.app.timers.register(clear, first_interval=TOLD_S)
 

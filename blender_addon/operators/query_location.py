@@ -8,7 +8,6 @@ from bpy.props import FloatVectorProperty
 
 from .. import bridge, location_query
 from ..language import shown
-from . import running_job
 from .declared import INTERNAL, OperatorResult, operator, report
 from .surface_pose import ViewUnderMouse, ray_of, view_under
 
@@ -68,12 +67,9 @@ def clicking(hint: str, once: bool = False) -> dict[str, Any]:
     **clicking(HINT),
 )
 def ask_place(context: bpy.types.Context, point: Iterable[float]) -> None:
-    """Click a location: which sensors see it, what occludes it, what would mend blind ground"""
+    """Click a location: which sensors see it, and what occludes it from the others"""
     x, y, z = point
     location_query.query(context.scene, context.evaluated_depsgraph_get(), (x, y, z))
-    on_ground = z < OFF_SURFACE_M and not bpy.app.background
-    if on_ground and running_job.current is None and bpy.ops.pe.suggest.poll():
-        bpy.ops.pe.suggest("INVOKE_DEFAULT", point=(x, y, z))
 
 
 @operator("Dismiss", options=INTERNAL)

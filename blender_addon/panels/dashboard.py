@@ -12,7 +12,7 @@ from .layout import columns, draw_sentence, is_simple
 
 MET_ICONS = {True: "COLORSET_03_VEC", False: "ERROR"}
 """Blender's own green, and its orange triangle."""
-NAME_SHARE, VALUE_SHARE = 0.37, 0.4
+NAME_SHARE, VALUE_SHARE = 0.39, 0.39
 ENTROPY = "entropy"
 KEEP = {"requirements": "keep_requirements"} | {key: f"keep_{key}" for key in search.KEPT}
 """Properties of what *Optimize* keeps, by figure."""

@@ -6,13 +6,11 @@ the moving signal, after a file was opened and before one is saved: at these tim
 written.
 """
 
-from functools import partial
-
 import bpy
 
 from . import bridge, sensor_cache
 
-TOLD_S = 8.0
+TOLD_S = 8.0  # How long the status bar says so
 
 
 def after_load(*_: object) -> None:
@@ -38,15 +36,9 @@ def repair_scenes() -> None:
         depsgraph = bpy.context.evaluated_depsgraph_get()
         released = bridge.follow_mirrors(scene, depsgraph, sensor_cache.sensors(scene))
         if released and not bpy.app.background:
-            _tell(f"No longer linked: {', '.join(released)} is in the middle of the vehicle")
-
-
-def _tell(text: str) -> None:
-    """Write a line into the status bar, for a while."""
-    for workspace in bpy.data.workspaces[:1]:  # any one: it is written for all
-        workspace.status_text_set(text)
-        clear = partial(workspace.status_text_set, None)
-        bpy.app.timers.register(clear, first_interval=TOLD_S)
+            tell = bpy.data.workspaces[0].status_text_set  # any one: it is shown in all
+            tell(f"In the middle of the vehicle, so no longer linked: {', '.join(released)}")
+            bpy.app.timers.register(lambda: tell(None), first_interval=TOLD_S)
 
 
 def unregister() -> None:

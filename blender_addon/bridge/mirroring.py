@@ -67,8 +67,7 @@ def mirror_of(obj: Object, scene: Scene) -> Object | None:
 def follow_mirrors(scene: Scene, depsgraph: Depsgraph, sensors: Sequence[Object]) -> list[str]:
     """Move linked sensors whose mirror image has moved. If both have moved and are no longer mirror
     images, the first by name leads. Links of duplicates and links to deleted sensors are removed;
-    so is that of a sensor that is its own mirror image, as two would be in one place: return
-    the names of these."""
+    so are those of pairs, whose names are returned, that would be two in one place."""
     _repair_links(scene, sensors)
     moved: dict[str, pe.Pose] = {}
     released: list[str] = []
@@ -79,11 +78,9 @@ def follow_mirrors(scene: Scene, depsgraph: Depsgraph, sensors: Sequence[Object]
             continue
         with contextlib.suppress(pe.InputError):  # a scaled sensor has no pose
             poses = pose_of(obj, depsgraph), pose_of(other, depsgraph)
-            if middle := [
-                o.name for o, p in zip((obj, other), poses, strict=True) if in_the_middle(p)
-            ]:
+            if any(map(in_the_middle, poses)):
                 unlink_mirror(obj)
-                released += middle[:1]
+                released += [obj.name, other.name]
                 continue
             poses = _mirror_images(scene, (obj.name, other.name), poses, moved)
             current_poses |= {

@@ -212,7 +212,13 @@ def wrapped(context: Context, text: str, beside_px: float = 0.0) -> tuple[str, .
 def fitted(context: Context, text: str, beside_px: float, share: float) -> str:
     """Return a text that fits that share of the sidebar: its middle is left out where there is no
     room, as names differ at their ends."""
-    return _without_middle(text, *_room(context, beside_px, share))
+    room, size = _room(context, beside_px, share)
+    blf.size(FONT, size)
+    shorter, half = text, (len(text) + 1) // 2
+    while half > 1 and _width(shorter) > room:
+        half -= 1
+        shorter = f"{text[:half]}\N{HORIZONTAL ELLIPSIS}{text[-half:]}"
+    return shorter
 
 
 def _room(context: Context, beside_px: float, share: float = 1.0) -> tuple[float, float]:
@@ -245,16 +251,6 @@ def wrapped_lines(text: str, room_px: float, size_px: float) -> tuple[str, ...]:
         *full, line = _pieces(longer, room_px)
         lines += full
     return (*lines, line)
-
-
-@lru_cache(maxsize=512)
-def _without_middle(text: str, room_px: float, size_px: float) -> str:
-    blf.size(FONT, size_px)
-    shorter, half = text, (len(text) + 1) // 2
-    while half > 1 and _width(shorter) > room_px:
-        half -= 1
-        shorter = f"{text[:half]}\N{HORIZONTAL ELLIPSIS}{text[-half:]}"
-    return shorter
 
 
 def _pieces(text: str, room_px: float) -> list[str]:

@@ -111,7 +111,7 @@ def known_entropies(study: pe.Study) -> dict[str, float]:
     """Return the entropies [nats] of the known rigs on a study's vehicle, by key."""
     evaluator = study.evaluator(samples=HELD_SAMPLES)
     rigs = {key: catalog.rig_on(rig, study.vehicle) for key, rig in catalog.known_rigs().items()}
-    return {key: evaluator.entropy(rig) for key, rig in rigs.items()}
+    return {key: evaluator.entropy(study.with_other_rig(rig).rig) for key, rig in rigs.items()}
 
 
 _checkers: text.RecentCache[requirements.RequirementChecker] = text.RecentCache(2)

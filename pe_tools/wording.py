@@ -6,6 +6,7 @@ from collections.abc import Callable, Container, Mapping, Sequence
 from typing import Any
 
 from pe_core.scoring.requirements import Reason, VerdictSummary
+from pe_core.scoring.sight import shown_end
 
 
 def percent(share: float, digits: int | None = None) -> str:
@@ -32,7 +33,7 @@ def metres(length: float) -> str:
 
 def degrees(width: float) -> str:
     """Return the width of a blind sector [deg], rounded up: "303.7 deg", or "none"."""
-    return f"{math.ceil(width * 10.0 - 1e-6) / 10.0:.1f} deg" if width else "none"
+    return f"{shown_end(width):.1f} deg" if width else "none"
 
 
 def times(factor: float) -> str:

@@ -31,16 +31,8 @@ TITLES = {
 }
 """In the order of the table: what a designer asks for first."""
 KEY_FIGURES = ("margin", "sector", "blind", "reach", "ap")
-FORMATS = {
-    "entropy": ".3f",
-    "coverage": ".1%",
-    "ap": ".3f",
-    "reach": ".1f",
-    "blind": ".1f",
-    "sector": ".1f",
-    "margin": ".1f",
-}
-"""Formats of the figures by measure."""
+FORMATS = {"entropy": ".3f", "coverage": ".1%", "ap": ".3f"}
+"""Formats of the figures by measure; those of the others are .1f."""
 WHOLE_RIG = "Everywhere"
 IN_TRAFFIC = ", in traffic"
 
@@ -278,10 +270,10 @@ def columns_of(names: list[str], rows: Sequence[advice.ComparedRow]) -> list[lis
 
 def _cell(row: advice.ComparedRow, k: int) -> TextCell:
     """Return a figure, with its difference to the first variant's if that is not 0."""
-    value, less = row.values[k], row.differences[k]
+    value, less = row.told[k], row.differences[k]
     if value is None:
         return TextCell("–")
-    way = FORMATS[row.measure]
+    way = FORMATS.get(row.measure, ".1f")
     change = "" if less is None else f"{less:+{way}}".removesuffix("%")
     is_visible = bool(change.strip("+-0."))
     change = f"({change})" if is_visible else ""

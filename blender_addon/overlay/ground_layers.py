@@ -146,7 +146,7 @@ def blind_ground(
             lines.append(measure[0])
             labels.append(measure[1])
     title = f"Blind to what is {height:g} m tall" if height else "Blind to what lies flat"
-    text = f"{found.area:.0f} m² within {found.within:g} m"
+    text = f"{sight.shown_end(found.area):.1f} m² within {found.within:g} m"
     legend = graphics.ColorKey(title, classes=((color, text),))
     return graphics.LayerShape(
         lines=graphics.Primitives.joined(lines), thin=thin, labels=tuple(labels), legend=legend

@@ -16,7 +16,7 @@ from ..base.setting import Panel, check_settings, setting
 from ..base.values import Number, Whole, rounded
 from ..scene.rig import Rig
 from ..scoring.score import TrafficAp
-from ..scoring.sight.blind_ground import BLIND_TO_M, WITHIN_M, BlindSector
+from ..scoring.sight.blind_ground import BLIND_TO_M, WITHIN_M, BlindSector, shown_end
 from .build_figures import BUILD_FIGURES, Placement
 
 if TYPE_CHECKING:
@@ -178,8 +178,7 @@ class FigureOfMerit:
         """Return a value with its unit; what is blind is rounded up."""
         if value is None:
             return NO_FIGURE
-        scale = 10**self.decimals
-        value = math.ceil(value * scale - 1e-6) / scale if self.up else value
+        value = shown_end(value) if self.up else value
         return f"{value:.{self.decimals}f} {self.unit}".strip()
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, TypeVar
 
-from ..base.errors import InputError, require_name
+from ..base.errors import InputError, require_name, shown
 from ..base.setting import changed_settings, read_declared, read_settings
 from ..base.table_reader import Table
 from ..base.values import A_NAME
@@ -123,6 +123,8 @@ class Conditions:
 def _named(kind: str, name: str | None, items: Sequence[T]) -> T | None:
     if name is None:
         return None
+    if not items:
+        raise InputError("study", kind, f"[[{kind}]] in the study", shown(name))
     require_name("study", kind, name, [each.name for each in items])
     return next(each for each in items if each.name == name)
 

@@ -395,6 +395,12 @@ class Study(Tabular):
         rig, vehicle = condition(self.rig, self.vehicle)
         return replace(self, rig=rig, vehicle=vehicle, conditions=Conditions(), requirements=())
 
+    def with_other_rig(self, rig: Rig) -> "Study":
+        """Return the study of another rig, which is scored in the same way. What names the sensors,
+        or the search, does not stay."""
+        given = {"search": Search(), "selection": Selection(), "passthrough": None}
+        return replace(self, rig=rig, conditions=Conditions(), requirements=(), **given)
+
     @contextmanager
     def _naming_vehicle(self) -> Iterator[None]:
         """Add the vehicle to an error about a prior without weight outside the vehicle."""

@@ -25,7 +25,7 @@ from ..scene.data_sheet import DataSheet
 from ..scene.rig import Rig, Sensor, SensorModel
 from ..scoring.requirements import Criterion, Requirement, RequirementChecker, Zone, checkable
 from ..scoring.score import RigEvaluator, ScoreStopped
-from ..scoring.sight import Sight
+from ..scoring.sight import Sight, shown_end
 from ..scoring.sight.blind_ground import BLIND_TO_M
 from ..search import MountingPlaces, Parametrization
 from ..search.build_figures import sheet_of
@@ -96,7 +96,7 @@ class Suggestion:
         gains = []
         was, now = self.before.blind_m2, self.after.blind_m2
         if was is not None and now is not None:
-            gains.append(f"blind ground {was:.1f} to {now:.1f} m2")
+            gains.append(f"blind ground {shown_end(was):.1f} to {shown_end(now):.1f} m2")
         by = self.after.entropy - self.before.entropy
         gains.append(f"entropy {abs(by):.3f} nats {'lower' if by < 0.0 else 'higher'}")
         broken = f"; breaks {', '.join(self.breaks)}" if self.breaks else ""

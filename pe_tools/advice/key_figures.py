@@ -9,7 +9,7 @@ from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.score import FAR_M, NEAR_M, Score
 from pe_core.search.build_figures import ALONE, BUILD_FIGURES
 from pe_core.search.goals import PRICE
-from pe_core.search.key_figures import KeyFigures
+from pe_core.search.key_figures import NO_FIGURE, KeyFigures
 from pe_tools.wording import aligned, percent
 
 from .mount_checks import occluded_shares
@@ -27,7 +27,6 @@ OCCLUDERS_NAMED = 3
 MIN_SHARE = 5e-4  # A part that hides a smaller share is not named: the share would read 0.0%
 MIN_RISE, MIN_LOSS = 0.005, 0.00005
 """A rise of entropy [nats] below `MIN_RISE` would read 0.00; below `MIN_LOSS` it counts as none."""
-NO_FIGURE = "-"
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,20 +11,13 @@ from pe_core.motion.drive_by import shown_margin
 from pe_core.scene.rig import SensorModel
 from pe_core.scoring.sampling import BLOCKS
 from pe_core.scoring.score import BY_DISTANCE, FigureKey, PartScore, Score, TrafficAp, paired_error
-from pe_core.scoring.sight import SECTOR_RADIUS_M
+from pe_core.scoring.sight import SECTOR_RADIUS_M, shown_end
 from pe_core.search.key_figures import KeyFigures
 from pe_core.study.mounting_file import same_model
 
 CERTAINTY = 0.95
-MIN_CHANGE = {
-    "entropy": 0.005,
-    "coverage": 0.0005,
-    "ap": 0.0005,
-    "reach": 0.05,
-    "blind": 0.05,
-    "sector": 1.0,
-    "margin": 0.05,
-}
+MIN_CHANGE = {"entropy": 0.005, "coverage": 0.0005, "ap": 0.0005, "reach": 0.05, "blind": 0.05}
+MIN_CHANGE |= {"sector": 1.0, "margin": 0.05}
 """Smallest difference of each measure that counts: half of the last digit that is shown; of a blind
 sector the error of its edges [deg]."""
 
@@ -125,6 +118,12 @@ class ComparedRow:
     is_ranked: bool = True
 
     @property
+    def told(self) -> tuple[float | None, ...]:
+        """The values as they are told: what is blind is rounded up, as on the dashboard."""
+        is_blind = self.measure in (BLIND, SECTOR)
+        return tuple(shown_end(v) if is_blind and v is not None else v for v in self.values)
+
+    @property
     def differences(self) -> tuple[float | None, ...]:
         """Each value minus the first one; None where one of the two is missing."""
         first = self.values[0] if self.values else None
@@ -182,18 +181,8 @@ class ComparedRow:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the row as plain JSON data."""
-        keys = (
-            "group",
-            "name",
-            "measure",
-            "values",
-            "differences",
-            "best",
-            "errors",
-            "factor",
-            "spread",
-        )
-        return {key: getattr(self, key) for key in keys}
+        keys = "group name measure values differences best errors factor spread"
+        return {key: getattr(self, key) for key in keys.split()}
 
 
 def compare(scores: Mapping[str, Score]) -> tuple[ComparedRow, ...]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
-from pe_core.base.files import csv_text, require_new, write_bytes
+from pe_core.base.files import csv_text
 from pe_core.base.table_reader import finite
 from pe_core.scoring.requirements import Verdict, checkable
 from pe_core.study import Study, load_study
@@ -21,7 +21,7 @@ from ..wording import aligned, margin_text, percent, reason_text, unseen_text
 from .command import add_curve_option, with_curves
 from .drive_by_verb import story_lines
 from .interrupts import stop_at_first
-from .run_job import drive, print_vehicle
+from .run_job import drive, output_file, print_vehicle, save_text
 from .terminal import DONE, NOT_MET, Answer, tell
 
 STOPPED = "stopped before"  # Why a requirement has no verdict after Ctrl-C
@@ -82,8 +82,7 @@ def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] =
     """Hold a study to its requirements and to the presets that are named. After Ctrl-C the verdicts
     that were found are printed, and written to the CSV file. `inputs` are files that no output
     replaces."""
-    if args.csv is not None:
-        require_new(Path(args.csv), replace=args.replace, inputs=inputs)
+    table = output_file(args.csv, args, inputs)
     study, unchecked = with_presets(with_curves(study, args), args.preset)
     if not (study.requirements or study.stories):
         expected = "[[requirement]] or [[story]] in the study, or --preset ID"
@@ -95,8 +94,7 @@ def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] =
     with stop_at_first(job.stop) as received:
         drive(job)
     verdicts = job.verdicts
-    if args.csv is not None:
-        write_bytes(Path(args.csv), verdicts_csv(verdicts).encode(errors="backslashreplace"))
+    unwritten = save_text(table, verdicts_csv(verdicts))
     driven = job.driven
     met = all(v.met for v in verdicts) and all(each.is_met for each in driven)
     status = received.status(DONE if met else NOT_MET)
@@ -111,11 +109,11 @@ def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] =
             "suggestions": {n: [each.to_dict() for each in own] for n, own in suggested.items()},
             "stories": [each.to_dict() for each in driven],
         }
-        return dump_json(finite(data)), status
+        return dump_json(finite(data)), unwritten or status
     lines = verdict_lines(verdicts, unchecked) if verdicts or unchecked else []
     lines += story_lines(driven) if driven else []
     lines += [line for name, own in suggested.items() for line in suggestion_lines(name, own)]
-    return "\n".join(lines), status
+    return "\n".join(lines), unwritten or status
 
 
 def suggested_for(job: SuggestJob) -> dict[str, list[Suggestion]]:

@@ -230,8 +230,9 @@ def _kept(text: str) -> tuple[str, float | None]:
     """Return the figure and the value of ``--keep``; None where there is no value."""
     name, _, value = text.partition("=")
     if name not in (*KEPT, NOTHING):
-        raise argparse.ArgumentTypeError(one_of((*KEPT, NOTHING), name))
-    return name, int(value) if value.isdigit() else _number(value) if value else None
+        expected = f"expected {one_of((*KEPT, NOTHING), name)}, found {quoted(name)}"
+        raise argparse.ArgumentTypeError(expected)
+    return name, int(value) if value.isdecimal() else _number(value) if value else None
 
 
 def add_sensors_verb(verbs: Any) -> None:

@@ -6,15 +6,15 @@ from pathlib import Path
 
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
-from pe_core.base.files import decode_text, read_bytes, require_new, write_bytes
+from pe_core.base.files import decode_text, read_bytes
 from pe_core.base.table_reader import Table, load_toml
 from pe_core.motion import DriveBy, SeenBody, Story, stories
 from pe_core.study import Study, load_study
 from pe_core.study.time_file import read_stories
 
 from ..wording import aligned
-from .run_job import print_vehicle
-from .terminal import DONE, NOT_MET, Answer, tell
+from .run_job import output_file, print_vehicle, save_text
+from .terminal import DONE, NOT_MET, Answer
 
 ALL = "all"
 TOML = ".toml"
@@ -47,18 +47,15 @@ def drive_by(args: argparse.Namespace) -> Answer:
 def drive_by_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] = ()) -> Answer:
     """Drive stories by a study's rig: those that are named, else the study's own. `inputs` are
     files that no output replaces."""
-    if args.output is not None:
-        require_new(Path(args.output), replace=args.replace, inputs=inputs)
+    output = output_file(args.output, args, inputs)
     chosen = chosen_stories(study, args.story)
     print_vehicle(study)
     driven = [study.drive_by(story) for story in chosen]
     text = dump_json(
         {"met": all(d.is_met for d in driven), "stories": [d.to_dict() for d in driven]}
     )
-    if args.output is not None:
-        write_bytes(Path(args.output), text.encode())
-        tell(f"wrote {args.output}")
-    status = DONE if all(each.is_met for each in driven) else NOT_MET
+    status = save_text(output, text)
+    status = status or (DONE if all(each.is_met for each in driven) else NOT_MET)
     return text if args.json else "\n".join(story_lines(driven)), status
 
 

@@ -57,7 +57,7 @@ def row_name(row: ComparedRow) -> str:
 
 
 def _cell(row: ComparedRow, k: int) -> str:
-    value, less = row.values[k], row.differences[k]
+    value, less = row.told[k], row.differences[k]
     if value is None:
         return "- "
     (_, way, times), mark = MEASURES[row.measure], BEST if row.best[k] else " "
@@ -129,11 +129,11 @@ def explain(study: Study, args: argparse.Namespace) -> Answer:
         "words": list(of_rig),
         "warnings": [each.to_dict() for each in outcome.warnings],
     }
-    lines = *of_rig, *advice.sensor_table(rows)
     score = outcome.after
     what = "perception" if score.objects is None else "object"
     first = f"{what} entropy {with_error(score.entropy, score.stderr)}; lower is better"
-    return _answer(data, [first, *lines, *warned(outcome)], args.json)
+    lines = [first, *of_rig, *advice.sensor_table(rows), *warned(outcome)]
+    return _answer(data, lines, args.json)
 
 
 def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
@@ -176,9 +176,7 @@ def _beside(studies: Mapping[str, Study], key: str | None) -> dict[str, Study]:
         return {}
     known, first = catalog.known_rig(key), next(iter(studies.values()))
     name = key if key not in studies else f"known rig {key}"
-    rig = catalog.rig_on(known, first.vehicle)
-    parts = {field: getattr(first, field) for field in COMPARED}
-    return {name: Study(rig, first.vehicle, samples=first.samples, **parts)}
+    return {name: first.with_other_rig(catalog.rig_on(known, first.vehicle))}
 
 
 def named_by_file(paths: list[str]) -> dict[str, str]:

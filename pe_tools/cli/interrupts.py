@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from multiprocessing import util
 from typing import NoReturn
 
 from pe_core.base.files import finish_writing
@@ -100,4 +101,5 @@ def leave(status: int, *, at_once: bool = False) -> NoReturn:
         with suppress(AttributeError, OSError, ValueError):  # it is closed, or nobody reads it
             stream.flush()
     finish_writing()
+    util._run_finalizers(0)  # of semaphores: Python would warn of them later, after the prompt
     os._exit(status)

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, TextIO
 
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
+from pe_core.base.files import require_new, write_bytes
 from pe_core.study import STUDY, Study
 
 from .. import jobs
@@ -28,6 +29,29 @@ def written(write: Callable[[Path], object], folder: Path) -> bool:
         tell(str(error))
         return False
     return True
+
+
+def output_file(name: str | None, args: argparse.Namespace, inputs: Sequence[Path]) -> Path | None:
+    """Return the file that a verb is to write, if it has one; `InputError`, before the work, where
+    it cannot be written. `inputs` are files that it must not replace."""
+    if name is None:
+        return None
+    require_new(path := Path(name), replace=args.replace, inputs=inputs)
+    if not path.parent.is_dir():
+        raise InputError(path, "file", "a file in a folder that exists", "no such folder")
+    return path
+
+
+def save_text(path: Path | None, text: str) -> int:
+    """Write what a verb found to its file, if it has one; return the exit status of that. The
+    answer is printed also where it cannot be written."""
+    if path is None:
+        return DONE
+    data = text.encode(errors="backslashreplace")
+    if not written(lambda to: write_bytes(to, data), path):
+        return BAD_INPUT
+    tell(f"wrote {path}")
+    return DONE
 
 
 Data = dict[str, Any]

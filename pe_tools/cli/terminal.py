@@ -102,9 +102,8 @@ def summary(outcome: Outcome) -> str:
     """Return an outcome in a few lines for readers."""
     score = outcome.after
     if outcome.kind == "score":
-        lines = [f"entropy   {with_error(score.entropy, score.stderr)}"]
-        lines += figure_lines(outcome)
-        lines.append(f"coverage  {score.coverage:.1%}")
+        first, seen = with_error(score.entropy, score.stderr), f"{score.coverage:.1%}"
+        lines = [f"entropy   {first}", *figure_lines(outcome), f"coverage  {seen}"]
         lines += built_lines(outcome.figures[:1]) if outcome.figures else []
     else:
         lines = list(_before_and_after(outcome))

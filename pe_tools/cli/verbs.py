@@ -14,7 +14,7 @@ import numpy as np
 from pe_core.base.errors import InputError
 from pe_core.base.plugins import call_plugin, find_plugins, load_plugin, plugin_name
 from pe_core.search.payload import keep_freed_memory
-from pe_core.study import load_study
+from pe_core.study import Study, load_study
 from pe_core.version import WEBSITE, __version__
 
 from ..jobs import read_search
@@ -139,32 +139,38 @@ def _add_plugin_verbs(point: EntryPoint, verbs: Any) -> None:
         tell(f"{error}; its verbs are missing")
 
 
+def _study(path: str, args: argparse.Namespace) -> Study:
+    """Read a study, with the changes of the options; what they do not find in it names its file."""
+    study = load_study(path)
+    try:
+        return with_options(study, args)
+    except InputError as error:
+        if error.source != "study":
+            raise
+        raise InputError(path, error.field, error.expected, error.found) from None
+
+
 def _run_job(args: argparse.Namespace) -> Answer:
     resume = getattr(args, "resume", None)
     if args.study is not None:
-        study = load_study(args.study)
+        study = _study(args.study, args)
     elif resume is not None:
-        study = read_search(resume).study
+        study = with_options(read_search(resume).study, args)
     else:
         args.usage_error("expected STUDY, or --resume DIR")
-    return run_job.run_study(with_options(study, args), args)
+    return run_job.run_study(study, args)
 
 
+_add_search_options = partial(add_run_options, search=True)
 VERBS = (
     Verb("score", "score a study's rig", partial(add_run_options, search=False), ONE, _run_job),
-    Verb(
-        "optimize",
-        "search for a better placement",
-        partial(add_run_options, search=True),
-        PERHAPS,
-        _run_job,
-    ),
+    Verb("optimize", "search for a better placement", _add_search_options, PERHAPS, _run_job),
     Verb(
         "explain",
         "a study's score in words, or one place of it",
         add_explain_options,
         ONE,
-        lambda args: explain(with_options(load_study(args.study), args), args),
+        lambda args: explain(_study(args.study, args), args),
         "STUDY [--at X Y [Z]] [options]",
     ),
     Verb(
@@ -194,11 +200,7 @@ VERBS = (
         add_compare_options,
         SOME,
         lambda args: compare(
-            {
-                name: with_options(load_study(path), args)
-                for name, path in named_by_file(args.studies).items()
-            },
-            args,
+            {name: _study(path, args) for name, path in named_by_file(args.studies).items()}, args
         ),
     ),
     Verb(

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from pe_core import catalog
 from pe_core.base import dump_json
-from pe_core.base.files import csv_text, require_new, write_bytes
+from pe_core.base.files import csv_text
 from pe_core.base.table_reader import finite
 from pe_core.scene.rig import Sensor
 from pe_core.sensors import kind_of
@@ -16,8 +16,8 @@ from ..jobs import PLACE_FIGURES, PlaceMap, WhereJob
 from ..wording import aligned
 from .command import add_curve_option, count_up_to, with_curves
 from .interrupts import Interrupted, stop_at_first
-from .run_job import drive, print_vehicle
-from .terminal import DONE, Answer, tell
+from .run_job import drive, output_file, print_vehicle, save_text
+from .terminal import DONE, Answer
 
 BEST, APART_M = 5, 0.5  # How many places are named, and how far apart they are [m]
 
@@ -44,8 +44,7 @@ def add_where_options(parser: argparse.ArgumentParser) -> None:
 def where(study: Study, args: argparse.Namespace, inputs: Sequence[Path] = ()) -> Answer:
     """Score one more sensor all over the vehicle's surface, and tell the best places. `inputs` are
     files that no output replaces."""
-    if args.output is not None:
-        require_new(Path(args.output), replace=args.replace, inputs=inputs)
+    table = output_file(args.output, args, inputs)
     study = with_curves(study, args)
     models = {each.model.name: each.model for each in study.rig}
     model = models.get(args.model) or catalog.load(args.model)
@@ -57,13 +56,11 @@ def where(study: Study, args: argparse.Namespace, inputs: Sequence[Path] = ()) -
         drive(job)
     if (found := job.found) is None:
         raise Interrupted(received.signum or 2, "no place was scored")
-    if args.output is not None:
-        rows = found.rows()
-        cells = ([v if v is not None else "" for v in row.values()] for row in rows)
-        write_bytes(Path(args.output), csv_text([[*rows[0]], *cells]).encode())
-        tell(f"wrote {args.output}")
+    rows = found.rows()
+    cells = ([v if v is not None else "" for v in row.values()] for row in rows)
+    unwritten = save_text(table, csv_text([[*rows[0]], *cells]))
     text = dump_json(finite(found.to_dict())) if args.json else "\n".join(place_lines(found))
-    return text, received.status(DONE)
+    return text, unwritten or received.status(DONE)
 
 
 def place_lines(found: PlaceMap) -> list[str]:

@@ -90,12 +90,8 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
         found = outcome.sensitivity
         data["sensitivity"] = None if found is None else found.to_dict()
         data["starts"] = [
-            {
-                "name": end.name,
-                figure.key: figure.to_figure(end.entropy),
-                "evaluations": end.evaluations,
-            }
-            for end in outcome.starts
+            {"name": e.name, figure.key: figure.to_figure(e.entropy), "evaluations": e.evaluations}
+            for e in outcome.starts
         ]
         data["stop_reason"] = outcome.stop_reason or None
         data["seed_scatter"] = outcome.seed_scatter

@@ -10,7 +10,9 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
+from pe_core.base.errors import InputError
 from pe_core.study.requirement_file import presets
+from pe_tools.cli import run_job
 from pe_tools.cli.check_verb import COLUMNS, NOT_MET
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import CheckJob, SuggestJob
@@ -90,6 +92,22 @@ def test_ctrl_c_keeps_the_verdicts_that_were_found(study, tmp_path, monkeypatch,
     assert "1 of 1 met, 1 not checked" in shown.out and "bump: not checked" in shown.out
     assert "checking" in shown.err
     assert [row["name"] for row in csv.DictReader(table.open())] == ["adult ahead"]
+
+
+def test_a_table_that_cannot_be_written_is_told_before_the_work_or_takes_no_verdict_along(
+    study, tmp_path, monkeypatch, capsys
+):
+    nowhere = ["check", str(study), "--csv", str(tmp_path / "no" / "table.csv")]
+    assert main(nowhere) == 1
+    assert "no such folder" in capsys.readouterr().err.splitlines()[-1]
+
+    def full(path, _data):
+        raise InputError(path, "file", "a path that can be written", "no space left on device")
+
+    monkeypatch.setattr(run_job, "write_bytes", full)
+    assert main(["check", str(study), "--csv", str(tmp_path / "table.csv")]) == 1
+    shown = capsys.readouterr()
+    assert "1 of 1 met" in shown.out and "no space left" in shown.err
 
 
 def test_all_presets_are_checked_or_said_why_not(study, tmp_path, capsys):

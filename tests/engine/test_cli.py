@@ -52,7 +52,8 @@ def test_a_schedule_of_another_method_is_refused_and_one_that_is_left_out_is_tol
         ("scoer", "such as score, "),
         ("score car.toml --sampels 3", "expected --samples, or"),
         ("export car.toml --to gltff -o x", "such as gltf, "),
-        ("score car.toml --weather foog", "expected fog, or one of rain"),
+        ("score car.toml --weather foog", "car.toml: weather: expected fog, or one of rain"),
+        ("compare car.toml --state door", "car.toml: state: expected [[state]] in the study"),
         ("sensors Pandar46", "such as Pandar64, "),
     ],
 )

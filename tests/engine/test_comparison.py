@@ -9,8 +9,10 @@ import pytest
 
 import pe_core as pe
 from pe_core.scoring.score import Scatter
+from pe_core.search.key_figures import KEY_FIGURES
 from pe_tools import advice
 from pe_tools.advice.score_comparison import BLOCKS, degrees_of, difference_errors, sure_factor
+from pe_tools.cli.explain_verbs import comparison
 from tests.engine import shapes
 
 ENTROPY, COVERAGE = ("rig", "", "entropy"), ("rig", "", "coverage")
@@ -159,3 +161,13 @@ def test_a_story_that_is_missed_by_little_shows_no_margin_of_zero():
     figures = advice.KeyFigures(None, (), 0.0, 0.5, 10.0, margins=margins)
     rows = advice.compare_figures({"a": figures})
     assert [r.values[0] for r in rows if r.measure == "margin"] == [-0.1, 0.9, None]
+
+
+@pytest.mark.parametrize(
+    ("measure", "key"), [("blind", "blind_ground"), ("sector", "blind_sector")]
+)
+def test_what_is_blind_reads_as_on_the_dashboard(measure, key):
+    """Rounded up: 40.31 m2 are 40.4 m2 in both places."""
+    row = advice.ComparedRow("rig", "", measure, (40.31, 12.0), ((0.0, 0.0),) * 2)
+    (line,) = (line for line in comparison(["a", "b"], [row]) if line.startswith("  all"))
+    assert line.split()[1] == KEY_FIGURES[key].text(40.31).split()[0] == "40.4"

@@ -10,6 +10,8 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_core import catalog
+from pe_core.motion import stories
+from pe_core.search.key_figures import KEY_FIGURES
 from pe_tools import advice
 from pe_tools.cli.verbs import main
 from tests.engine import shapes
@@ -81,7 +83,8 @@ def test_compare_tells_blind_ground_reach_and_ap_and_a_known_rig_beside(tmp_path
     figures = [advice.KeyFigures.of_rig(look, each) for each in (first.rig, rig)]
     assert lines[0].split() == ["car", "paper_car_camera60"]
     (ground,) = (line for line in lines if line.startswith("  0.5 m tall, within 10 m"))
-    assert f"{figures[0].blind_m2:.1f}" in ground and f"{figures[1].blind_m2:.1f}" in ground
+    row = KEY_FIGURES["blind_ground"]
+    assert all(row.text(own.blind_m2).split()[0] in ground for own in figures)
     assert ground.count("*") == 1, "less blind ground is better"
     title = lines.index("reach ahead (AP 0.5) [m]")
     assert lines[title + 1].split()[:2] == ["car", f"{figures[0].reach['car'][0]:.1f}".rstrip("*")]
@@ -94,6 +97,16 @@ def test_compare_tells_blind_ground_reach_and_ap_and_a_known_rig_beside(tmp_path
     assert main([*call, "--beside", "nobody"]) == 1
     out, err = capsys.readouterr()
     assert out == "" and "expected" in err and "scoring" not in err
+
+
+def test_a_known_rig_beside_has_returns_and_stories_of_the_study(tmp_path, capsys):
+    """Else the two would not be comparable, and a story would read as never confirmed."""
+    study = saved(tmp_path, "car.toml", returns="road", stories=(stories()["crossing_child"],))
+    call = ["compare", study, "--samples", "1024", "--beside", "paper_car_pandar64", "--json"]
+    assert main(call) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["notes"][0] == advice.OTHER_HARDWARE, "not: other returns"
+    assert all("crossing_child" in own["margins"] for own in data["figures"].values())
 
 
 @pytest.mark.parametrize(

@@ -192,3 +192,18 @@ def test_a_signal_to_the_whole_group_is_the_parent_s_affair():
     command = [sys.executable, "-c", code]
     run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, start_new_session=True)
     assert (run.returncode, run.stderr) == (0, "")
+
+
+def test_python_says_nothing_of_semaphores_after_an_interrupted_run():
+    """Its helper that tracks them lives longer, and would write over the prompt."""
+    code = (
+        "import os\n"
+        "from pe_core.search import Processes\n"
+        "from pe_tools.cli import leave\n"
+        "processes = Processes(2)\n"
+        "processes.submit(os.getpid).result(60)\n"
+        "leave(130)\n"
+    )
+    command = [sys.executable, "-c", code]
+    run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert (run.returncode, run.stderr) == (130, "")

@@ -180,7 +180,7 @@ def body_rectangle(vehicle: Vehicle | None) -> Rectangle:
 
 
 def shown_end(distance: float) -> float:
-    """Round where blind ground ends [m] to a decimetre, outwards."""
+    """Round where blind ground ends [m], or how much is blind [m2, deg], up to a tenth."""
     return math.ceil(distance * 10.0 - ROUNDING) / 10.0
 
 

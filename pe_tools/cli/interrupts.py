@@ -101,5 +101,6 @@ def leave(status: int, *, at_once: bool = False) -> NoReturn:
         with suppress(AttributeError, OSError, ValueError):  # it is closed, or nobody reads it
             stream.flush()
     finish_writing()
-    util._run_finalizers(0)  # of semaphores: Python would warn of them later, after the prompt
+    # Of semaphores: Python would warn of them later, after the prompt.
+    util._run_finalizers(0)  # type: ignore[attr-defined]
     os._exit(status)

@@ -398,8 +398,8 @@ class Study(Tabular):
     def with_other_rig(self, rig: Rig) -> "Study":
         """Return the study of another rig, which is scored in the same way. What names the sensors,
         or the search, does not stay."""
-        given = {"search": Search(), "selection": Selection(), "passthrough": None}
-        return replace(self, rig=rig, conditions=Conditions(), requirements=(), **given)
+        bare = replace(self, requirements=(), conditions=Conditions(), passthrough=None)
+        return replace(bare, rig=rig, search=Search(), selection=Selection())
 
     @contextmanager
     def _naming_vehicle(self) -> Iterator[None]:

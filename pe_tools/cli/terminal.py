@@ -157,13 +157,18 @@ def _before_and_after(outcome: Outcome) -> Iterator[str]:
 
 def figure_lines(outcome: Outcome) -> list[str]:
     """Return the dashboard of a rig, or of start and result: what is beside its entropy."""
-    told = (outcome.figures or ())[outcome.kind == "score" :]
+    is_score = outcome.kind == "score"
+    told = (outcome.figures or ())[is_score:]
+    ends = (outcome.before, outcome.after)[is_score:]
     over = [f"{w:.4f}" for each in told if (w := each.over_frames) is not None]
     lines = [f"entropy over frames  {' -> '.join(over)} nats"] if over else []
     plain: list[str] = []
     for row in outcome.dashboard:
         if row.figure.part or (row.figure.key == ENTROPY and row.wanted is not None):
-            before = [row.figure.text(row.figure.value(each)) for each in told[:-1]]
+            values = [row.figure.value(each) for each in told]
+            if row.figure.key == ENTROPY:
+                values = [each.entropy for each in ends]
+            before = map(row.figure.text, values[:-1])
             text = f"{row.figure.name} {' -> '.join([*before, row.text])}"
             (plain if row.wanted is None else lines).append(text)
     return [f"key figures  {', '.join(plain)}", *lines] if told else lines

@@ -36,6 +36,11 @@ class SearchedFigure:
             return f"constraints broken by {value - INFEASIBLE:.3f}"
         return f"{self.label} {self.to_figure(value):.4f}"
 
+    def ended(self, value: float) -> str:
+        """Return where a search ended: "at 0.5000 nats", "with constraints broken by 0.473"."""
+        found = f"at {self.amount(f'{self.to_figure(value):.4f}')}"
+        return f"with {self.text(value)}" if is_infeasible(value) else found
+
 
 IN_NATS = SearchedFigure(ENTROPY, "entropy", 1.0)
 IN_AP = SearchedFigure(EXPECTED_AP, "expected AP", -1.0)

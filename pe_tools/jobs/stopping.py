@@ -95,7 +95,6 @@ def sureness_lines(outcome: Outcome) -> list[str]:
     lines = [] if outcome.sensitivity is None else list(sensitivity_lines(outcome.sensitivity))
     for end in outcome.starts:
         name = f"the start {end.name}" if end.name else "the given start"
-        at = figure.amount(f"{figure.to_figure(end.entropy):.4f}")
-        lines.append(f"{name} ended at {at}, on the sample of the search")
+        lines.append(f"{name} ended {figure.ended(end.entropy)}, on the sample of the search")
     told = scatter_text(outcome), stop_text(outcome.stop_reason, outcome.start)
     return [*lines, *filter(None, told)]

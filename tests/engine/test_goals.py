@@ -120,13 +120,16 @@ def test_a_fixed_sensor_keeps_its_slot():
 
 def test_several_starts_share_the_budget_and_the_best_end_is_the_result(plain):
     poses = {"roof": pe.Pose((0.0, 0.0, 2.2))}
-    outcome = finished(study(Goals(starts=[Start("high", poses)])))
+    outcome = finished(study(Goals(starts=[Start("high", poses)], wanted=Wanted(entropy=9.0))))
     assert [end.name for end in outcome.starts] == ["", "high"]
     assert outcome.evaluations == 60 and outcome.starts[0].evaluations == 30
     best = min(outcome.starts, key=lambda end: end.entropy)
     evaluator = study().evaluator(1024)
     assert evaluator.entropy(outcome.study.rig) == pytest.approx(best.entropy, abs=1e-12)
     assert "the start high ended at" in summary(outcome)
+    assert f"\nentropy {outcome.before.entropy:.3f} nats -> " in summary(outcome)
+    broken = replace(outcome, starts=[replace(end, entropy=100.5) for end in outcome.starts])
+    assert "the start high ended with constraints broken by 0.500" in summary(broken)
     again = finished(study(Goals(starts=[Start("high", poses)])), journal=journal_of(outcome, 40))
     assert result_dict(again)["placements"] == result_dict(outcome)["placements"]
     job = pt.OptimizeJob(study(Goals(starts=[Start("high", poses)])), 1)

@@ -11,6 +11,7 @@ from pe_core import metric, scene
 from pe_core import sensors as kinds
 from pe_core.scoring.sight import SECTOR_RADIUS_M
 from pe_core.study.condition_table import ConditionTable
+from pe_core.study.requirement_search import INFEASIBLE, is_infeasible
 
 from ... import advice, jobs
 from ..markup import capitalized, escaped, joined, macros, number
@@ -172,12 +173,15 @@ def _curve(context: ReportContext, figure: jobs.SearchedFigure) -> tuple[Markup 
     if len(context.outcome.history) < 2:
         return "", ""
     found = jobs.best_so_far(context.outcome.history)
-    points = [(evaluation, figure.to_figure(value)) for evaluation, value in found]
-    by_ap = figure.higher_is_better
-    first, last = (number(points[k][1], 3 if by_ap else 2) for k in (0, -1))
-    what, unit = ("expected AP", "") if by_ap else ("entropy", " nats")
+    by_ap, is_broken = figure.higher_is_better, is_infeasible(found[-1][1])
+    points = [
+        (n, value - INFEASIBLE if is_broken else figure.to_figure(value)) for n, value in found
+    ]
+    first, last = (number(points[k][1], 3 if by_ap or is_broken else 2) for k in (0, -1))
+    what, unit = (figure.label, "") if by_ap else ("entropy", " nats")
+    what, unit = ("violation of constraints", "") if is_broken else (what, unit)
     caption = f"Best {what} so far: from {first} to {last}{unit}, on the samples of the search."
-    label = figure.label if by_ap else "nats"
+    label = unit.strip() or what
     alt = f"Convergence curve. {caption}"
     evaluations = context.outcome.evaluations
     return step_curve(points, evaluations, "placements evaluated", label, alt), caption

@@ -55,15 +55,13 @@ def disagreement(names: Sequence[str], rows: Sequence[ComparedRow]) -> str:
     The figures are entropy, expected AP in traffic, and the widest blind sector for the lowest
     body. `rows` are those of `compare` and of `compare_figures`. Rigs that do not differ clearly
     from the best one are as good as it."""
-    entropy = (row for row in rows if (row.group, row.measure) == ("rig", ENTROPY))
-    traffic = (row for row in rows if (row.group, row.name) == (TRAFFIC, ""))
-    sector = (row for row in rows if row.measure == SECTOR)
+    asked = {
+        "entropy": (row for row in rows if (row.group, row.measure) == ("rig", ENTROPY)),
+        "expected AP in traffic": (r for r in rows if (r.group, r.name) == (TRAFFIC, "")),
+        "the widest blind sector": (row for row in rows if row.measure == SECTOR),
+    }
     best = {}
-    for called, found in (
-        ("entropy", entropy),
-        ("expected AP in traffic", traffic),
-        ("the widest blind sector", sector),
-    ):
+    for called, found in asked.items():
         if (row := next(found, None)) is not None and row.order:
             best[called] = [k for k in row.order if not row.differ(row.order[0], k)]
     if not best or set.intersection(*map(set, best.values())):

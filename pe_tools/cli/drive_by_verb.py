@@ -54,8 +54,7 @@ def drive_by_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path
     text = dump_json(
         {"met": all(d.is_met for d in driven), "stories": [d.to_dict() for d in driven]}
     )
-    status = save_text(output, text)
-    status = status or (DONE if all(each.is_met for each in driven) else NOT_MET)
+    status = save_text(output, text) or (DONE if all(d.is_met for d in driven) else NOT_MET)
     return text if args.json else "\n".join(story_lines(driven)), status
 
 

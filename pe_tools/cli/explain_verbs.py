@@ -119,8 +119,7 @@ def explain(study: Study, args: argparse.Namespace) -> Answer:
     name = advice.class_of(study.prior, args.class_name)
     outcome = scored(study, args.workers)
     seen = advice.outlook(study.sight(), study.rig, name)
-    scored_rig = outcome.after, study.rig, study.vehicle, seen
-    rows = advice.sensor_rows(*scored_rig)
+    rows = advice.sensor_rows(outcome.after, study.rig, study.vehicle, seen)
     of_rig = advice.rig_words(outcome.after, seen, study.rig, outcome.warnings)
     data = {
         "score": outcome.after.to_dict(),
@@ -154,12 +153,11 @@ def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
         "same_vehicle": alike,
     }
     names = list(scores)
-    said = list(advice.ranking(names, rows))
     models = ([sensor.model for sensor in study.rig] for study in studies.values())
     curves = advice.curve_note(studies.values())
     data["notes"] = notes = [note for note in (advice.hardware_note(models), curves) if note]
     apart = advice.disagreement(names, [*rows, *figure_rows])
-    data["words"] = said = [*[apart] * bool(apart), *said]
+    data["words"] = said = [*[apart] * bool(apart), *advice.ranking(names, rows)]
     lines = [*comparison(names, [*rows, *figure_rows]), *said]
     lines += [] if alike else ["their vehicles differ"]
     if error := max(score.stderr for score in scores.values()):

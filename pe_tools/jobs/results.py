@@ -100,12 +100,8 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
         "stopped": outcome.stopped,
         "warnings": [each.to_dict() for each in outcome.warnings],
         "history": [
-            {
-                "evaluation": row.evaluation,
-                "round": row.round,
-                figure.key: figure.to_figure(row.entropy),
-                "placements": placements(row.rig),
-            }
+            {"evaluation": row.evaluation, "round": row.round}
+            | {figure.key: figure.to_figure(row.entropy), "placements": placements(row.rig)}
             for row in outcome.history
         ],
         "inputs": outcome.inputs or inputs_of(start),
@@ -116,15 +112,9 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
 
 def run_dict(seconds: float, host: Mapping[str, str]) -> dict[str, Any]:
     """Return the part of a result about the run: its duration, and versions of the programs."""
-    return {
-        "seconds": round(seconds, 3),
-        "versions": {
-            "perception-entropy": __version__,
-            "numpy": np.__version__,
-            "python": platform.python_version(),
-            **host,
-        },
-    }
+    own = {"perception-entropy": __version__, "numpy": np.__version__}
+    versions = {**own, "python": platform.python_version(), **host}
+    return {"seconds": round(seconds, 3), "versions": versions}
 
 
 def placements(rig: Rig) -> dict[str, dict[str, list[float]]]:

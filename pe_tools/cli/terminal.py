@@ -157,9 +157,8 @@ def _before_and_after(outcome: Outcome) -> Iterator[str]:
 
 def figure_lines(outcome: Outcome) -> list[str]:
     """Return the dashboard of a rig, or of start and result: what is beside its entropy."""
-    is_score = outcome.kind == "score"
-    told = (outcome.figures or ())[is_score:]
-    ends = (outcome.before, outcome.after)[is_score:]
+    first = outcome.kind == "score"
+    told, ends = (outcome.figures or ())[first:], (outcome.before, outcome.after)[first:]
     over = [f"{w:.4f}" for each in told if (w := each.over_frames) is not None]
     lines = [f"entropy over frames  {' -> '.join(over)} nats"] if over else []
     plain: list[str] = []

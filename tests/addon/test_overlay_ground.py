@@ -120,7 +120,7 @@ def test_blind_ground_is_measured_by_side():
     places = {label.text: label.place for label in shape.labels}
     assert places["blind to 3.0 m out"] == pytest.approx((5.0, 0.0, 0.0), abs=1e-6)
     assert places["blind from 3.0 m out"] == pytest.approx((0.0, 4.0, 0.0), abs=1e-6)
-    assert shape.legend.classes[0][1] == "5 m² within 10 m" and "0.5 m" in shape.legend.title
+    assert shape.legend.classes[0][1] == "5.0 m² within 10 m" and "0.5 m" in shape.legend.title
     assert (shape.lines.points[:, 2] == 0.0).all() and len(shape.thin.points)
 
 

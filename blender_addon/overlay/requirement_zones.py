@@ -179,7 +179,8 @@ def _legend(
     """Return "7 of 9 requirements met", what was lost or won, and those that are not met."""
     met = sum(verdict.met for verdict in verdicts)
     preview = ", preview" if any(verdict.preview for verdict in verdicts) else ""
-    others = sum(bool(v.requirement.under.states or v.requirement.under.weathers) for v in verdicts)
+    asked = [verdict.requirement.under for verdict in verdicts]
+    others = sum(bool(under.states or under.weathers or under.mounting) for under in asked)
     shown = ", as shown" if others else ""
     title = f"{met} of {len(verdicts)} requirements met{preview}{shown}"
     rows = []
@@ -197,7 +198,8 @@ def _legend(
         rows = [*rows[: MAX_ROWS - 1], (NOT_MET, f"and {more} more")]
     rows = rows or [(MET, "all met")]
     if others:
-        rows.append((NOT_CHECKED, f"{others} in other states or weathers too: Score checks them"))
+        also = "other states, weathers or mounting errors"
+        rows.append((NOT_CHECKED, f"{others} under {also} too: Score checks them"))
     return graphics.ColorKey(title, classes=tuple(rows))
 
 

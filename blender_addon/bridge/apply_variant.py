@@ -93,7 +93,7 @@ def _write_settings(obj: Object, record: SensorRecord) -> None:
     settings.free, settings.bounded = record.free, record.bounded
     settings.bounds_low, settings.bounds_high = record.low, record.high
     settings.rack = record.rack
-    settings.stays = record.stays
+    settings.stays, settings.order = record.stays, record.order
     write_values(settings, record.sheet)
     write_values(settings, record.scan)
     if record.color is not None and record.color != color_of(obj):

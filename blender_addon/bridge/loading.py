@@ -124,18 +124,17 @@ def _comparable(
     mounts = flat.pop("optimize.mount", [])
     plain = ({k: v for k, v in m.items() if k not in ("area", "parts")} for m in mounts)
     flat["optimize.mount"] = sorted(plain, key=lambda mount: mount["name"])
-    sensors = [s | {"name": renamed.get(s["name"], s["name"])} for s in data["sensor"]]
-    flat["sensor"] = sorted(sensors, key=lambda sensor: sensor["name"])
+    flat["sensor"] = [s | {"name": renamed.get(s["name"], s["name"])} for s in data["sensor"]]
     return flat
 
 
 def _sensor_records(study: pe.Study) -> tuple[SensorRecord, ...]:
-    """Return a study's sensors as records, by name."""
+    """Return a study's sensors as records."""
     mounting = study.search.mounting
     linked = {a: b for a, b in mounting.pairs} | {b: a for a, b in mounting.pairs}
     racks = {name: RACK.format(n) for n, group in enumerate(mounting.groups, 1) for name in group}
     records = []
-    for sensor in study.rig:
+    for order, sensor in enumerate(study.rig, -len(study.rig)):  # before what is added later
         model = None
         with contextlib.suppress(pe.InputError):
             model = catalog.load(sensor.model.name)
@@ -158,12 +157,13 @@ def _sensor_records(study: pe.Study) -> tuple[SensorRecord, ...]:
                 curve=sensor.curve,
                 stays=name in study.search.goals.fixed,
                 color=sensor.color,
+                order=order,
                 sheet=sensor.sheet,
                 scan=sensor.scan,
                 **_options(study.selection, name, mount),
             )
         )
-    return tuple(sorted(records, key=lambda record: record.name))
+    return tuple(records)
 
 
 def _options(selection: pe.Selection, name: str, mount: str) -> dict[str, Any]:

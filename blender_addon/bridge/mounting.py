@@ -100,7 +100,7 @@ def pairs_of(records: Sequence[SensorRecord]) -> tuple[tuple[str, str], ...]:
         other = visible.get(record.mirror_of)
         if other is not None and name < other.name and other.mirror_of == name:
             pairs.append((name, other.name))
-    return tuple(pairs)
+    return tuple(sorted(pairs))
 
 
 def groups_of(records: Sequence[SensorRecord]) -> tuple[tuple[str, ...], ...]:
@@ -114,9 +114,8 @@ def groups_of(records: Sequence[SensorRecord]) -> tuple[tuple[str, ...], ...]:
         sorted(members, key=lambda record: (not record.mount, record.name))
         for members in racks.values()
     )
-    return tuple(
-        tuple(record.name for record in members) for members in ordered if len(members) > 1
-    )
+    groups = (tuple(record.name for record in members) for members in ordered if len(members) > 1)
+    return tuple(sorted(groups))
 
 
 def followers_of(pairs: Sequence[Sequence[str]], groups: Sequence[Sequence[str]]) -> frozenset[str]:

@@ -22,9 +22,10 @@ parents move it by less. Both tolerances are below half a step of the rounding."
 
 
 def sensor_objects(scene: Scene) -> list[Object]:
-    """Return all sensors of a scene by name, hidden ones included."""
+    """Return all sensors of a scene, hidden ones included: in the order of an imported study, which
+    the bits of a search depend on, then by name."""
     sensors = [obj for obj in scene.objects if obj.perception_entropy.is_sensor]
-    return sorted(sensors, key=lambda obj: obj.name)
+    return sorted(sensors, key=lambda obj: (obj.perception_entropy.order, obj.name))
 
 
 def rig_from_objects(objects: Sequence[Object], depsgraph: Depsgraph) -> pe.Rig:

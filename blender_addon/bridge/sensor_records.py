@@ -52,7 +52,8 @@ class SensorRecord:
     The last fields belong to the sensor's object and are not stored with a variant: a variant's
     record takes them from the object that the variant would use if it were applied. `locked` axes
     restrict the search, `options` are the models to choose from, `may_be_left_out` allows designs
-    without the sensor, and one that `stays` is moved by no search. `color` is the sensor's own.
+    without the sensor, and one that `stays` is moved by no search. `color` is the sensor's own,
+    `order` its place among the sensors.
     """
 
     name: str
@@ -79,6 +80,7 @@ class SensorRecord:
     may_be_left_out: bool = False
     stays: bool = False
     color: str | None = None
+    order: int = 0
 
     @property
     def numbers(self) -> tuple[float, ...]:
@@ -110,7 +112,7 @@ def same_sensors(records: Iterable[SensorRecord], others: Iterable[SensorRecord]
 
 
 def records_of_scene(scene: Scene) -> tuple[SensorRecord, ...]:
-    """Return all sensors of a scene by name, hidden ones included. `InputError` when one of them is
+    """Return all sensors of a scene, hidden ones included. `InputError` when one of them is
     scaled or sheared, or has no finite place."""
     layer = view_layer_of(scene)
     layer.update()
@@ -159,6 +161,7 @@ def _object_fields(obj: Object | None) -> dict[str, Any]:
         "may_be_left_out": settings.may_be_left_out,
         "stays": settings.stays,
         "color": color_of(obj),
+        "order": settings.order,
     }
 
 
@@ -189,9 +192,9 @@ STORED = (
 
 
 def records_of(variant: PropertyGroup) -> tuple[SensorRecord, ...]:
-    """Return a variant's sensors, by name."""
+    """Return a variant's sensors, in the order of the scene's."""
     records = (_record_of_table(variant.id_data, row) for row in json.loads(variant.sensors))
-    return tuple(sorted(records, key=lambda record: record.name))
+    return tuple(sorted(records, key=lambda record: (record.order, record.name)))
 
 
 def _record_of_table(scene: Scene, table: dict[str, Any]) -> SensorRecord:

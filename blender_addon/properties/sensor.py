@@ -23,7 +23,7 @@ from .callbacks import (
     redraw,
 )
 from .declared import group_of
-from .fields import menu, number, numbers, rows, switch, switches, text
+from .fields import menu, number, numbers, rows, switch, switches, text, whole
 from .list_rows import PE_SensorOption
 
 AXIS_LABELS = ("X", "Y", "Z", "Roll", "Pitch", "Yaw")  # Of `search.AXES`
@@ -213,6 +213,8 @@ class PE_ObjectSettings(GroundPose, CurveFields, SheetFields, ScanFields, Proper
     parked_from: text(
         "Inactive From", "Collections of an inactive sensor before it became inactive"
     )
+
+    order: whole("Order", "Its place in an imported study's rig", options={"HIDDEN"})
 
     mirror_of: text("Mirror Of", "Name of the sensor that is linked as its mirror image")
 

@@ -220,9 +220,11 @@ def test_an_imported_study_becomes_the_record_of_the_scene_that_holds_it(rich, t
     pt.export_study(exported, tmp_path / "study.toml")
     study = pe.load_study(tmp_path / "study.toml")
     assert differences(exported, study) == []
+    study = study.with_rig(pe.Rig([*study.rig][::-1]))  # what is not sorted keeps its order
     imported = bridge.study_of(bridge.record_of_study(study))
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     assert bridge.load_into(bpy.context.scene, study) == []
+    assert [each.name for each in scenes.study().rig] == [each.name for each in study.rig]
     of_files = [  # names of files, and of an area's parts in them
         *("study.mesh", "study.mesh.len"),
         *(f"study.search.mounting.mounts['painted'].area.{key}" for key in ("file", "parts")),

@@ -12,7 +12,7 @@ from .layout import columns, draw_sentence, is_simple
 
 MET_ICONS = {True: "COLORSET_03_VEC", False: "ERROR"}
 """Blender's own green, and its orange triangle."""
-NAME_SHARE, VALUE_SHARE = 0.39, 0.39
+NAME_SHARE, VALUE_SHARE, SHARE_WITHOUT_UNIT = 0.39, 0.42, 0.34
 ENTROPY = "entropy"
 KEEP = {"requirements": "keep_requirements"} | {key: f"keep_{key}" for key in search.KEPT}
 """Properties of what *Optimize* keeps, by figure."""
@@ -78,11 +78,15 @@ def draw_row(layout: UILayout, scene: Scene, row: search.Reading, values: list[f
     name, rest = columns(line, NAME_SHARE, align=True)
     is_score = figure.key == ENTROPY and is_simple(scene)
     draw_label(name, "Score" if is_score else figure.label)
-    value, wanted = columns(rest, VALUE_SHARE, align=True)
     text, sense = change_text(figure, values)
-    draw_label(value, text.removesuffix(" nats" if is_score else " met"))
+    text = text.removesuffix(" nats" if is_score else " met")
+    is_changed = row.wanted is None and sense != SAME
+    makes_room = is_changed and " " not in text  # for what it was before
+    share = SHARE_WITHOUT_UNIT if makes_room else VALUE_SHARE
+    value, wanted = columns(rest, share, align=True)
+    draw_label(value, text)
     wanted = wanted.row(align=True)
-    if row.wanted is None and sense != SAME:
+    if is_changed:
         before = figure.text(values[0]).partition(" ")[0]
         draw_label(wanted, f"({before})", SENSE_ICONS[sense])
     elif figure.rule is None:

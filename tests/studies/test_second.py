@@ -10,7 +10,13 @@ import pe_core as pe
 from pe_core import InputError, catalog
 from pe_core.scene.objects import Objects
 from pe_core.sensors.kernels import ObjectView
-from studies.detectors.after_search import START, on_roofs, placement_of, whats_of
+from studies.detectors.after_search import (
+    START,
+    on_roofs,
+    placement_of,
+    searched_placements,
+    whats_of,
+)
 from studies.detectors.analysis import HOLDS, REFUTED, UNDECIDED
 from studies.detectors.placements import arm_placements, good_placements, placements
 from studies.detectors.plan import (
@@ -77,7 +83,8 @@ def test_the_results_are_those_of_the_committed_runs():
     plan, saved = full_second_plan(), json.loads((FOLDER / "results.json").read_text("utf-8"))
     runs = {path.stem: json.loads(path.read_text("utf-8")) for path in FOLDER.glob("runs/*.json")}
     scores = json.loads((FOLDER / "scores.json").read_text("utf-8"))["scores"]
-    assert second_analysis(plan, parts_of(plan), runs, scores) == saved
+    parts = parts_of(plan, searched_placements(on_roofs(plan), FOLDER))
+    assert second_analysis(plan, parts, runs, scores) == saved
 
 
 def test_w_of_made_up_scans_is_found():

@@ -15,7 +15,7 @@ look.view_rotation = Euler({rotation}).to_quaternion()
 CLOSE = LOOK.format(center=(0.1, -0.5, 0.7), distance=7.6, rotation=(1.12, 0.0, 2.23))
 WIDE = LOOK.format(center=(2.0, -2.0, 0.0), distance=34.0, rotation=(0.95, 0.0, 2.4))
 SIDEBAR = (1240, 32, 1600, 874)
-DASHBOARD = (1300, 84, 1600, 560)
+DASHBOARD = (1276, 84, 1600, 560)
 HAS_RESULT = "window.scene.perception_entropy.has_result"
 OURS = "__import__('bl_ext.user_default.perception_entropy.{}', fromlist=['*'])"
 RUNNING = OURS.format("operators.running_job")

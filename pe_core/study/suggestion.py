@@ -21,6 +21,7 @@ import numpy as np
 
 from ..base.errors import InputError
 from ..base.lazy_threads import threads
+from ..base.recent_cache import RecentCache
 from ..scene.data_sheet import DataSheet
 from ..scene.rig import Rig, Sensor, SensorModel
 from ..scoring.requirements import Criterion, Requirement, RequirementChecker, Zone, checkable
@@ -195,6 +196,7 @@ class _Mender:
         self._study = study = replace(study, requirements=fitting)
         self._watch = watch or (lambda _: True)
         self._held = self._held_to(study.requirements)
+        self._alone = RecentCache[RequirementConstraint](len(study.requirements))
         self._before = self._held.shortfalls(study.rig)
         rows = zip(study.requirements, self._before, strict=True)
         self._left = tuple(r for r, off in rows if off and (not names or r.name in names))
@@ -256,7 +258,9 @@ class _Mender:
 
     def _is_met_mounted(self, each: Requirement, rig: Rig) -> bool:
         """Whether a requirement that is met is met with the mounting errors that it asks for."""
-        return not (each.under.mounting and self._held_to((each,)).violation(rig))
+        if not each.under.mounting:
+            return True
+        return not self._alone.made(each.name, lambda: self._held_to((each,))).violation(rig)
 
     def _goes_on(self, share: float) -> None:
         if not self._watch(min(share, 1.0)):

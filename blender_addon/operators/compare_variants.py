@@ -270,9 +270,9 @@ def columns_of(names: list[str], rows: Sequence[advice.ComparedRow]) -> list[lis
 
 def _cell(row: advice.ComparedRow, k: int) -> TextCell:
     """Return a figure, with its difference to the first variant's if that is not 0."""
-    value, less = row.told[k], row.differences[k]
-    if value is None:
-        return TextCell("–")
+    value, less = row.told[k], row.change(k)
+    if value in (None, advice.NEVER):
+        return TextCell("–", sense=row.sense(k))
     way = FORMATS.get(row.measure, ".1f")
     change = "" if less is None else f"{less:+{way}}".removesuffix("%")
     is_visible = bool(change.strip("+-0."))

@@ -216,7 +216,7 @@ def finite(value: Any) -> Any:
     """Return data that JSON can hold: infinity becomes the text ``inf`` or ``-inf``, NaN null."""
     if isinstance(value, dict):
         return {k: finite(v) for k, v in value.items()}
-    if isinstance(value, list):
+    if isinstance(value, list | tuple):
         return [finite(v) for v in value]
     if isinstance(value, float) and value in (float("inf"), float("-inf")):
         return str(value)

@@ -86,6 +86,7 @@ def _error(score: Score, figure: FigureKey) -> float:
 
 ENTROPY, COVERAGE, AP, REACH, BLIND = "entropy", "coverage", "ap", "reach", "blind"
 SECTOR, TRAFFIC, MARGIN = "sector", "in traffic", "margin"
+NEVER = -math.inf  # Margin of a story that is never confirmed: there is no worse one
 OTHER_HARDWARE = (
     "The rigs differ in models or numbers of sensors. On simulated rigs of LiDARs entropy was not "
     "shown to rank better than the number of beams, and it can prefer a rig with a blind sector; "
@@ -104,7 +105,7 @@ class ComparedRow:
     "class" or "in traffic", and the name of the zone or class. `measure`: entropy [nats], blind
     ground [m2] and widest blind sector [deg]: lower is better. Coverage and expected AP, 0 to 1,
     reach ahead [m] and margin [s]: higher is better. `values`: by score; None for a score without
-    this zone or class. `errors`: (N, N) standard errors of the differences of each two values; 0
+    this zone, class or story; `NEVER` for a story that is never confirmed. `errors`: (N, N) standard errors of the differences of each two values; 0
     where nothing is sampled. `factor`: number of standard errors beyond which a difference is
     significant (`sure_factor`). `is_ranked`: whether a value may be the best; not where the error
     of a difference is unknown."""
@@ -128,6 +129,13 @@ class ComparedRow:
         """Each value minus the first one; None where one of the two is missing."""
         first = self.values[0] if self.values else None
         return tuple(None if v is None or first is None else v - first for v in self.values)
+
+    def change(self, k: int) -> float | None:
+        """Return by how much a value, as it is told, differs from the first one; None without a
+        number for it, and for the first one itself."""
+        first, own = self.told[0], self.told[k]
+        change = None if k == 0 or first is None or own is None else own - first
+        return change if change is not None and math.isfinite(change) else None
 
     @property
     def best(self) -> tuple[bool, ...]:
@@ -165,13 +173,14 @@ class ComparedRow:
         if not order or not self.differ(order[0], order[-1]):
             return 0.0
         ends = [self.values[k] or 0.0 for k in (order[0], order[-1])]
-        return abs(ends[0] - ends[1]) / max(map(abs, ends))
+        gap = abs(ends[0] - ends[1])
+        return gap if math.isinf(gap) else gap / max(map(abs, ends))
 
     def share(self, k: int) -> float:
         """Return how long the bar of a value is, 0 to 1: the longest of the row is 1."""
-        known = [value for value in self.values if value is not None]
+        known = [value for value in self.values if value not in (None, NEVER)]
         low, high = min([0.0, *known]), max([0.0, *known])
-        return ((self.values[k] or 0.0) - low) / (high - low) if high > low else 0.0
+        return (max(self.values[k] or 0.0, low) - low) / (high - low) if high > low else 0.0
 
     def differ(self, one: int, other: int) -> bool:
         """Whether two values, given by index, differ significantly; False where one is missing."""
@@ -208,7 +217,7 @@ def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...
     if any(value is not None for value in over_frames):
         rows.append(ComparedRow("rig", "over frames", ENTROPY, over_frames, none))
     for story in dict.fromkeys(name for own in columns for name in own.margins):
-        margins = tuple(shown_margin(own.margins.get(story)) for own in columns)
+        margins = tuple(_margin(own.margins, story) for own in columns)
         rows.append(ComparedRow("story", story, MARGIN, margins, none))
     height_text = f"{columns[0].height:g} m tall, within {columns[0].within:g} m"
     rows.append(ComparedRow("rig", height_text, BLIND, tuple(f.blind_m2 for f in columns), none))
@@ -216,6 +225,12 @@ def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...
         ahead = tuple(f.reach[name][0] if name in f.reach else None for f in columns)
         rows.append(ComparedRow("class", name, REACH, ahead, none))
     return tuple(rows)
+
+
+def _margin(margins: Mapping[str, float | None], story: str) -> float | None:
+    """Return the margin of a story as it is told; None where there is no such story."""
+    told = shown_margin(margins.get(story))
+    return NEVER if told is None and story in margins else told
 
 
 def _traffic_rows(found: Sequence[TrafficAp | None]) -> Iterator[ComparedRow]:

@@ -57,12 +57,12 @@ def row_name(row: ComparedRow) -> str:
 
 
 def _cell(row: ComparedRow, k: int) -> str:
-    value, less = row.told[k], row.differences[k]
+    value, less = row.told[k], row.change(k)
     if value is None:
         return "- "
     (_, way, times), mark = MEASURES[row.measure], BEST if row.best[k] else " "
-    change = f"{times * less:+{way.replace('%', 'f')}}" if k and less is not None else ""
-    return f"{value:{way}}{f' ({change})' if change else ''}{mark}"
+    change = f" ({times * less:+{way.replace('%', 'f')}})" if less is not None else ""
+    return f"{'none' if value == advice.NEVER else f'{value:{way}}'}{change}{mark}"
 
 
 COMPARED = ("space", "prior", "model", "targets")

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.base import dump_json
+from pe_core.base.table_reader import finite
 from pe_core.scoring.score import Scatter
 from pe_core.search.key_figures import KEY_FIGURES
 from pe_tools import advice
@@ -160,14 +162,39 @@ def test_a_story_that_is_missed_by_little_shows_no_margin_of_zero():
     margins = {"late": -0.04, "in time": 0.96, "never": None}
     figures = advice.KeyFigures(None, (), 0.0, 0.5, 10.0, margins=margins)
     rows = advice.compare_figures({"a": figures})
-    assert [r.values[0] for r in rows if r.measure == "margin"] == [-0.1, 0.9, None]
+    assert [r.values[0] for r in rows if r.measure == "margin"] == [-0.1, 0.9, advice.NEVER]
+
+
+@pytest.mark.parametrize(
+    ("margins", "senses", "cells"),
+    [
+        ((0.2, None), [0, 1], ["0.2*", "none"]),
+        ((None, -3.0), [0, -1], ["none", "-3.0*"]),
+        ((None, None), [0, 0], ["none", "none"]),
+        ((0.2, "no such story"), [0, 0], ["0.2", "-"]),
+    ],
+)
+def test_a_story_that_is_never_confirmed_is_the_worst_there_is(margins, senses, cells):
+    stories = [{} if own == "no such story" else {"child": own} for own in margins]
+    by_rig = {
+        name: advice.KeyFigures(None, (), 0.0, 0.5, 10.0, margins=own)
+        for name, own in zip("ab", stories, strict=True)
+    }
+    (row,) = (r for r in advice.compare_figures(by_rig) if r.measure == "margin")
+    assert [row.sense(0), row.sense(1)] == senses
+    (line,) = (line for line in comparison(["a", "b"], [row]) if line.startswith("  child"))
+    assert line.split()[1:] == cells
+    assert row.spread == (math.inf if row.sense(1) else 0.0)
+    assert row.share(1) == 0.0 <= row.share(0)
+    dump_json(finite(row.to_dict()))
 
 
 @pytest.mark.parametrize(
     ("measure", "key"), [("blind", "blind_ground"), ("sector", "blind_sector")]
 )
 def test_what_is_blind_reads_as_on_the_dashboard(measure, key):
-    """Rounded up: 40.31 m2 are 40.4 m2 in both places."""
+    """Rounded up: 40.31 m2 are 40.4 m2 in both places; differences are those of what is told."""
     row = advice.ComparedRow("rig", "", measure, (40.31, 12.0), ((0.0, 0.0),) * 2)
     (line,) = (line for line in comparison(["a", "b"], [row]) if line.startswith("  all"))
-    assert line.split()[1] == KEY_FIGURES[key].text(40.31).split()[0] == "40.4"
+    assert line.split()[1:] == ["40.4", "12.0", "(-28.4)*"]
+    assert KEY_FIGURES[key].text(40.31).startswith("40.4 ")

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.errors import InputError, shown
+from ..base.errors import InputError, one_of, shown
 from ..base.files import decode_text, read_bytes
 from ..base.setting import FLAG, OneOf, Panel, check_settings, read_settings, setting
 from ..base.table_reader import Table, load_toml
@@ -205,7 +205,7 @@ def read_story(table: Table, name: str) -> Story:
     base = None
     if preset:
         if preset not in stories():
-            raise table.error("preset", f"one of {', '.join(stories())}", preset)
+            raise table.error("preset", one_of(stories(), preset), shown(preset))
         base = stories()[preset]
     values = read_settings(table, Story, default=base)
     texts: dict[str, Any] = {

@@ -142,7 +142,7 @@ class Front:
         check_settings(self, "optimize", "front.")
         if len(self.objectives) == 1:
             expected = f"two or more of {', '.join(OBJECTIVES)}"
-            raise InputError("optimize", "front.objectives", expected, shown(self.objectives))
+            raise InputError("optimize", "front.objectives", expected, shown(self.objectives[0]))
 
 
 @dataclass(frozen=True, slots=True)

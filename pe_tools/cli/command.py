@@ -104,10 +104,10 @@ def add_search_options(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(option, type=count_up_to(greatest), metavar="N", help=about)
     add = parser.add_argument
     about = "end at this entropy (or AP), or a better one"
-    add("--stop-at", type=_number, metavar="VALUE", help=about)
-    add("--stop-after", type=_number, metavar="S", help="end after so many seconds")
+    add("--stop-at", type=number, metavar="VALUE", help=about)
+    add("--stop-after", type=number, metavar="S", help="end after so many seconds")
     about = "end when the last placements gained less than this"
-    add("--stop-gain", type=_number, metavar="VALUE", help=about)
+    add("--stop-gain", type=number, metavar="VALUE", help=about)
     about = "sensors that stay where they are, besides those of the study"
     add("--fix", type=_names, default=(), metavar="NAME,...", help=about)
     about = "start from the placement of this study, too; any number"
@@ -148,13 +148,13 @@ def with_curves(study: Study, args: argparse.Namespace) -> Study:
     return study if returns is None else replace(study, returns=returns)
 
 
-def count_up_to(greatest: int) -> Callable[[str], int]:
-    """Return a function that parses a whole number from 0 to `greatest`."""
+def count_up_to(greatest: int, least: int = 0) -> Callable[[str], int]:
+    """Return a function that parses a whole number from `least` to `greatest`."""
 
     def count(text: str) -> int:
         digits = text.isascii() and text.isdecimal() and len(text) <= len(str(greatest))
-        if not digits or int(text) > greatest:
-            expected = f"expected a whole number from 0 to {greatest}, found {quoted(text)}"
+        if not digits or not least <= int(text) <= greatest:
+            expected = f"expected a whole number from {least} to {greatest}, found {quoted(text)}"
             raise argparse.ArgumentTypeError(expected)
         return int(text)
 
@@ -165,7 +165,8 @@ def _names(text: str) -> list[str]:
     return [name.strip() for name in text.split(",") if name.strip()]
 
 
-def _number(text: str) -> float:
+def number(text: str) -> float:
+    """Return the number of an option."""
     try:
         return float(text)
     except ValueError:
@@ -232,7 +233,7 @@ def _kept(text: str) -> tuple[str, float | None]:
     if name not in (*KEPT, NOTHING):
         expected = f"expected {one_of((*KEPT, NOTHING), name)}, found {quoted(name)}"
         raise argparse.ArgumentTypeError(expected)
-    return name, int(value) if value.isdecimal() else _number(value) if value else None
+    return name, int(value) if value.isdecimal() else number(value) if value else None
 
 
 def add_sensors_verb(verbs: Any) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pe_core.base import dump_json
-from pe_core.base.errors import InputError
+from pe_core.base.errors import InputError, one_of, shown
 from pe_core.base.files import decode_text, read_bytes
 from pe_core.base.table_reader import Table, load_toml
 from pe_core.motion import DriveBy, SeenBody, Story, stories
@@ -72,7 +72,7 @@ def chosen_stories(study: Study, names: Sequence[str]) -> list[Story]:
         elif name in known:
             chosen[name] = known[name]
         else:
-            raise InputError("drive-by", "--story", f"one of {', '.join(known)}", name)
+            raise InputError("drive-by", "--story", one_of(known, name), shown(name))
     if not chosen:
         expected = "[[story]] in the study, or --story NAME (--list lists them)"
         raise InputError("drive-by", "story", expected, "none")

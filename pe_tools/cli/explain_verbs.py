@@ -1,6 +1,7 @@
 """`pe explain` and `pe compare`: a score described in text, and several studies compared."""
 
 import argparse
+import math
 import signal
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -17,7 +18,7 @@ from ..advice import ComparedRow
 from ..jobs import Outcome, ScoreJob, SuggestJob
 from ..wording import aligned
 from .check_verb import suggested_for, suggestion_lines
-from .command import add_score_options
+from .command import add_score_options, number
 from .interrupts import Interrupted, stop_at_first
 from .run_job import drive, print_vehicle
 from .terminal import DONE, Answer, warned, with_error
@@ -48,7 +49,8 @@ def comparison(names: Sequence[str], rows: Sequence[ComparedRow]) -> list[str]:
             table.append([title, *[""] * len(heads)])
         table += [[f"  {row_name(r)}", *(_cell(r, k) for k in range(len(heads)))] for r in own]
     lines = aligned(table, range(1, len(table[0])))
-    return [*lines, f"{BEST} best; in brackets the difference to {heads[0]}"]
+    note = f"{BEST} best; in brackets the difference to {heads[0]}"
+    return [*lines, *[note] * (len(heads) > 1)]
 
 
 def row_name(row: ComparedRow) -> str:
@@ -72,13 +74,13 @@ COMPARED = ("space", "prior", "model", "targets")
 def add_explain_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of ``explain`` to a parser."""
     about = "ask one place instead: x, y and perhaps z (else 0) in metres"
-    parser.add_argument("--at", type=float, nargs="+", metavar=("X Y", "Z"), help=about)
+    parser.add_argument("--at", type=number, nargs="+", metavar=("X Y", "Z"), help=about)
     about = "with --at: say which small move, or one more sensor, would end the blind ground there"
     parser.add_argument("--suggest", action="store_true", help=about)
     about = "with --at: a test body there (child, adult, cyclist, car, pole, cone ...): m by sensor"
     parser.add_argument("--body", metavar="NAME", help=about)
     about = "with --body: its heading, to the left (0)"
-    parser.add_argument("--heading", type=float, default=0.0, metavar="DEG", help=about)
+    parser.add_argument("--heading", type=number, default=0.0, metavar="DEG", help=about)
     about = "class whose reach is told (pedestrian)"
     parser.add_argument("--class", dest="class_name", metavar="NAME", help=about)
     parser.add_argument("--json", action="store_true", help="print JSON")
@@ -95,27 +97,33 @@ def add_compare_options(parser: argparse.ArgumentParser) -> None:
 
 def explain(study: Study, args: argparse.Namespace) -> Answer:
     """Describe a study's score and warnings; with ``--at``, query one location instead."""
-    if args.body is not None:
-        if args.at is None:
+    at, with_body = args.at, args.body is not None
+    if at is not None and not (len(at) in (2, 3 - with_body) and all(map(math.isfinite, at))):
+        expected = f"X Y{'' if with_body else ', perhaps Z'}: numbers of metres"
+        raise InputError("command line", "--at", expected, " ".join(f"{v:g}" for v in at))
+    if args.suggest and (at is None or with_body):
+        found = "--body" if with_body else "none"
+        raise InputError("command line", "--suggest", "--at X Y, a place to mend", found)
+    if with_body:
+        if at is None:
             raise InputError("command line", "--body", "--at X Y, where it stands", "none")
-        standing = advice.StandingBody(args.body, args.at, args.heading)
+        standing = advice.StandingBody(args.body, at, args.heading)
         (body,) = advice.see_bodies(study.rig, study.vehicle, (standing,), study.model)
         print_vehicle(study)
         return _answer({"body": body.to_dict()}, list(body.text), args.json)
-    if args.at is not None:
-        parts = (study.rig, study.space, study.prior, study.vehicle, args.at, study.model)
+    if at is not None:
+        parts = (study.rig, study.space, study.prior, study.vehicle, at, study.model)
         place = advice.ask_place(*parts)
         print_vehicle(study)
         told = list(place.text)
         answer: dict[str, Any] = {"place": place.to_dict()}
         if args.suggest:
-            found = suggested_for(SuggestJob(study, spot=(args.at[0], args.at[1])))
-            answer["suggestions"] = [each.to_dict() for own in found.values() for each in own]
-            mends = [line for name, own in found.items() for line in suggestion_lines(name, own)]
-            told += mends or [NOT_BLIND]
+            suggested = suggested_for(SuggestJob(study, spot=(at[0], at[1])))
+            answer["suggestions"] = [each.to_dict() for own in suggested.values() for each in own]
+            named = suggested.items()
+            mends = [line for name, own in named for line in suggestion_lines(name, own)]
+            told += mends or [NOT_BLIND] * (not place.in_vehicle)
         return _answer(answer, told, args.json)
-    if args.suggest:
-        raise InputError("command line", "--suggest", "--at X Y, a place to mend", "none")
     name = advice.class_of(study.prior, args.class_name)
     outcome = scored(study, args.workers)
     seen = advice.outlook(study.sight(), study.rig, name)

@@ -43,7 +43,10 @@ def set_keys(args: argparse.Namespace) -> Answer:
         where, old = set_value(wanted, setting, value, str(path))
         text = _changed(text, where, wanted)
         if _loaded(text) != wanted:
-            raise InputError(path, setting.key, "a key in a line of its own", "another form")
+            of_table = "a key of this table", inline(value)
+            of_line = "a key in a line of its own", "another form"
+            is_table = isinstance(old, dict) or (isinstance(old, list) and dict in map(type, old))
+            raise InputError(path, setting.key, *(of_table if is_table else of_line))
         told = "no value" if old is None else inline(old)
         lines.append(f"{path}: {setting.key}: {told} -> {inline(value)}")
     study_from_dict(load_toml(path, "study", text), str(path), path.parent)

@@ -33,7 +33,7 @@ def add_where_options(parser: argparse.ArgumentParser) -> None:
     where.add_argument("--mount", default="", metavar="NAME", help=about)
     add("--figure", choices=PLACE_FIGURES, default="entropy", metavar="|".join(PLACE_FIGURES))
     counts = ", ".join(f"{row.key} {row.places:,}" for row in PLACE_FIGURES.values())
-    add("--places", type=count_up_to(20_000), metavar="N", help=f"how many ({counts})")
+    add("--places", type=count_up_to(20_000, 1), metavar="N", help=f"how many ({counts})")
     add("--workers", type=count_up_to(1024), metavar="N", help="processes (default: all)")
     add("--json", action="store_true", help="print JSON")
     add("-o", "--output", metavar="FILE", help="write all places to a CSV file")

@@ -50,7 +50,7 @@ PARTS = re.compile(PART)
 RANGE = re.compile(r"(\d{1,9}):(\d{1,9})")
 MAX_RUNS = 10_000  # A sweep of more runs is taken for a typing error
 MAX_PARTS = 30
-SOURCE = "--set"
+SOURCE = "command line"
 OPENING, CLOSING, QUOTES = "[{", "]}", "\"'"
 
 
@@ -78,15 +78,15 @@ def read_settings(texts: Sequence[str]) -> tuple[TriedKey, ...]:
 def _setting(text: str) -> TriedKey:
     match = KEY.fullmatch(text)
     if match is None:
-        expected = "KEY=VALUE,VALUE, the key as in a study with dots between its parts"
-        raise InputError(SOURCE, "text", expected, shown(text))
+        expected = "KEY=VALUE, the key as in a study with dots between its parts"
+        raise InputError(SOURCE, "", expected, shown(text))
     key, listed = match[1], match[2]
     path = tuple(part.strip("\"'") for part in PARTS.findall(key))
     if len(path) > MAX_PARTS:
-        raise InputError(SOURCE, "text", f"keys of at most {MAX_PARTS} parts", f"{len(path)}")
+        raise InputError(SOURCE, "", f"keys of at most {MAX_PARTS} parts", f"{len(path)}")
     texts = Counter(value for part in _split(listed) for value in _counted(part.strip()))
     if "" in texts:
-        raise InputError(SOURCE, key, "values with commas between them", shown(listed))
+        raise InputError(SOURCE, key, "a value", shown(listed))
     if twice := [value for value, count in texts.items() if count > 1]:
         raise InputError(SOURCE, key, "each value once", f"{twice[0]} twice")
     return TriedKey(key, path, {value: _value(value) for value in texts})
@@ -197,10 +197,12 @@ def set_value(
 
 def _index(elements: list[Any], part: str, setting: TriedKey, source: str) -> int:
     """Return the index of a list's element from its name or number."""
-    names = [element.get("name") if isinstance(element, dict) else None for element in elements]
+    tables = (each if isinstance(each, dict) else {} for each in elements)
+    names = [each.get("name", each.get("preset")) for each in tables]
     if part in names:
         return names.index(part)
     if part.isdecimal() and int(part) < len(elements):
         return int(part)
-    choices = [str(name) for name in names if name is not None] or [f"0 to {len(elements) - 1}"]
-    raise InputError(source, setting.key, one_of(choices, part), shown(part))
+    choices = [str(name) for name in names if name is not None]
+    expected = one_of(choices, part) if choices else f"an index from 0 to {len(elements) - 1}"
+    raise InputError(source, setting.key, expected, shown(part))

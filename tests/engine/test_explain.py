@@ -56,6 +56,32 @@ def test_explain_one_place(study, capsys):
     assert data == json.loads(json.dumps(place.to_dict())) and data["sensors"][0]["name"] == "roof"
 
 
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ("--at 1", "--at: expected X Y, perhaps Z: numbers of metres, found 1"),
+        ("--at 1 2 3 4", "--at: expected X Y, perhaps Z: numbers of metres, found 1 2 3 4"),
+        ("--at nan 2", "--at: expected X Y, perhaps Z: numbers of metres, found nan 2"),
+        ("--at 1 2 3 --body adult", "--at: expected X Y: numbers of metres, found 1 2 3"),
+        ("--suggest", "--suggest: expected --at X Y, a place to mend, found none"),
+        ("--at 1 2 --body adult --suggest", "--suggest: expected --at X Y, a place to mend, found"),
+        ("--at x 2", "argument --at: expected a number, found 'x'"),
+    ],
+)
+def test_a_place_that_is_none_is_named_by_its_option(study, asked, message, capsys):
+    try:
+        assert main(["explain", study, *asked.split()]) == 1
+    except SystemExit as usage:
+        assert usage.code == 2
+    assert message in capsys.readouterr().err
+
+
+def test_a_place_in_the_vehicle_is_not_called_visible(study, capsys):
+    assert main(["explain", study, "--at", "0.25", "0.25", "0.5", "--suggest"]) == 0
+    (line,) = capsys.readouterr().out.splitlines()
+    assert line.endswith("inside the vehicle, which does not count")
+
+
 def test_a_body_stands_on_the_ground_and_is_told_with_who_sees_it(study, capsys):
     loaded = pe.load_study(study)
     near, far = (advice.StandingBody("adult", (x, 1.0), 90.0) for x in (8.0, 500.0))

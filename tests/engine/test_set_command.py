@@ -77,6 +77,25 @@ def test_a_change_replaces_one_place_and_leaves_the_rest(path, change, capsys):
     assert f": {change.partition('=')[0]}: " in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ("samples", "command line: expected KEY=VALUE, the key as in a study"),
+        ("samples=", "command line: samples: expected a value, found"),
+        ("sensor.roof=1", "sensor.roof: expected a key of this table, found 1"),
+        ("sensor=1", "sensor: expected a key of this table, found 1"),
+        ("story.cut.speed_kmh=9", "story.cut.speed_kmh: expected cut_in, or one of crossing_child"),
+        ("space.x.high=1", "space.x.high: expected an index from 0 to 1, found 'high'"),
+    ],
+)
+def test_a_change_that_fits_nothing_is_named_as_it_was_typed(path, change, message, capsys):
+    stories = '\n[[story]]\npreset = "crossing_child"\n[[story]]\npreset = "cut_in"\n'
+    path.write_text(COMMENTED + stories, "utf-8")
+    assert main(["set", str(path), change]) == 1
+    assert message in capsys.readouterr().err
+    assert path.read_text("utf-8") == COMMENTED + stories
+
+
 def leaves(data, path=()):
     if isinstance(data, dict) and data:
         for key, value in data.items():

@@ -77,11 +77,11 @@ def test_several_settings_make_every_combination(study):
         ("sensor.rof.model=x", "{study}: sensor.rof.model: expected one of roof, found 'rof'"),
         ("samples=1.5", "{study} with samples=1.5: samples: expected a whole number"),
         ("space.x.0.y=1", "{study}: space.x.0.y: expected a table before the last dot, found -20"),
-        ("space.x.5=1", "{study}: space.x.5: expected one of 0 to 1, found '5'"),
-        ("samples=", "--set: samples: expected values with commas between them, found ''"),
-        ("samples=0,0", "--set: samples: expected each value once, found 0 twice"),
-        ("samples", "--set: text: expected KEY=VALUE,VALUE, the key as in a study"),
-        (".".join("a" * 31) + "=1", "--set: text: expected keys of at most 30 parts"),
+        ("space.x.5=1", "{study}: space.x.5: expected an index from 0 to 1, found '5'"),
+        ("samples=", "command line: samples: expected a value, found ''"),
+        ("samples=0,0", "command line: samples: expected each value once, found 0 twice"),
+        ("samples", "command line: expected KEY=VALUE, the key as in a study"),
+        (".".join("a" * 31) + "=1", "command line: expected keys of at most 30 parts"),
     ],
 )
 def test_what_fits_no_study_is_one_line_before_any_work(study, out, setting, complaint, capsys):
@@ -94,7 +94,7 @@ def test_what_fits_no_study_is_one_line_before_any_work(study, out, setting, com
 @pytest.mark.parametrize(
     ("more", "complaint"),
     [
-        (["--set", "samples=0", "--set", "samples=2048"], "--set: samples: expected each key once"),
+        (["--set", "samples=0", "--set", "samples=2048"], "command line: samples: expected each key once"),
         (
             ["--executor", "foo"],
             "command line: executor: expected dask://HOST:PORT, tcp://HOST:PORT",
@@ -104,9 +104,9 @@ def test_what_fits_no_study_is_one_line_before_any_work(study, out, setting, com
             "command line: executor: expected dask://HOST:PORT",
         ),
         (["--executor", "os:getcwd"], "command line: executor: expected a function that returns a"),
-        (["--set", "optimize.seed=5:5"], "--set: range: expected A:B with 1 to 10,000 numbers"),
+        (["--set", "optimize.seed=5:5"], "command line: range: expected A:B with 1 to 10,000 numbers"),
         (["--executor", "tcp://127.0.0.1:1"], "tcp://127.0.0.1:1: scheduler: expected a"),
-        (["--set", SEEDS], "--set: runs: expected"),
+        (["--set", SEEDS], "command line: runs: expected"),
     ],
 )
 def test_sweeps_that_cannot_be_are_one_line(study, out, more, complaint, capsys, monkeypatch):

@@ -312,4 +312,4 @@ def test_the_command_says_when_each_body_is_confirmed(file, tmp_path, capsys):
     assert main(["drive-by", str(file), "--story", str(own), "--json"]) in (0, 3)
     slow = json.loads(capsys.readouterr().out)["stories"][0]["bodies"][0]["margin_s"]
     assert slow is None or slow > -2.0
-    assert main(["drive-by", str(file), "--story", "none"]) == 1
+    assert main(["drive-by", str(file), "--story", "crossing"]) == 1

@@ -83,7 +83,7 @@ def shown(text: str) -> str:
 
 
 PLAIN = (
-    (r" nats\b", ""),
+    (r" (?:nats\b|\[nats\])", ""),
     (r"\b(?:Perception entropy|Entropy)\b", "Score"),
     (r"\b(?:perception entropy|entropy)\b", "score"),
     (r"\bof the prior\b", "of where objects are expected"),

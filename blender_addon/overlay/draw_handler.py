@@ -13,7 +13,9 @@ import numpy as np
 from mathutils import Matrix
 
 from .. import body_query, bridge, engine_process, vehicle_cache, viewport
+from ..choices import SIMPLE
 from ..engine import graphics, pe
+from ..language import plain
 from . import labels, scheduler, strip, surroundings, wipe
 from .batches import Batches
 from .layer_cache import shown_of
@@ -155,6 +157,11 @@ def draw_text() -> None:
     if context.scene.perception_entropy.view.show_legend:
         found = (_legend(scene, layer, name) for layer, name in visible)
         legends = list(dict.fromkeys(each for each in found if each is not None))
+        if context.scene.perception_entropy.panels == SIMPLE:
+            legends = [
+                replace(each, title=plain(each.title), values=tuple(map(plain, each.values)))
+                for each in legends
+            ]
         vehicle = vehicle_cache.shared.last_read(scene)
         bounds = None if vehicle is None or eye is not None else vehicle.bounds
         taken = labels.draw_legends(context, legends, bounds)

@@ -41,7 +41,7 @@ class Gpu:
         self.written += [label.text for label in labels]
 
     def draw_legends(self, _context, legends, _vehicle):
-        self.written += [legend.title for legend in legends]
+        self.written += [text for legend in legends for text in (legend.title, *legend.values)]
         return []
 
 
@@ -109,6 +109,17 @@ def test_shapes_are_uploaded_once(window, rig):
     scenes.drawn(rig)
     redraw()
     assert len(draw_handler._batches) == 13
+
+
+def test_simple_has_its_words_on_legends_too(window, rig):
+    """The read-out says "Score" there, and no nats."""
+    scenes.drawn(rig)
+    for panels, words in (("ALL", "Entropy nats"), ("SIMPLE", "Score")):
+        rig.perception_entropy.panels, window.card.written = panels, []
+        redraw()
+        (title,) = (t for t in window.card.written if t.startswith(("Entropy,", "Score,")))
+        in_nats = " nats" * any("nats" in text for text in window.card.written)
+        assert title.partition(",")[0] + in_nats == words
 
 
 def test_overlays_off_hides_all(window, rig):

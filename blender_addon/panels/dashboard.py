@@ -79,7 +79,7 @@ def draw_row(layout: UILayout, scene: Scene, row: search.Reading, values: list[f
     is_score = figure.key == ENTROPY and is_simple(scene)
     draw_label(name, "Score" if is_score else figure.label)
     text, sense = change_text(figure, values)
-    text = text.removesuffix(" nats" if is_score else " met")
+    text = f"{'≥ ' * row.is_cut}{text.removesuffix(' nats' if is_score else ' met')}"
     is_changed = row.wanted is None and sense != SAME
     makes_room = is_changed and " " not in text  # for what it was before
     share = SHARE_WITHOUT_UNIT if makes_room else VALUE_SHARE

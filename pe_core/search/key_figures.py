@@ -128,6 +128,7 @@ class FigureOfMerit:
     `of` gives its values from what `part` of `PARTS` has found; the worst one counts. A search
     minimises none of them: it may keep the figure, whose `cost` is then no higher than that of what
     is wanted, or of the start. `rule` is that of what is wanted; None: it cannot be typed.
+    `at_least` says whether the space ends before the figure does.
     """
 
     key: str
@@ -141,6 +142,7 @@ class FigureOfMerit:
     cost: Callable[[float], float] = float
     rule: Number | Whole | None = None
     up: bool = False
+    at_least: Callable[[Any], bool] = lambda found: False
 
     @property
     def name(self) -> str:
@@ -174,12 +176,16 @@ class FigureOfMerit:
             round_off(value * scale) / scale if isinstance(self.rule, Number) else math.ceil(value)
         )
 
-    def text(self, value: float | None) -> str:
+    def is_cut(self, figures: KeyFigures | None) -> bool:
+        """Whether the figure of a rig may be better: the space ends there."""
+        return bool(figures and self.part and self.at_least(getattr(figures, self.part)))
+
+    def text(self, value: float | None, is_cut: bool = False) -> str:
         """Return a value with its unit; what is blind is rounded up."""
         if value is None:
             return NO_FIGURE
         value = shown_end(value) if self.up else value
-        return f"{value:.{self.decimals}f} {self.unit}".strip()
+        return f"{value:.{self.decimals}f} {self.unit}".strip() + " and more" * is_cut
 
 
 def _ring(name: str) -> Callable[[TrafficAp | None], Sequence[float]]:
@@ -219,6 +225,7 @@ KEY_FIGURES = {
             higher=True,
             part="reach",
             of=lambda found: [metres for metres, _ in found.values()],
+            at_least=lambda found: bool(found) and min(found.values())[1],
             cost=lambda metres: 1.0 / (1.0 + metres),
             rule=Number(0.0, unit="m"),
         ),
@@ -268,12 +275,14 @@ class Wanted:
 @dataclass(frozen=True, slots=True)
 class Reading:
     """A row of the dashboard: a figure, its value, what is wanted, whether a search keeps it.
-    `value` is None where it is not known. Of requirements `wanted` is how many were checked."""
+    `value` is None where it is not known. Of requirements `wanted` is how many were checked.
+    `is_cut`: the space ends there, the true value may be better."""
 
     figure: FigureOfMerit
     value: float | None
     wanted: float | None = None
     kept: bool = False
+    is_cut: bool = False
 
     @property
     def met(self) -> bool | None:
@@ -285,7 +294,7 @@ class Reading:
     @property
     def text(self) -> str:
         """The value in words, and where something is wanted whether it is met."""
-        row, told = self.figure, self.figure.text(self.value)
+        row, told = self.figure, self.figure.text(self.value, self.is_cut)
         if row.key == REQUIREMENTS:
             return f"{self.value:.0f} of {self.wanted:.0f} met" if self.value is not None else told
         if self.met is None or self.value is None or self.wanted is None:
@@ -315,5 +324,5 @@ def dashboard(
         asked = getattr(wanted, key, None)
         if key == REQUIREMENTS and met:
             value, asked = float(sum(met)), float(len(met))
-        rows.append(Reading(row, value, asked, key in keep))
+        rows.append(Reading(row, value, asked, key in keep, row.is_cut(figures)))
     return tuple(rows)

@@ -164,12 +164,13 @@ def figure_lines(outcome: Outcome) -> list[str]:
     plain: list[str] = []
     for row in outcome.dashboard:
         if row.figure.part or (row.figure.key == ENTROPY and row.wanted is not None):
-            values = [row.figure.value(each) for each in told]
-            if row.figure.key == ENTROPY:
+            figure, values = row.figure, [row.figure.value(each) for each in told]
+            if figure.key == ENTROPY:
                 values = [each.entropy for each in ends]
-            before = map(row.figure.text, values[:-1])
-            text = f"{row.figure.name} {' -> '.join([*before, row.text])}"
-            (plain if row.wanted is None else lines).append(text)
+            before = map(figure.text, values[:-1], map(figure.is_cut, told))
+            text = f"{figure.name} {' -> '.join([*before, row.text])}"
+            if row.wanted is not None or any(each is not None for each in values):
+                (plain if row.wanted is None else lines).append(text)
     return [f"key figures  {', '.join(plain)}", *lines] if told else lines
 
 

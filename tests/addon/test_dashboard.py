@@ -44,6 +44,10 @@ def test_its_values_are_those_of_the_score(car):
         if row["value"] is not None and figure.part:
             assert figure.text(row["value"]).replace("m2", "m²") in texts
     assert f"{result.entropy:.3f}" in texts
+    data = json.loads(car.perception_entropy.result_json)
+    data["figures"]["after"]["reach"] = {"car": [20.0, True], "cone": [20.0, True]}
+    car.perception_entropy.result_json = json.dumps(data)
+    assert "≥ 20 m" in shown(car).texts("label"), "the space ends there"
 
 
 def test_what_is_wanted_is_met_or_not_and_is_the_study_s(car):

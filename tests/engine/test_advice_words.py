@@ -11,9 +11,11 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_core.scoring.score import TrafficAp
+from pe_core.search.key_figures import dashboard
 from pe_tools import advice
 from pe_tools.advice.ranking import moved_words
 from pe_tools.advice.summary import outlook_words
+from pe_tools.cli.terminal import figure_lines
 from tests.engine import shapes
 
 
@@ -179,6 +181,21 @@ def test_a_move_is_told_with_its_gain_and_its_error(study):
         "far 0.33 to 0.33 (+- 0.02)"
     )
     assert advice.gain_sentence(study.rig, study.rig, *told) == ""
+
+
+def test_key_figures_are_told_where_they_exist_and_to_where_the_space_ends():
+    """There is no AP at a middle distance, before or after."""
+    found = {"car": (19.0, False)}, {"car": (20.0, True), "cone": (30.0, True)}
+    told = [dataclasses.replace(in_traffic((0.4, 0.01)), reach=each) for each in found]
+    parts = {"kind": "optimize", "figures": told, "before": score(), "after": score()}
+    (line,) = figure_lines(SimpleNamespace(**parts, dashboard=dashboard(told[1], 3.0)))
+    assert "reach 19 m -> 20 m and more, AP near 0.40 -> 0.40, AP far 0.33 -> 0.33" in line
+    assert (
+        "20 m and more -> 19 m"
+        in figure_lines(
+            SimpleNamespace(**parts | {"figures": told[::-1]}, dashboard=dashboard(told[0], 3.0))
+        )[0]
+    )
 
 
 def reach(by_degrees, name="pedestrian", limit=80.0):

@@ -49,12 +49,14 @@ def readout_of(score: LiveScore | None, shown: ShownScore) -> ReadoutText:
     """Return the text of the score that is shown: a live or a stored one. Changes are those of the
     live score, from sample to sample; of a stored search, its own."""
     change, sense, against = "", SAME, ""
-    lines: tuple[ReadoutLine, ...] = ((TextPiece(f"Coverage {shown.coverage:.1%}"),),)
+    lines: tuple[ReadoutLine, ...] = (
+        (TextPiece(f"Coverage {advice.percent(shown.coverage, 1)}"),),
+    )
     if score is not None:
         now, before = score.summary, score.before
         what = "Coverage" if now.voxels else "Objects visible:"
         by = None if before is None else 100.0 * (now.coverage - before.coverage)
-        lines = ((TextPiece(f"{what} {shown.coverage:.1%}"), *change_of(by, 1)),)
+        lines = ((TextPiece(f"{what} {advice.percent(shown.coverage, 1)}"), *change_of(by, 1)),)
         if now.ap is not None:
             by = None if before is None or before.ap is None else now.ap - before.ap
             lines += ((TextPiece(f"Expected AP {now.ap:.3f}"), *change_of(by, 3)),)

@@ -57,7 +57,7 @@ def draw_dashboard(layout: UILayout, context: Context) -> None:
     if not is_simple(scene):
         name, value = columns(column, NAME_SHARE)
         draw_label(name, "Coverage")
-        draw_label(value, "\N{EN DASH}" if now is None else f"{now.coverage:.1%}")
+        draw_label(value, "\N{EN DASH}" if now is None else advice.percent(now.coverage, 1))
     told = "" if result is None else known_rigs.told(scene)
     draw_label(column, told or "Score: lower is better")
     if result is not None:

@@ -7,7 +7,7 @@ from pe_core.scene.rig import Rig
 from pe_core.scoring.score import Score
 from pe_core.search.key_figures import KEY_FIGURES, KeyFigures
 
-from ..wording import joined, metres
+from ..wording import joined, metres, percent
 from .location import WAYS
 from .score_comparison import AP, COVERAGE, ENTROPY, MIN_CHANGE, SECTOR, TRAFFIC, ComparedRow
 from .summary import WHERE
@@ -36,7 +36,7 @@ def ranking(names: Sequence[str], rows: Sequence[ComparedRow]) -> tuple[str, ...
 
 def _ranked(names: Sequence[str], row: ComparedRow) -> str:
     noun, factor, digits, unit, unit_of_gap = RANKED[row.measure]
-    values = {k: factor * value for k, value in enumerate(row.values) if value is not None}
+    values = {k: factor * value for k, value in enumerate(row.told) if value is not None}
     first = row.order[0]
     best = [k for k in row.order if not row.differ(first, k)]
     worse = []
@@ -111,7 +111,7 @@ def search_cost(before: Score, after: Score, start: KeyFigures, result: KeyFigur
             texts = row.text(first), row.text(last)
             losses += [f"{row.name} ({' to '.join(texts)})"] * (texts[0] != texts[1])
     if before.coverage - after.coverage >= MIN_CHANGE[COVERAGE]:
-        losses.append(f"coverage ({before.coverage:.1%} to {after.coverage:.1%})")
+        losses.append(f"coverage ({percent(before.coverage, 1)} to {percent(after.coverage, 1)})")
     if before.objects is not None and after.objects is not None:
         if before.objects.ap - after.objects.ap >= MIN_CHANGE[AP]:
             losses.append(f"expected AP ({before.objects.ap:.3f} to {after.objects.ap:.3f})")

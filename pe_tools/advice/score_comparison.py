@@ -105,10 +105,10 @@ class ComparedRow:
     "class" or "in traffic", and the name of the zone or class. `measure`: entropy [nats], blind
     ground [m2] and widest blind sector [deg]: lower is better. Coverage and expected AP, 0 to 1,
     reach ahead [m] and margin [s]: higher is better. `values`: by score; None for a score without
-    this zone, class or story; `NEVER` for a story that is never confirmed. `errors`: (N, N) standard errors of the differences of each two values; 0
-    where nothing is sampled. `factor`: number of standard errors beyond which a difference is
-    significant (`sure_factor`). `is_ranked`: whether a value may be the best; not where the error
-    of a difference is unknown."""
+    this zone, class or story; `NEVER` for a story that is not confirmed. `errors`: (N, N) standard
+    errors of the differences of each two values; 0 where nothing is sampled. `factor`: number of
+    standard errors beyond which a difference is significant (`sure_factor`). `is_ranked`: whether
+    a value may be the best; not where the error of a difference is unknown."""
 
     group: str
     name: str
@@ -120,9 +120,9 @@ class ComparedRow:
 
     @property
     def told(self) -> tuple[float | None, ...]:
-        """The values as they are told: what is blind is rounded up, as on the dashboard."""
-        is_blind = self.measure in (BLIND, SECTOR)
-        return tuple(shown_end(v) if is_blind and v is not None else v for v in self.values)
+        """The values as they are told: what is blind is rounded up, as on the dashboard; less than
+        all is less than 100%."""
+        return tuple(None if v is None else _safe(self.measure, v) for v in self.values)
 
     @property
     def differences(self) -> tuple[float | None, ...]:
@@ -192,6 +192,12 @@ class ComparedRow:
         """Return the row as plain JSON data."""
         keys = "group name measure values differences best errors factor spread"
         return {key: getattr(self, key) for key in keys.split()}
+
+
+def _safe(measure: str, value: float) -> float:
+    if measure in (BLIND, SECTOR):
+        return shown_end(value)
+    return min(value, 0.999) if measure == COVERAGE and value < 1.0 else value
 
 
 def compare(scores: Mapping[str, Score]) -> tuple[ComparedRow, ...]:

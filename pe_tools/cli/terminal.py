@@ -19,7 +19,7 @@ from ..advice import (
     off_by,
 )
 from ..jobs import Outcome, condition_lines, searched_on, sureness_lines
-from ..wording import margin_text
+from ..wording import margin_text, percent
 
 DONE, BAD_INPUT, USAGE, NOT_MET, INTERRUPTED = 0, 1, 2, 3, 130
 Answer = tuple[str, int]  # What a verb prints on stdout, and its exit status
@@ -102,7 +102,7 @@ def summary(outcome: Outcome) -> str:
     """Return an outcome in a few lines for readers."""
     score = outcome.after
     if outcome.kind == "score":
-        first, seen = with_error(score.entropy, score.stderr), f"{score.coverage:.1%}"
+        first, seen = with_error(score.entropy, score.stderr), percent(score.coverage, 1)
         lines = [f"entropy   {first}", *figure_lines(outcome), f"coverage  {seen}"]
         lines += built_lines(outcome.figures[:1]) if outcome.figures else []
     else:
@@ -144,7 +144,7 @@ def _before_and_after(outcome: Outcome) -> Iterator[str]:
     entropy = f"entropy   {before.entropy:.4f} -> {after.entropy:.4f} nats"
     beside = figure_lines(outcome)
     yield from [*beside, entropy] if outcome.in_traffic is not None else [entropy, *beside]
-    yield f"coverage  {before.coverage:.1%} -> {after.coverage:.1%}"
+    yield f"coverage  {percent(before.coverage, 1)} -> {percent(after.coverage, 1)}"
     yield from built_lines(outcome.figures) if outcome.figures else ()
     yield from filter(None, (outcome.gain, outcome.cost))
     if (found := outcome.robustness) is not None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from pe_core import catalog
 from pe_core.base import dump_json
+from pe_core.base.errors import plural
 from pe_core.base.files import csv_text
 from pe_core.base.table_reader import finite
 from pe_core.scene.rig import Sensor
@@ -75,6 +76,6 @@ def place_lines(found: PlaceMap) -> list[str]:
     free = sum(each.value is not None for each in found.places)
     head = f"{found.sensor.model.name} at {free:,} of {len(found.places):,} places"
     lines = [f"{head}; without it {name} {row.text(found.base)}", *aligned(rows)]
-    lines += [f"{count:,} places forbidden: {why}" for why, count in found.reasons().items()]
+    lines += [f"{plural(n, 'place')} forbidden: {why}" for why, n in found.reasons().items()]
     sure = f"gains are within +- {row.text(found.error)}" if found.error else ""
     return [*lines, *[f"{sure} of exact ones (root mean square)"] * bool(sure)]

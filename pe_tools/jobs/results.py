@@ -33,6 +33,7 @@ from pe_core.study.mounting_file import areas_of, mounts_table
 from pe_core.study.study import EXPECTED_AP, Study
 from pe_core.version import __version__
 
+from ..wording import percent
 from .folder import PROGRAM, FileSet, Write, our_files, prepare_folder, sha256_of
 from .job import HistoryRow, Outcome
 from .searched_figure import IN_NATS, SearchedFigure, searched_figure
@@ -236,7 +237,7 @@ def condition_lines(table: ConditionTable) -> list[str]:
 def _line(row: ConditionScore) -> str:
     ap = "" if row.ap is None else f", expected AP {row.ap:.3f}"
     return (
-        f"  {row.name}: {row.entropy:.4f} nats, coverage {row.coverage:.1%}{ap}, "
+        f"  {row.name}: {row.entropy:.4f} nats, coverage {percent(row.coverage, 1)}{ap}, "
         f"weight {row.weight:g}"
     )
 

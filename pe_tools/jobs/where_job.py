@@ -14,7 +14,7 @@ from pe_core.base.errors import InputError, one_of, shown
 from pe_core.base.values import rounded
 from pe_core.scene.rig import Rig, Sensor
 from pe_core.scoring.score import Objective
-from pe_core.scoring.sight import Sight
+from pe_core.scoring.sight import Sight, shown_end
 from pe_core.search import MountingPlaces, SurfaceMount, SurfacePlace, evaluate_all
 from pe_core.study.condition_table import search_evaluator
 from pe_core.study.requirement_search import RequirementConstraint
@@ -73,7 +73,8 @@ class PlaceFigure:
     exact: bool = False
 
     def text(self, value: float, sign: str = "") -> str:
-        """Return a value with its unit; `sign` "+" shows one."""
+        """Return a value with its unit, blind sectors rounded up; `sign` "+" shows one."""
+        value = shown_end(value) if self.key == "blind" and not sign else value
         return f"{value:{sign}.{self.decimals}f} {self.unit}".strip()
 
 
@@ -82,7 +83,7 @@ PLACE_FIGURES = {
     for row in (
         PlaceFigure("entropy", "Entropy", "nats", 3, lambda study, n: study.evaluator(n), 2000),
         PlaceFigure("ap", "Expected AP in traffic", "", 3, _by_ap, 600, -1.0),
-        PlaceFigure("blind", "Widest blind sector", "deg", 0, _sector, 350, 1.0, True),
+        PlaceFigure("blind", "Widest blind sector", "deg", 1, _sector, 350, 1.0, True),
         PlaceFigure("verdicts", "Requirements met", "", 0, _met, 700, -1.0, True),
     )
 }  # Figures of places, by name

@@ -189,6 +189,14 @@ def test_a_story_that_is_never_confirmed_is_the_worst_there_is(margins, senses, 
     dump_json(finite(row.to_dict()))
 
 
+def test_less_than_all_is_nowhere_told_as_all():
+    """In the table and in the sentence below it, as in the line of a score."""
+    rows = advice.compare({"a": score(2.0, 0.99971), "b": score(2.0, 1.0)})
+    coverage = next(line for line in comparison(["a", "b"], rows) if "%" in line)
+    assert coverage.split()[1:] == ["99.9%", "100.0%", "(+0.1)"]
+    assert "a (99.9%)" in advice.ranking(["a", "b"], rows)[1]
+
+
 @pytest.mark.parametrize(
     ("measure", "key"), [("blind", "blind_ground"), ("sector", "blind_sector")]
 )

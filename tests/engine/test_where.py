@@ -47,6 +47,11 @@ def test_points_are_on_the_surface_and_every_beginning_covers_it():
         assert nearest.max() <= among.min() + 1e-9  # no gap is wider than places are apart
 
 
+def test_a_blind_sector_is_rounded_up_and_its_change_is_not():
+    row = where_job.PLACE_FIGURES["blind"]
+    assert [row.text(0.21), row.text(0.21, "+")] == ["0.3 deg", "+0.2 deg"]
+
+
 @pytest.mark.parametrize("figure", ["entropy", "ap", "blind"])
 def test_a_value_is_the_figure_of_the_rig_with_the_sensor_there(study, figure):
     found = mapped(study, figure=figure, count=12)

@@ -224,14 +224,11 @@ def own_kinds(_settings: object, _context: object) -> list[tuple[str, str, str, 
     """Return the kinds that an own sensor may be of, as Blender wants a menu. A .blend file holds
     the numbers: those of the kinds with a row are their places in the table, others follow from the
     name."""
-    numbers = {name: number for number, name in enumerate(ROWS)}
+    # Of other kinds: the same number in every session, clear of the table's places.
+    numbers = {name: 1000 + zlib.crc32(name.encode()) % 2**24 for name in kinds.KINDS}
+    numbers |= {name: number for number, name in enumerate(ROWS)}
     _items[:] = [
-        (name, kind.label, row_of(name).own_about, numbers.get(name, _number_of(name)))
+        (name, kind.label, row_of(name).own_about, numbers[name])
         for name, kind in kinds.KINDS.items()
     ]
     return _items
-
-
-def _number_of(name: str) -> int:
-    """Return a number of a kind's name, the same in every session, clear of the table's places."""
-    return 1000 + zlib.crc32(name.encode()) % 2**24

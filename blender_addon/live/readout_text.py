@@ -29,11 +29,6 @@ ReadoutLine = tuple[TextPiece, ...]
 """Pieces that are drawn beside each other; empty for no line."""
 
 
-def text_of(line: ReadoutLine) -> str:
-    """Return a line as plain text."""
-    return " ".join(piece.text for piece in line)
-
-
 class ReadoutText(NamedTuple):
     """The text of a score: headline, error, change, reference of the change, and further lines."""
 

@@ -13,6 +13,7 @@ from ..live import SAME, SENSE_ICONS
 from ..own_jobs import ComparedVariant, CompareJob, PendingVariant
 from .declared import INTERNAL, OperatorResult, Told, operator
 from .jobs import JobRow, Task
+from .variants import unless_variants
 
 LABEL_PX, COLUMN_PX = 260, 170
 MIN_WIDTH_PX, LETTER_PX = 560, 7
@@ -71,21 +72,14 @@ def compare_task(context: bpy.types.Context) -> Task | None:
     return Task(CompareJob(pending), finish, "compared")
 
 
-def open_table() -> None:
-    """Open the table."""
-    bpy.ops.pe.show_comparison("INVOKE_DEFAULT")
-
-
 COMPARE = JobRow(
     "compare_variants",
     "Compare",
     "Compare all variants: entropy and coverage by zone and class, blind ground, reach.\n\n"
     "Variants without a valid score are scored first",
     compare_task,
-    unless=lambda context: (
-        None if context.scene.perception_entropy.variants else "There is no variant yet"
-    ),
-    show=open_table,
+    unless=unless_variants,
+    show=lambda: bpy.ops.pe.show_comparison("INVOKE_DEFAULT"),
 ).declare()
 
 
@@ -96,7 +90,7 @@ def _open(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> Ope
     width = max(LABEL_PX + COLUMN_PX * len(self.names), MIN_WIDTH_PX)
     letters = width // LETTER_PX
     self.said = sentences(self.names, self.rows, letters)
-    self.said += wrap(shown(hardware_note(context.scene)), letters)
+    self.said += wrap(shown(bridge.hardware_note(compared_variants(context.scene))), letters)
     title, close = shown(self.bl_label), shown("Close")
     return context.window_manager.invoke_props_dialog(
         self, width=width, title=title, confirm_text=close, translate=False
@@ -235,11 +229,6 @@ def compared_variants(scene: bpy.types.Scene) -> list[bpy.types.PropertyGroup]:
     active = scene.perception_entropy.variant_key
     rows = [row for row in scene.perception_entropy.variants if row.has_result]
     return sorted(rows, key=lambda row: row.key != active)[:MAX_VARIANTS]
-
-
-def hardware_note(scene: bpy.types.Scene) -> str:
-    """Return the note on compared variants with other sensors; empty where only poses differ."""
-    return bridge.hardware_note(compared_variants(scene))
 
 
 def sentences(names: list[str], rows: tuple[advice.ComparedRow, ...], letters: int) -> list[str]:

@@ -14,15 +14,10 @@ from .declared import OperatorResult, RowList, operator
 OWN, ALL = "OWN", "ALL"
 
 
-def _citation(source_name: str, confidence: str) -> str:
-    """Return a source as a tooltip; its own text stays English, as it is cited."""
-    return f"{source_name} (confidence {confidence})"
-
-
 PRESETS = (
     (OWN, "Own Requirement", "An adult ahead of the vehicle, to be changed below"),
     *(
-        (each.id, f"{each.check}: {each.name}", _citation(each.source, each.confidence))
+        (each.id, f"{each.check}: {each.name}", f"{each.source} (confidence {each.confidence})")
         for each in studies.requirement_file.presets().values()
     ),
     (ALL, "All Presets", "Each preset that the rig can be held to"),

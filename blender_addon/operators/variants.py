@@ -21,7 +21,8 @@ KEY = IntProperty(
 VariantFunction = Callable[[bpy.types.Scene, Any], str | None]
 
 
-def _unless_variants(context: bpy.types.Context) -> str | None:
+def unless_variants(context: bpy.types.Context) -> str | None:
+    """Return that there is no variant; None where there is one."""
     return None if context.scene.perception_entropy.variants else "There is no variant yet"
 
 
@@ -32,7 +33,7 @@ def _unless_active(context: bpy.types.Context) -> str | None:
 
 def of_variant(
     label: str,
-    unless: Callable[[bpy.types.Context], str | None] | None = _unless_variants,
+    unless: Callable[[bpy.types.Context], str | None] | None = unless_variants,
     options: frozenset[str] = UNDO,
     of_sensors: bool = False,
 ) -> Callable[[VariantFunction], type[bpy.types.Operator]]:

@@ -159,8 +159,7 @@ def draw_text() -> None:
         legends = list(dict.fromkeys(each for each in found if each is not None))
         if context.scene.perception_entropy.panels == SIMPLE:
             legends = [
-                replace(each, title=plain(each.title), values=tuple(map(plain, each.values)))
-                for each in legends
+                replace(k, title=plain(k.title), values=(*map(plain, k.values),)) for k in legends
             ]
         vehicle = vehicle_cache.shared.last_read(scene)
         bounds = None if vehicle is None or eye is not None else vehicle.bounds

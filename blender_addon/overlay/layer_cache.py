@@ -59,7 +59,8 @@ class LayerCache:
         vehicle = request.vehicle
         if vehicle is None or len(vehicle.triangles) <= MAX_TRIANGLES:
             return vehicle
-        return self._keep("body", request.body_key, lambda: _simplified(vehicle))
+        key, few = request.body_key, MAX_TRIANGLES  # it takes seconds for millions
+        return self._keep("body", key, lambda: graphics.simplified(vehicle, few, quick=True)[0])
 
     def sight(self, request: ViewRequest) -> Sight:
         """Return the `Sight` that computes the visibility of rigs."""
@@ -113,11 +114,6 @@ class LayerCache:
         most = MAX_KEPT.get(sort, 1)
         found: T = self._kept.setdefault(sort, text.RecentCache(most)).made(key, make)
         return found
-
-
-def _simplified(vehicle: pe.Vehicle) -> pe.Vehicle:
-    """Return a vehicle of `MAX_TRIANGLES`, which takes seconds for millions of triangles."""
-    return graphics.simplified(vehicle, MAX_TRIANGLES, quick=True)[0]
 
 
 def _checker(request: ViewRequest) -> tuple[requirements.RequirementChecker, dict[str, str]]:

@@ -128,7 +128,7 @@ class FigureOfMerit:
     `of` gives its values from what `part` of `PARTS` has found; the worst one counts. A search
     minimises none of them: it may keep the figure, whose `cost` is then no higher than that of what
     is wanted, or of the start. `rule` is that of what is wanted; None: it cannot be typed.
-    `at_least` says whether the space ends before the figure does.
+    `is_cut` says whether the space ends there: the true figure may be better.
     """
 
     key: str
@@ -142,7 +142,7 @@ class FigureOfMerit:
     cost: Callable[[float], float] = float
     rule: Number | Whole | None = None
     up: bool = False
-    at_least: Callable[[Any], bool] = lambda found: False
+    is_cut: Callable[[KeyFigures], bool] = lambda figures: False
 
     @property
     def name(self) -> str:
@@ -176,10 +176,6 @@ class FigureOfMerit:
             round_off(value * scale) / scale if isinstance(self.rule, Number) else math.ceil(value)
         )
 
-    def is_cut(self, figures: KeyFigures | None) -> bool:
-        """Whether the figure of a rig may be better: the space ends there."""
-        return bool(figures and self.part and self.at_least(getattr(figures, self.part)))
-
     def text(self, value: float | None, is_cut: bool = False) -> str:
         """Return a value with its unit; what is blind is rounded up."""
         if value is None:
@@ -196,11 +192,9 @@ def _whole(found: TrafficAp | None) -> Sequence[float]:
     return [] if found is None else [found.ap]
 
 
-def _missed(ap: float) -> float:
-    return 1.0 - ap
-
-
-_Ap = partial(FigureOfMerit, part="traffic", higher=True, cost=_missed, rule=Number(0.0, cap=1.0))
+_Ap = partial(
+    FigureOfMerit, part="traffic", higher=True, cost=lambda ap: 1.0 - ap, rule=Number(0.0, cap=1.0)
+)
 _Blind = partial(FigureOfMerit, decimals=1, up=True)
 UNSEEN = "where no sensor sees what is"
 IN_TRAFFIC = "Expected AP of objects in traffic"
@@ -225,7 +219,7 @@ KEY_FIGURES = {
             higher=True,
             part="reach",
             of=lambda found: [metres for metres, _ in found.values()],
-            at_least=lambda found: bool(found) and min(found.values())[1],
+            is_cut=lambda figures: bool(figures.reach) and min(figures.reach.values())[1],
             cost=lambda metres: 1.0 / (1.0 + metres),
             rule=Number(0.0, unit="m"),
         ),
@@ -275,8 +269,7 @@ class Wanted:
 @dataclass(frozen=True, slots=True)
 class Reading:
     """A row of the dashboard: a figure, its value, what is wanted, whether a search keeps it.
-    `value` is None where it is not known. Of requirements `wanted` is how many were checked.
-    `is_cut`: the space ends there, the true value may be better."""
+    `value` is None where it is not known. Of requirements `wanted` is how many were checked."""
 
     figure: FigureOfMerit
     value: float | None
@@ -324,5 +317,6 @@ def dashboard(
         asked = getattr(wanted, key, None)
         if key == REQUIREMENTS and met:
             value, asked = float(sum(met)), float(len(met))
-        rows.append(Reading(row, value, asked, key in keep, row.is_cut(figures)))
+        is_cut = figures is not None and row.is_cut(figures)
+        rows.append(Reading(row, value, asked, key in keep, is_cut))
     return tuple(rows)

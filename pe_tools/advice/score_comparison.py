@@ -107,8 +107,7 @@ class ComparedRow:
     reach ahead [m] and margin [s]: higher is better. `values`: by score; None for a score without
     this zone, class or story; `NEVER` for a story that is not confirmed. `errors`: (N, N) standard
     errors of the differences of each two values; 0 where nothing is sampled. `factor`: number of
-    standard errors beyond which a difference is significant (`sure_factor`). `is_ranked`: whether
-    a value may be the best; not where the error of a difference is unknown."""
+    standard errors beyond which a difference is significant (`sure_factor`)."""
 
     group: str
     name: str
@@ -116,13 +115,19 @@ class ComparedRow:
     values: tuple[float | None, ...]
     errors: tuple[tuple[float, ...], ...]
     factor: float = 0.0
-    is_ranked: bool = True
 
     @property
     def told(self) -> tuple[float | None, ...]:
         """The values as they are told: what is blind is rounded up, as on the dashboard; less than
         all is less than 100%."""
-        return tuple(None if v is None else _safe(self.measure, v) for v in self.values)
+        is_blind, top = (
+            self.measure in (BLIND, SECTOR),
+            0.999 if self.measure == COVERAGE else math.inf,
+        )
+        return tuple(
+            v if v is None or v == 1.0 else shown_end(v) if is_blind else min(v, top)
+            for v in self.values
+        )
 
     @property
     def differences(self) -> tuple[float | None, ...]:
@@ -131,18 +136,15 @@ class ComparedRow:
         return tuple(None if v is None or first is None else v - first for v in self.values)
 
     def change(self, k: int) -> float | None:
-        """Return by how much a value, as it is told, differs from the first one; None without a
-        number for it, and for the first one itself."""
-        first, own = self.told[0], self.told[k]
-        change = None if k == 0 or first is None or own is None else own - first
-        return change if change is not None and math.isfinite(change) else None
+        """Return a told value minus the first; None for the first itself, or without a number."""
+        first, own = (math.nan if v is None else v for v in (self.told[0], self.told[k]))
+        return own - first if k and math.isfinite(own - first) else None
 
     @property
     def best(self) -> tuple[bool, ...]:
         """Marks of the best value and those not significantly worse; of none if these are all."""
-        order = self.order if self.is_ranked else ()
-        best = {k for k in order if not self.differ(order[0], k)}
-        return tuple(k in best and len(best) < len(order) for k in range(len(self.values)))
+        best = {k for k in self.order if not self.differ(self.order[0], k)}
+        return tuple(k in best and len(best) < len(self.order) for k in range(len(self.values)))
 
     @property
     def lower_is_better(self) -> bool:
@@ -173,8 +175,7 @@ class ComparedRow:
         if not order or not self.differ(order[0], order[-1]):
             return 0.0
         ends = [self.values[k] or 0.0 for k in (order[0], order[-1])]
-        gap = abs(ends[0] - ends[1])
-        return gap if math.isinf(gap) else gap / max(map(abs, ends))
+        return math.inf if NEVER in ends else abs(ends[0] - ends[1]) / max(map(abs, ends))
 
     def share(self, k: int) -> float:
         """Return how long the bar of a value is, 0 to 1: the longest of the row is 1."""
@@ -192,12 +193,6 @@ class ComparedRow:
         """Return the row as plain JSON data."""
         keys = "group name measure values differences best errors factor spread"
         return {key: getattr(self, key) for key in keys.split()}
-
-
-def _safe(measure: str, value: float) -> float:
-    if measure in (BLIND, SECTOR):
-        return shown_end(value)
-    return min(value, 0.999) if measure == COVERAGE and value < 1.0 else value
 
 
 def compare(scores: Mapping[str, Score]) -> tuple[ComparedRow, ...]:
@@ -223,20 +218,16 @@ def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...
     if any(value is not None for value in over_frames):
         rows.append(ComparedRow("rig", "over frames", ENTROPY, over_frames, none))
     for story in dict.fromkeys(name for own in columns for name in own.margins):
-        margins = tuple(_margin(own.margins, story) for own in columns)
-        rows.append(ComparedRow("story", story, MARGIN, margins, none))
+        told = [shown_margin(own.margins.get(story)) for own in columns]
+        never = [own.margins.get(story, 0.0) is None for own in columns]
+        margins = (NEVER if lost else margin for margin, lost in zip(told, never, strict=True))
+        rows.append(ComparedRow("story", story, MARGIN, tuple(margins), none))
     height_text = f"{columns[0].height:g} m tall, within {columns[0].within:g} m"
     rows.append(ComparedRow("rig", height_text, BLIND, tuple(f.blind_m2 for f in columns), none))
     for name in columns[0].reach:
         ahead = tuple(f.reach[name][0] if name in f.reach else None for f in columns)
         rows.append(ComparedRow("class", name, REACH, ahead, none))
     return tuple(rows)
-
-
-def _margin(margins: Mapping[str, float | None], story: str) -> float | None:
-    """Return the margin of a story as it is told; None where there is no such story."""
-    told = shown_margin(margins.get(story))
-    return NEVER if told is None and story in margins else told
 
 
 def _traffic_rows(found: Sequence[TrafficAp | None]) -> Iterator[ComparedRow]:
@@ -273,7 +264,6 @@ def _rows(scores: list[Score]) -> Iterator[ComparedRow]:
     for name in names:
         aps = [classes[name].ap if name in classes else None for classes in by_class]
         yield _row(scores, "class", name, AP, aps)
-    for name in names:
         ahead = [classes[name].reach[AHEAD] if name in classes else None for classes in by_class]
         yield _row(scores, "class", name, REACH, ahead)
 

@@ -5,9 +5,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from pe_core.base import dump_json
-from pe_core.base.errors import InputError, one_of, shown
+from pe_core.base.errors import InputError
 from pe_core.base.files import decode_text, read_bytes
 from pe_core.base.table_reader import Table, load_toml
+from pe_core.base.values import choice
 from pe_core.motion import DriveBy, SeenBody, Story, stories
 from pe_core.study import Study, load_study
 from pe_core.study.time_file import read_stories
@@ -69,10 +70,8 @@ def chosen_stories(study: Study, names: Sequence[str]) -> list[Story]:
             table = Table(load_toml(name, "stories", decode_text(read_bytes(Path(name)))), name)
             chosen |= {story.name: story for story in read_stories(table.tables("story"))}
             table.finish()
-        elif name in known:
-            chosen[name] = known[name]
         else:
-            raise InputError("drive-by", "--story", one_of(known, name), shown(name))
+            chosen[name] = known[choice("drive-by", "--story", name, tuple(known))]
     if not chosen:
         expected = "[[story]] in the study, or --story NAME (--list lists them)"
         raise InputError("drive-by", "story", expected, "none")

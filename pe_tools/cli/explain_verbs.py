@@ -42,20 +42,17 @@ def comparison(names: Sequence[str], rows: Sequence[ComparedRow]) -> list[str]:
     """Return rows as lines with a column for each study. The best value is marked; differences
     refer to the first study."""
     heads = [name if len(name) <= WIDEST else f"...{name[3 - WIDEST :]}" for name in names]
-    table = [["", *heads]]
+    table, columns = [["", *heads]], range(len(heads))
     for measure, (title, *_) in MEASURES.items():
         own = [row for row in rows if row.measure == measure]
         if own:
             table.append([title, *[""] * len(heads)])
-        table += [[f"  {row_name(r)}", *(_cell(r, k) for k in range(len(heads)))] for r in own]
+        for row in own:
+            traffic = ", in traffic" * (row.group == advice.TRAFFIC)
+            table.append([f"  {row.name or 'all'}{traffic}", *(_cell(row, k) for k in columns)])
     lines = aligned(table, range(1, len(table[0])))
     note = f"{BEST} best; in brackets the difference to {heads[0]}"
     return [*lines, *[note] * (len(heads) > 1)]
-
-
-def row_name(row: ComparedRow) -> str:
-    """Return what a row is of: "all", "pedestrian", "near, in traffic"."""
-    return f"{row.name or 'all'}{', in traffic' if row.group == advice.TRAFFIC else ''}"
 
 
 def _cell(row: ComparedRow, k: int) -> str:
@@ -120,8 +117,7 @@ def explain(study: Study, args: argparse.Namespace) -> Answer:
         if args.suggest:
             suggested = suggested_for(SuggestJob(study, spot=(at[0], at[1])))
             answer["suggestions"] = [each.to_dict() for own in suggested.values() for each in own]
-            named = suggested.items()
-            mends = [line for name, own in named for line in suggestion_lines(name, own)]
+            mends = [line for each in suggested.items() for line in suggestion_lines(*each)]
             told += mends or [NOT_BLIND] * (not place.in_vehicle)
         return _answer(answer, told, args.json)
     name = advice.class_of(study.prior, args.class_name)

@@ -47,10 +47,6 @@ def _by_ap(study: Study, samples: int) -> Objective:
     return search_evaluator(by_ap, samples)
 
 
-def _sector(study: Study, _samples: int) -> Objective:
-    return _RigValue(study.sight())
-
-
 def _met(study: Study, _samples: int) -> Objective:
     if study.requirements:
         return _RigValue(RequirementConstraint(study))
@@ -83,7 +79,10 @@ PLACE_FIGURES = {
     for row in (
         PlaceFigure("entropy", "Entropy", "nats", 3, lambda study, n: study.evaluator(n), 2000),
         PlaceFigure("ap", "Expected AP in traffic", "", 3, _by_ap, 600, -1.0),
-        PlaceFigure("blind", "Widest blind sector", "deg", 1, _sector, 350, 1.0, True),
+        PlaceFigure(
+            *("blind", "Widest blind sector", "deg", 1, lambda study, _: _RigValue(study.sight())),
+            *(350, 1.0, True),
+        ),
         PlaceFigure("verdicts", "Requirements met", "", 0, _met, 700, -1.0, True),
     )
 }  # Figures of places, by name

@@ -129,9 +129,6 @@ def _value(text: str) -> Any:
     return value if plain and len(read) == 1 else text
 
 
-Made = dict[str, str]
-
-
 def sweep_runs(
     files: Mapping[str, str | Path],
     settings: Sequence[TriedKey],
@@ -155,10 +152,12 @@ def sweep_runs(
     ]
 
 
-def _changed_studies(path: Path, settings: Sequence[TriedKey]) -> Iterator[tuple[Made, Study]]:
+def _changed_studies(
+    path: Path, settings: Sequence[TriedKey]
+) -> Iterator[tuple[dict[str, str], Study]]:
     data, vehicles = load_study_data(path), dict[str, Vehicle | None]()
     for texts in itertools.product(*(setting.values for setting in settings)):
-        changed, changes = copy.deepcopy(data), Made()
+        changed, changes = copy.deepcopy(data), dict[str, str]()
         for setting, text in zip(settings, texts, strict=True):
             set_value(changed, setting, setting.values[text], str(path))
             changes[setting.key] = text

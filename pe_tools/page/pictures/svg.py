@@ -78,11 +78,8 @@ def path_of(line: Floats, closed: bool) -> str:
 def _attributes(values: dict[str, object]) -> str:
     named = {name.rstrip("_").replace("_", "-"): value for name, value in values.items()}
     named = {"class" if name == "css" else name: value for name, value in named.items()}
-    return "".join(f' {name}="{_svg_value(value)}"' for name, value in named.items())
-
-
-def _svg_value(value: object) -> str:
-    return _svg_number(value) if isinstance(value, float) else escaped(value)
+    texts = {k: _svg_number(v) if isinstance(v, float) else escaped(v) for k, v in named.items()}
+    return "".join(f' {name}="{text}"' for name, text in texts.items())
 
 
 def _svg_number(value: float) -> str:

@@ -11,7 +11,7 @@ from typing import Any, ClassVar, NamedTuple
 import bpy
 
 from .. import bridge, diagnostics, engine_calls, result_staleness, signals, vehicle_cache
-from ..engine import jobs, pe
+from ..engine import advice, jobs, pe
 from ..language import shown
 from ..live import FinishedScore, live_state
 from . import known_rigs, running_job
@@ -256,8 +256,8 @@ def score_task(_scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerpri
         bridge.store_variant_scores(scene, outcome, taken.surroundings)
         if not bpy.app.background:
             known_rigs.request(scene, study, taken.surroundings)
-        score = outcome.after
-        return f"Perception entropy {score.entropy:.4f} nats, coverage {score.coverage:.1%}"
+        seen = advice.percent(outcome.after.coverage, 1)
+        return f"Perception entropy {outcome.after.entropy:.3f} nats, coverage {seen}"
 
     return Task(jobs.ScoreJob(study), finish)
 
@@ -309,9 +309,9 @@ def search_line(outcome: jobs.Outcome) -> str:
     best = "best so far, stopped early" if outcome.stopped else f"{outcome.evaluations} tried"
     if outcome.in_traffic is not None:
         first, last = (each.ap for each in outcome.in_traffic)
-        nats = f"perception entropy {before:.4f} to {after:.4f} nats"
-        return f"Expected AP in traffic {first:.4f} to {last:.4f}, {nats} ({best})"
-    return f"Perception entropy {before:.4f} to {after:.4f} nats ({best})"
+        nats = f"perception entropy {before:.3f} to {after:.3f} nats"
+        return f"Expected AP in traffic {first:.3f} to {last:.3f}, {nats} ({best})"
+    return f"Perception entropy {before:.3f} to {after:.3f} nats ({best})"
 
 
 def front_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint) -> Task:

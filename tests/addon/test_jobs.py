@@ -29,6 +29,9 @@ def test_what_a_search_cost_is_stored_and_shown(car):
     up = [f"{math.ceil(10.0 * figures.blind_m2) / 10.0:.1f}" for figures in expected.figures]
     assert f"Blind ground {up[1]} m²" in labels and (up[0] == up[1] or f"({up[0]})" in labels)
     assert expected.cost.split("(")[0].strip() in labels
+    ends = [f"{each.entropy:.3f}" for each in (expected.before, expected.after)]
+    assert f"entropy {ends[0]} to {ends[1]} nats" in jobs.search_line(expected)
+    assert ends[1] in labels, "the digits of the dashboard"
 
 
 def test_one_job_at_a_time(car, monkeypatch):

@@ -227,8 +227,6 @@ def own_kinds(_settings: object, _context: object) -> list[tuple[str, str, str, 
     # Of other kinds: the same number in every session, clear of the table's places.
     numbers = {name: 1000 + zlib.crc32(name.encode()) % 2**24 for name in kinds.KINDS}
     numbers |= {name: number for number, name in enumerate(ROWS)}
-    _items[:] = [
-        (name, kind.label, row_of(name).own_about, numbers[name])
-        for name, kind in kinds.KINDS.items()
-    ]
+    rows = kinds.KINDS.items()
+    _items[:] = [(name, row.label, row_of(name).own_about, numbers[name]) for name, row in rows]
     return _items

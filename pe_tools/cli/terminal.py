@@ -116,8 +116,7 @@ def summary(outcome: Outcome) -> str:
     if outcome.conditions is not None:
         lines += condition_lines(outcome.conditions)
     rig = outcome.study.rig
-    hidden = hidden_words(hidden_sensors(rig, score, outcome.warnings))
-    lines += [f"ATTENTION: {line}" for line in hidden]
+    lines += map("ATTENTION: {}".format, hidden_words(hidden_sensors(rig, score, outcome.warnings)))
     for sensor in rig:
         x, y, z = sensor.pose.position
         roll, pitch, yaw = sensor.pose.rotation_deg

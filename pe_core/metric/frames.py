@@ -39,13 +39,6 @@ def updated(prior: Floats | float, added: Iterable[ArrayLike]) -> Floats:
     return np.asarray(total + prior, dtype=float)
 
 
-def steady(added: ArrayLike, noise: float) -> Floats:
-    """Return what 1 / sigma^2 approaches over many frames that each add the same, without floor.
-    ``(mu + sqrt(mu^2 + 4 mu / (q dt))) / 2``: the fixed point of eqs. T1 and T2."""
-    mu = np.asarray(added, dtype=float)
-    return np.asarray((mu + np.sqrt(mu * mu + 4.0 * mu / noise)) / 2.0)
-
-
 @dataclass(frozen=True, slots=True)
 class Frames:
     """Frames that an entropy is of, the process noise between them, and the rates of sensors.

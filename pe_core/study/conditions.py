@@ -7,7 +7,7 @@ and in each named state and weather, and in both together. Its zone stays where 
 puts it: an open door moves no zone. Requirements have mounting errors and classes of a study, too.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, TypeVar
@@ -119,6 +119,18 @@ class Conditions:
             for name in (name for motion in state.motions for name in motion.sensors or ()):
                 require_name(f"state {state.name!r}", "move.sensors", name, [s.name for s in rig])
 
+    def without(self, gone: Set[str]) -> "Conditions":
+        """Return the conditions where states no longer name sensors that are gone."""
+        states = []
+        for state in self.states:
+            motions = [
+                replace(each, sensors=each.sensors and [n for n in each.sensors if n not in gone])
+                for each in state.motions
+                if each.parts or set(each.sensors or ()) - gone
+            ]
+            states.append(replace(state, motions=motions))
+        return replace(self, states=states)
+
 
 def _named(kind: str, name: str | None, items: Sequence[T]) -> T | None:
     if name is None:
@@ -229,7 +241,7 @@ class ConditionedChecker(RequirementChecker):
                         break
                     yield CheckStep(step.fraction)
             number += 1
-            yield CheckStep(step.fraction, _worst(found))
+            yield CheckStep(step.fraction, worst_verdict(found))
 
     def shortfalls(self, rig: Rig, cases: Sequence[Rig] = ()) -> tuple[float, ...]:
         """Return for each requirement the largest shortfall under its conditions."""
@@ -260,14 +272,19 @@ def _expanded(names: Sequence[str], known: Sequence[str]) -> list[str]:
     return list(dict.fromkeys(n for name in names for n in (known if name == EVERY else [name])))
 
 
-def _worst(verdicts: Sequence[Verdict]) -> Verdict:
+def worst_verdict(verdicts: Sequence[Verdict]) -> Verdict:
     """Return the worst of the verdicts on one requirement, the first of equal ones. What it says of
-    lost sensors holds under all conditions: each may need another sensor."""
+    lost sensors, and what it leaves to spare, hold under all conditions: each may need another."""
     worst = min(verdicts, key=_rank)
     without = {name: all(v.without[name] for v in verdicts) for name in worst.without}
     fewest, most = zip(*(v.sensors for v in verdicts), strict=True)
     whole = all(v.met_whole for v in verdicts)
-    return replace(worst, without=without, sensors=(min(fewest), max(most)), met_whole=whole)
+    found = replace(worst, without=without, sensors=(min(fewest), max(most)), met_whole=whole)
+    if worst.ground is None:
+        return found
+    every = [(v.ground.spare_m2, v.ground.spare_out) for v in verdicts if v.ground is not None]
+    area, out = (None if None in each else min(each) for each in zip(*every, strict=True))
+    return replace(found, ground=replace(worst.ground, spare_m2=area, spare_out=out))
 
 
 def _rank(verdict: Verdict) -> tuple[bool, float, float]:

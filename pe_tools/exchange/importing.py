@@ -21,10 +21,6 @@ from .passthrough import NO_WORD, listed_kinds, model_text, parted
 from .portable import PortableSensor, merged_lines, named_apart
 from .rig_formats import RigFormat, detect_format, rig_format
 
-STAND_INS = {
-    kind: row.stand_in for kind, row in portable_kinds.PORTABLE_KINDS.items() if row.stand_in
-}  # Stand-in models by kind, for sensors whose model the file does not name
-
 
 class Modelled(NamedTuple):
     """A sensor and its model, a message about the model (may be empty), and whether the model

@@ -27,8 +27,7 @@ class CheckJob(Job):
     """Holds the rig of a study to its requirements, with mounting errors, and to its stories. A job
     that is stopped keeps the `verdicts` that it has found, in the order of the requirements. With
     `fitting`, requirements that the rig cannot be held to are left out instead of raising
-    `InputError`: `unchecked` has the reason of each by name. `complete` is whether it was not
-    stopped."""
+    `InputError`: `unchecked` has the reason of each by name."""
 
     shown = ("verdicts", "unchecked", "driven")
 
@@ -38,7 +37,6 @@ class CheckJob(Job):
         self.verdicts: list[Verdict] = []
         self.unchecked: dict[str, str] = {}
         self.driven: list[DriveBy] = []
-        self.complete = False
         self._progress = Progress("checking", 0.0)
 
     @property
@@ -66,7 +64,6 @@ class CheckJob(Job):
             if step.verdict is not None:
                 self.verdicts.append(step.verdict)
             yield self._progress
-        self.complete = not self.stopped
         yield Progress("done", 1.0)
 
     def _steps(self) -> Iterator[CheckStep]:

@@ -60,7 +60,8 @@ def design_study(
     goals = replace(goals, fixed=[name for name in goals.fixed if name in order], starts=starts)
     rig = rig.with_poses(_seated(study.rig, rig, mounting))
     search = replace(study.search, mounting=mounting, goals=goals)
-    return replace(study, rig=rig, search=search, selection=Selection())
+    conditions = study.conditions.without(gone)
+    return replace(study, rig=rig, conditions=conditions, search=search, selection=Selection())
 
 
 def design_names(designs: Sequence[Models]) -> list[str]:

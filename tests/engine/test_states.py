@@ -12,7 +12,8 @@ from pe_core.base.table_reader import Table
 from pe_core.search import Tolerance
 from pe_core.study import Conditions, condition_table, study_from_dict, study_to_dict
 from pe_core.study.condition_table import study_objective
-from pe_core.study.conditions import read_conditions, state_table
+from pe_core.study.conditions import read_conditions, state_table, worst_verdict
+from pe_tools.jobs import design_study
 from pe_tools.page.markup import render
 from pe_tools.page.sections.score import table_values
 from tests.engine import shapes
@@ -178,6 +179,21 @@ def test_a_lost_sensor_is_told_of_under_each_state():
     assert verdict.sensors == (1, 2)  # fewest when one is turned, most as drawn
 
 
+def test_what_blind_ground_leaves_to_spare_is_the_least_of_all_conditions():
+    wanted = pe.requirements.Requirement(
+        "ground",
+        pe.requirements.Zone(x=("front + 1", "front + 1.5"), y=(-0.5, 0.5)),
+        (),
+        pe.requirements.Criterion(blind_m2=5.0, blind_height=0.8),
+    )
+    (found,) = replace(parked(), requirements=(wanted,)).verdicts()
+    less = replace(found.ground, spare_m2=found.ground.spare_m2 - 0.5)
+    worst = replace(found, margin=-1.0)
+    joined = worst_verdict([found, worst, replace(found, ground=less)])
+    assert joined.margin == -1.0 and joined.ground.spare_out is None
+    assert joined.ground.spare_m2 == less.spare_m2
+
+
 def test_a_sensor_that_a_state_moves_may_fail_in_a_search():
     door = replace(OPEN.motions[0], sensors=["mirror"])
     search = pe.Search(samples=1024, conditions="mean", tolerance=Tolerance(failures=True))
@@ -189,6 +205,11 @@ def test_a_sensor_that_a_state_moves_may_fail_in_a_search():
     assert objective.entropy(study.rig) == pytest.approx(np.mean(worths), abs=2e-9)
     with pytest.raises(pe.InputError, match=r"move\.sensors"):
         study.with_rig(pe.Rig([study.rig["roof"]]))
+    # a design may leave it out; what else the state moves goes on
+    assert design_study(study, {"mirror": None}).conditions.states[0].motions[0].sensors == ()
+    alone = pe.State("mirror turned", [replace(door, parts=[])])
+    study = replace(study, conditions=Conditions([alone]))
+    assert design_study(study, {"mirror": None}).conditions.states[0].is_as_drawn
 
 
 @pytest.mark.parametrize("how", ["mean", "worst"])

@@ -12,7 +12,7 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_core.metric.entropy import BLIND_PRECISION, ap_of_entropy
-from pe_core.metric.frames import Frames, predicted, steady, updated
+from pe_core.metric.frames import Frames, predicted, updated
 from pe_core.motion import Actor, Confirmation, Story, drive_by, stories
 from pe_core.motion.scan import ap_with_latency, exposed, factor_of, scan_factor, seam
 from pe_core.scene.objects import Objects
@@ -38,12 +38,13 @@ def study(of=None, **other):
     return pe.Study(of or rig(), car, SPACE, samples=2048, **other)
 
 
-def test_information_approaches_its_steady_value():
+def test_information_approaches_the_fixed_point_of_t1_and_t2():
     added, noise = np.array([1e-3, 0.5, 3.0, 1e4]), 0.1
     precision = np.full(4, BLIND_PRECISION)
     for _ in range(20_000):
         precision = updated(predicted(precision, noise, 0.0), [added])
-    assert np.abs(precision / steady(added, noise) - 1.0).max() < 1e-12
+    steady = (added + np.sqrt(added * added + 4.0 * added / noise)) / 2.0
+    assert np.abs(precision / steady - 1.0).max() < 1e-12
 
 
 def by_definition(frames, rates, added, floor):

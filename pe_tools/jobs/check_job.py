@@ -46,9 +46,10 @@ class CheckJob(Job):
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """Names of the requirements without a verdict, as the job was stopped before."""
+        """Names of the stories and requirements without an answer: the job was stopped before."""
         known = {*self.unchecked, *(verdict.name for verdict in self.verdicts)}
-        return tuple(each.name for each in self.study.requirements if each.name not in known)
+        late = [each.name for each in self.study.stories[len(self.driven) :]]
+        return *late, *(each.name for each in self.study.requirements if each.name not in known)
 
     def __iter__(self) -> Iterator[Progress]:
         yield self._progress

@@ -94,6 +94,14 @@ def test_ctrl_c_keeps_the_verdicts_that_were_found(study, tmp_path, monkeypatch,
     assert [row["name"] for row in csv.DictReader(table.open())] == ["adult ahead"]
 
 
+def test_a_stopped_check_names_stories_that_were_not_driven_too(study):
+    study.write_text(STUDY + '[[story]]\npreset = "crossing_child"\n')
+    job = CheckJob(pe.load_study(study))
+    job.stop()
+    list(job)
+    assert job.missing == (job.study.stories[0].name, "adult ahead") and not job.driven
+
+
 def test_a_table_that_cannot_be_written_is_told_before_the_work_or_takes_no_verdict_along(
     study, tmp_path, monkeypatch, capsys
 ):

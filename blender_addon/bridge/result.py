@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import bpy
 from bpy.types import Object, PropertyGroup, Scene
 
-from ..engine import advice, jobs, pe, search, studies
+from ..engine import advice, jobs, pe, search, sight, studies
 from .requirements import store_verdicts
 from .scene_diagnostics import DRIVER, MISSING
 
@@ -102,7 +102,7 @@ class Result:
         for name, part in self.after["per_class"].items():
             figures = part["entropy"], part["coverage"]
             found_to, is_least = ahead.get(name, (None, False))
-            reach = "" if found_to is None else f"{'≥ ' * is_least}{found_to:.0f} m"
+            reach = "" if found_to is None else f"{'≥ ' * is_least}{sight.shown_reach(found_to)} m"
             row = ResultPart(name[:1].upper() + name[1:], True, *figures, reach=reach)
             if (own := found.get(name)) is not None:
                 reach = advice.lone_reach(own["reach"]["front"])

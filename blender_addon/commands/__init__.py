@@ -6,9 +6,10 @@ Options, progress, files and exit statuses are those of the command ``pe``.
 import argparse
 import contextlib
 import shlex
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 import bpy
 
@@ -29,6 +30,7 @@ from .scene_verbs import (
 __all__ = ["flush", "in_blender", "main", "register", "take_over_process", "unregister"]
 
 IN_BLENDER = "blender -b FILE.blend --command pe"
+Function = Callable[..., Any]
 
 
 def main(argv: Sequence[str], prog: str, out: TextIO) -> int:
@@ -79,44 +81,36 @@ def parser(prog: str) -> argparse.ArgumentParser:
         verb.set_defaults(function=run_job, kind=kind)
     page.add_page()
     app.add_page_option(optimize)
+
+    def made(name: str, about: str, run: Function, *options: Function) -> argparse.ArgumentParser:
+        verb = verbs.add_parser(name, help=about)
+        for add in options:
+            add(verb)
+        verb.set_defaults(function=run)
+        return verb
+
     about = "write the scene as a study with its mesh, or its rig for another program"
-    export = verbs.add_parser("export", help=about)
-    app.add_export_options(export, also_study=True)
-    add_variant_option(export)
-    export.set_defaults(function=export_study)
-    explain = verbs.add_parser("explain", help="the score in words, or one place of it")
-    app.add_explain_options(explain)
-    add_variant_option(explain)
-    explain.set_defaults(function=explain_study)
-    check = verbs.add_parser("check", help="hold the scene to its requirements; 3: not all are met")
-    app.add_check_options(check)
-    add_variant_option(check)
-    check.set_defaults(function=check_scene_requirements)
+    also_study = partial(app.add_export_options, also_study=True)
+    made("export", about, export_study, also_study, add_variant_option)
+    about = "the score in words, or one place of it"
+    made("explain", about, explain_study, app.add_explain_options, add_variant_option)
+    about = "hold the scene to its requirements; 3: not all are met"
+    made("check", about, check_scene_requirements, app.add_check_options, add_variant_option)
     about = "when tracks of what moves are confirmed; 3: some too late"
-    driven = verbs.add_parser("drive-by", help=about)
+    driven = made("drive-by", about, drive_by_scene, app.add_drive_by_options, add_variant_option)
     about = "as --story; with -o FILM.webm or .mp4 one, which is rendered as a film"
     driven.add_argument("stories", nargs="*", metavar="STORY", help=about)
-    app.add_drive_by_options(driven)
-    add_variant_option(driven)
-    driven.set_defaults(function=drive_by_scene)
-    where = verbs.add_parser("where", help="score one more sensor all over the vehicle's surface")
-    app.add_where_options(where)
-    add_variant_option(where)
-    where.set_defaults(function=where_in_scene)
-    listing = verbs.add_parser("variants", help="list the variants in the file")
+    about = "score one more sensor all over the vehicle's surface"
+    made("where", about, where_in_scene, app.add_where_options, add_variant_option)
+    listing = made("variants", "list the variants in the file", list_variants)
     listing.add_argument("--json", action="store_true", help="print JSON")
-    listing.set_defaults(function=list_variants)
-    compare = verbs.add_parser("compare", help="score variants and put them side by side")
+    about = "score variants and put them side by side"
+    compare = made("compare", about, compare_variants, app.add_compare_options)
     compare.add_argument("variants", nargs="*", metavar="NAME", help="of these (default: all)")
-    app.add_compare_options(compare)
-    compare.set_defaults(function=compare_variants)
     about = "write a page to hand on: what the sensors see"
-    review = verbs.add_parser("review", help=about)
+    review = made("review", about, review_scene, page.add_review_options, app.add_score_options)
     about = "variants side by side (default: what stands in the scene)"
     review.add_argument("variants", nargs="*", metavar="NAME", help=about)
-    page.add_review_options(review)
-    app.add_score_options(review)
-    review.set_defaults(function=review_scene)
     app.add_sensors_verb(verbs)
     app.add_rigs_verb(verbs)
     return top

@@ -5,6 +5,7 @@ from typing import Any
 
 from bpy.types import Context, PropertyGroup, UILayout
 
+from ..engine import sight
 from ..language import draw_label
 from .layout import (
     columns,
@@ -83,7 +84,7 @@ def seen_in_time(layout: UILayout, settings: PropertyGroup, context: Context) ->
         row = settings.stories[settings.story_index]
         told = json.loads(row.result or "{}")
         if told:
-            draw_sentence(layout, context, f"Stops in {told['stop_m']:.1f} m")
+            draw_sentence(layout, context, f"Stops in {sight.shown_end(told['stop_m']):.1f} m")
         for body in told.get("bodies", ()):
             draw_sentence(layout, context, _body_text(body))
             if "seam_m" in body:
@@ -97,14 +98,16 @@ def seen_in_time(layout: UILayout, settings: PropertyGroup, context: Context) ->
 def _body_text(body: dict[str, Any]) -> str:
     """Return when a body's track is confirmed, as a sentence."""
     moments = {
-        chance: f"{-at['time_s']:.1f} s before, at {at['distance_m']:.1f} m"
+        chance: "{:.1f} s before, at {:.1f} m".format(
+            *map(sight.shown_start, (-at["time_s"], at["distance_m"]))
+        )
         for chance, at in body["confirmed"].items()
         if at is not None
     }
     if not moments:
         return f"{body['name']}: never confirmed"
     texts = [f"{float(chance):.0%} {text}" for chance, text in moments.items()]
-    lost = f"; then lost for {body['lost_s']:.1f} s" if body["lost_s"] else ""
+    lost = f"; then lost for {sight.shown_end(body['lost_s']):.1f} s" if body["lost_s"] else ""
     return f"{body['name']}: confirmed with {', '.join(texts)}{lost}"
 
 

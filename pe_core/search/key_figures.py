@@ -16,7 +16,7 @@ from ..base.setting import Panel, check_settings, setting
 from ..base.values import Number, Whole, rounded
 from ..scene.rig import Rig
 from ..scoring.score import TrafficAp
-from ..scoring.sight.blind_ground import BLIND_TO_M, WITHIN_M, BlindSector, shown_end
+from ..scoring.sight.blind_ground import BLIND_TO_M, WITHIN_M, BlindSector, shown_end, shown_reach
 from .build_figures import BUILD_FIGURES, Placement
 
 if TYPE_CHECKING:
@@ -141,7 +141,7 @@ class FigureOfMerit:
     of: Callable[[Any], Sequence[float]] = lambda found: ()
     cost: Callable[[float], float] = float
     rule: Number | Whole | None = None
-    up: bool = False
+    shown: Callable[[float], float] = float
     is_cut: Callable[[KeyFigures], bool] = lambda figures: False
 
     @property
@@ -177,11 +177,10 @@ class FigureOfMerit:
         )
 
     def text(self, value: float | None, is_cut: bool = False) -> str:
-        """Return a value with its unit; what is blind is rounded up."""
+        """Return a value with its unit: what is blind is rounded up, a reach down."""
         if value is None:
             return NO_FIGURE
-        value = shown_end(value) if self.up else value
-        return f"{value:.{self.decimals}f} {self.unit}".strip() + " and more" * is_cut
+        return f"{self.shown(value):.{self.decimals}f} {self.unit}".strip() + " and more" * is_cut
 
 
 def _ring(name: str) -> Callable[[TrafficAp | None], Sequence[float]]:
@@ -195,7 +194,7 @@ def _whole(found: TrafficAp | None) -> Sequence[float]:
 _Ap = partial(
     FigureOfMerit, part="traffic", higher=True, cost=lambda ap: 1.0 - ap, rule=Number(0.0, cap=1.0)
 )
-_Blind = partial(FigureOfMerit, decimals=1, up=True)
+_Blind = partial(FigureOfMerit, decimals=1, shown=shown_end)
 UNSEEN = "where no sensor sees what is"
 IN_TRAFFIC = "Expected AP of objects in traffic"
 KEY_FIGURES = {
@@ -218,6 +217,7 @@ KEY_FIGURES = {
             *("reach", "Reach", "m", "How far ahead each class is found (AP 0.5): the shortest", 0),
             higher=True,
             part="reach",
+            shown=shown_reach,
             of=lambda found: [metres for metres, _ in found.values()],
             is_cut=lambda figures: bool(figures.reach) and min(figures.reach.values())[1],
             cost=lambda metres: 1.0 / (1.0 + metres),

@@ -1,7 +1,7 @@
 """Compare scores of several rigs: differences, their standard errors, and which are significant."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import permutations
 from statistics import NormalDist
@@ -11,7 +11,7 @@ from pe_core.motion.drive_by import shown_margin
 from pe_core.scene.rig import SensorModel
 from pe_core.scoring.sampling import BLOCKS
 from pe_core.scoring.score import BY_DISTANCE, FigureKey, PartScore, Score, TrafficAp, paired_error
-from pe_core.scoring.sight import SECTOR_RADIUS_M, shown_end
+from pe_core.scoring.sight import SECTOR_RADIUS_M, shown_end, shown_start
 from pe_core.search.key_figures import KeyFigures
 from pe_core.study.mounting_file import same_model
 
@@ -86,6 +86,12 @@ def _error(score: Score, figure: FigureKey) -> float:
 
 ENTROPY, COVERAGE, AP, REACH, BLIND = "entropy", "coverage", "ap", "reach", "blind"
 SECTOR, TRAFFIC, MARGIN = "sector", "in traffic", "margin"
+SHOWN: dict[str, Callable[[float], float]] = {
+    BLIND: shown_end,
+    SECTOR: shown_end,
+    REACH: shown_start,
+    COVERAGE: lambda share: share if share == 1.0 else min(share, 0.999),  # less than all
+}
 NEVER = -math.inf  # Margin of a story that is never confirmed: there is no worse one
 OTHER_HARDWARE = (
     "The rigs differ in models or numbers of sensors. On simulated rigs of LiDARs entropy was not "
@@ -118,16 +124,9 @@ class ComparedRow:
 
     @property
     def told(self) -> tuple[float | None, ...]:
-        """The values as they are told: what is blind is rounded up, as on the dashboard; less than
-        all is less than 100%."""
-        is_blind, top = (
-            self.measure in (BLIND, SECTOR),
-            0.999 if self.measure == COVERAGE else math.inf,
-        )
-        return tuple(
-            v if v is None or v == 1.0 else shown_end(v) if is_blind else min(v, top)
-            for v in self.values
-        )
+        """The values as they are told, on the safe side."""
+        shown = SHOWN.get(self.measure, float)
+        return tuple(None if value is None else shown(value) for value in self.values)
 
     @property
     def differences(self) -> tuple[float | None, ...]:

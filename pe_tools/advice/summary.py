@@ -17,7 +17,7 @@ from pe_core.scoring.score import (
     PartScore,
     Score,
 )
-from pe_core.scoring.sight import BlindGround, Reach, Sight, VisibleShares, shown_end
+from pe_core.scoring.sight import BlindGround, Reach, Sight, VisibleShares, shown_end, shown_reach
 from pe_core.search.key_figures import blind_height
 from pe_tools.wording import percent
 
@@ -50,7 +50,7 @@ def lone_reach(metres: float) -> str:
     """Return the reach for a lone object: "73 m", "≥ 80 m" at the evaluated limit, or "nowhere"."""
     if metres < NEAREST_M:
         return "nowhere"
-    return f"{'≥ ' if metres >= FARTHEST_M else ''}{metres:.0f} m"
+    return f"{'≥ ' if metres >= FARTHEST_M else ''}{shown_reach(metres)} m"
 
 
 def reach_words(own: FoundClass) -> str:
@@ -60,7 +60,7 @@ def reach_words(own: FoundClass) -> str:
         return "nowhere ahead, behind, left or right"
     missing = ", ".join(words for words in SIDES.values() if words not in reaches)
     ways = ", ".join(
-        f"{reach:.0f} m{' and more' if reach >= FARTHEST_M else ''} {words}"
+        f"{shown_reach(reach)} m{' and more' if reach >= FARTHEST_M else ''} {words}"
         for words, reach in reaches.items()
     )
     return f"up to {ways}{f'; not {missing}' if missing else ''}"
@@ -145,7 +145,7 @@ def _reach_words(reach: Reach) -> str:
         k = away.index(min(away))
         distance, limit = float(reach.distance[k]), float(reach.limit[k])
         more = " and more" if distance >= limit else ""
-        ways[side] = f"{distance:.0f} m{more}" if distance > 0.0 else ""
+        ways[side] = f"{shown_reach(distance)} m{more}" if distance > 0.0 else ""
     if not any(ways.values()):
         return f"{subject} nowhere ahead, behind, left or right"
     return f"{subject} up to " + ", ".join(

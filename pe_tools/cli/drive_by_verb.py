@@ -10,6 +10,7 @@ from pe_core.base.files import decode_text, read_bytes
 from pe_core.base.table_reader import Table, load_toml
 from pe_core.base.values import choice
 from pe_core.motion import DriveBy, SeenBody, Story, stories
+from pe_core.scoring.sight import shown_end, shown_start
 from pe_core.study import Study, load_study
 from pe_core.study.time_file import read_stories
 
@@ -92,9 +93,12 @@ def story_lines(driven: Sequence[DriveBy]) -> list[str]:
 
 def _row(driven: DriveBy, body: SeenBody, chances: Sequence[float]) -> list[str]:
     moments = [body.moments.get(chance) for chance in chances]
-    texts = ["never" if m is None else f"{m.time_s:+.1f} s, {m.distance_m:.1f} m" for m in moments]
+    texts = [
+        "never" if m is None else f"{shown_end(m.time_s):+.1f} s, {shown_start(m.distance_m):.1f} m"
+        for m in moments
+    ]
     margin = "-" if body.margin_s is None else f"{body.shown_margin_s:+.1f} s"
     met = "met" if body.is_met else "NOT MET"
     seam = [] if body.seam_m is None else [f"{body.seam_m:.2f} m, {' and '.join(body.seam_of)}"]
-    rest = f"{body.lost_s:.1f} s", margin, f"{driven.story.stop_m:.1f} m", *seam
-    return [met, driven.story.name, body.name, *texts, *rest]
+    lost, stop = f"{shown_end(body.lost_s):.1f} s", f"{shown_end(driven.story.stop_m):.1f} m"
+    return [met, driven.story.name, body.name, *texts, lost, margin, stop, *seam]

@@ -11,7 +11,7 @@ from markupsafe import Markup, escape
 
 from pe_core import metric
 from pe_core.base.errors import plural
-from pe_core.scoring.sight import shown_end
+from pe_core.scoring.sight import shown_end, shown_start
 
 from .. import advice, graphics
 from ..wording import degrees, margin_text, unseen_text, verdict_text
@@ -51,6 +51,7 @@ def _environment() -> Environment:
         "degrees": degrees,
         "price": price_text,
         "shown_end": shown_end,
+        "shown_start": shown_start,
         "at_least": lambda count: f"{count} points or more",
         "lone_reach": advice.lone_reach,
         "tall": lambda height: f"{height:g} m tall" if height else "flat on the ground",

@@ -185,7 +185,7 @@ def test_a_move_is_told_with_its_gain_and_its_error(study):
 
 def test_key_figures_are_told_where_they_exist_and_to_where_the_space_ends():
     """There is no AP at a middle distance, before or after."""
-    found = {"car": (19.0, False)}, {"car": (20.0, True), "cone": (30.0, True)}
+    found = {"car": (19.9, False)}, {"car": (20.0, True), "cone": (30.0, True)}
     told = [dataclasses.replace(in_traffic((0.4, 0.01)), reach=each) for each in found]
     parts = {"kind": "optimize", "figures": told, "before": score(), "after": score()}
     (line,) = figure_lines(SimpleNamespace(**parts, dashboard=dashboard(told[1], 3.0)))
@@ -226,7 +226,7 @@ def said(reach, blind):
 
 
 def test_what_is_said():
-    assert said(reach({0: 43.2, 180: 80.0, 270: 12.0, 45: 99.0}), ROUND) == [
+    assert said(reach({0: 43.9, 180: 80.0, 270: 12.0, 45: 99.0}), ROUND) == [
         "expected AP: car 0.61, cone 0.20",
         "a pedestrian is found (AP 0.5 or more) up to 43 m ahead, 80 m and more behind, "
         "nowhere left, 12 m right",

@@ -15,6 +15,7 @@ from pe_core.scoring.sight.blind_ground import (
     TOO_FAR_M,
     blind_ground,
     shown_end,
+    shown_reach,
     shown_start,
 )
 from pe_core.scoring.sight.ground_cells import GroundCells, gauss, opened, outlines, without_specks
@@ -198,6 +199,7 @@ def test_a_lens_that_bends_and_a_definition_alone_see_the_same_ground():
 def test_shown_distances_are_rounded_to_the_worse_side():
     assert [shown_start(d) for d in (0.0, 1.29, 1.3)] == [0.0, 1.2, 1.3]
     assert [shown_end(d) for d in (0.0, 1.21, 1.3)] == [0.0, 1.3, 1.3]
+    assert [shown_reach(d) for d in (0.0, 37.96, 38.0 - 1e-12)] == [0, 37, 38]
 
 
 def flooded(flags):

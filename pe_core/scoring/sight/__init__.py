@@ -7,6 +7,7 @@ from .blind_ground import (
     BlindSector,
     BlindSpot,
     shown_end,
+    shown_reach,
     shown_start,
 )
 from .ground_cells import outlines

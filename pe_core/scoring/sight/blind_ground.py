@@ -185,8 +185,13 @@ def shown_end(distance: float) -> float:
 
 
 def shown_start(distance: float) -> float:
-    """Round where blind ground begins [m] to a decimetre, towards the body."""
+    """Round where blind ground begins, or how far is seen [m], down to a tenth."""
     return math.floor(distance * 10.0 + ROUNDING) / 10.0
+
+
+def shown_reach(distance: float) -> int:
+    """Round how far is seen [m] down to a metre."""
+    return math.floor(distance + ROUNDING)
 
 
 def blind_ground(

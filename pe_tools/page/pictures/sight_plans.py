@@ -97,7 +97,7 @@ def reach_text(reach: sight.Reach, bearing_deg: float) -> str:
     if distance <= 0.0:
         return "none"
     at_end = sight.ends_with_space(reach, reach.distance)[k]
-    return f"{'≥ ' if at_end else ''}{distance:.0f} m"
+    return f"{'≥ ' if at_end else ''}{sight.shown_reach(distance)} m"
 
 
 def _reach_outline(reach: sight.Reach, distance: Floats, bounds: PlanBounds) -> Floats:

@@ -30,7 +30,7 @@ from .scene_verbs import (
 __all__ = ["flush", "in_blender", "main", "register", "take_over_process", "unregister"]
 
 IN_BLENDER = "blender -b FILE.blend --command pe"
-Function = Callable[..., Any]
+VerbPart = Callable[..., Any]
 
 
 def main(argv: Sequence[str], prog: str, out: TextIO) -> int:
@@ -82,7 +82,7 @@ def parser(prog: str) -> argparse.ArgumentParser:
     page.add_page()
     app.add_page_option(optimize)
 
-    def made(name: str, about: str, run: Function, *options: Function) -> argparse.ArgumentParser:
+    def made(name: str, about: str, run: VerbPart, *options: VerbPart) -> argparse.ArgumentParser:
         verb = verbs.add_parser(name, help=about)
         for add in options:
             add(verb)

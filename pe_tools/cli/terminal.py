@@ -166,7 +166,8 @@ def figure_lines(outcome: Outcome) -> list[str]:
             figure, values = row.figure, [row.figure.value(each) for each in told]
             if figure.key == ENTROPY:
                 values = [each.entropy for each in ends]
-            before = map(figure.text, values[:-1], map(figure.is_cut, told))
+            cut = map(figure.is_cut, told) if told else (False, False)
+            before = map(figure.text, values[:-1], cut)
             text = f"{figure.name} {' -> '.join([*before, row.text])}"
             if row.wanted is not None or any(each is not None for each in values):
                 (plain if row.wanted is None else lines).append(text)

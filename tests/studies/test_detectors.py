@@ -36,6 +36,7 @@ from studies.detectors.plan import (
     MIXED,
     OWN,
     PLAIN,
+    SEARCHES,
     TOWN,
     full_after_search_plan,
     full_camera_plan,
@@ -46,6 +47,7 @@ from studies.detectors.plan import (
 )
 from studies.detectors.runs import RunFiles, run_digest, runs, seed_by_seed
 from studies.detectors.scenes import scene
+from studies.detectors.second.analysis import FINDS_MORE
 from tests.limits import HANG_S
 from tests.studies.conftest import ROOT, study
 from tests.thorough import THOROUGH
@@ -276,7 +278,11 @@ def test_the_page_of_validity_gives_the_answer_of_the_study_and_the_readme_in_se
     told = re.sub(r"\]\([^)]*\)", "]", " ".join(section.split()))
     assert len(told.replace("- ", "").split()) <= 70
     number = r"\d+(?:\.\d+)?"
-    assert re.findall(number, told) == re.findall(number, answer), "each figure of the answer"
+    second = json.loads((FOLDER / "second/results.json").read_text("utf-8"))[SEARCHES]
+    rings = [n for n, row in second["minus_entropy"].items() if row["verdict"] == FINDS_MORE[1]]
+    assert rings == ["15 to 30 m", "30 to 60 m"]
+    told_there = [*re.findall(number, answer), "15"]  # beyond which the second plan's searches do
+    assert re.findall(number, told) == told_there, "each figure of the answer"
     assert "blind sector" in told and told.index("Not shown") < told.index("cameras")
 
 

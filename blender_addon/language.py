@@ -13,6 +13,7 @@ from pathlib import Path
 
 import bpy
 
+from .choices import SIMPLE
 from .engine import pe
 from .translation_context import CONTEXT
 
@@ -79,7 +80,7 @@ def language_of_locale(locale: str) -> str:
 
 def shown(text: str) -> str:
     """Return a text that is drawn or reported, in the interface's language."""
-    return catalog(current()).get(text, text).replace(" m2", " m²")
+    return catalog(current()).get(text, text).replace(" m2", " m²").replace("[m2]", "[m²]")
 
 
 PLAIN = (
@@ -96,6 +97,16 @@ def plain(text: str) -> str:
     for term, word in PLAIN:
         text = re.sub(term, word, text)
     return text
+
+
+def is_simple(scene: bpy.types.Scene) -> bool:
+    """Whether the tab has the panels of the first hour alone, and plain words."""
+    return scene.perception_entropy.panels == SIMPLE
+
+
+def worded(scene: bpy.types.Scene, text: str) -> str:
+    """Return a text in the interface's language, and in plain words in *Simple*."""
+    return plain(shown(text)) if is_simple(scene) else shown(text)
 
 
 def draw_label(layout: bpy.types.UILayout, text: str, icon: str = "NONE") -> None:

@@ -102,7 +102,7 @@ class Result:
         for name, part in self.after["per_class"].items():
             figures = part["entropy"], part["coverage"]
             found_to, is_least = ahead.get(name, (None, False))
-            reach = "" if found_to is None else f"{'≥ ' * is_least}{sight.shown_reach(found_to)} m"
+            reach = "" if found_to is None else sight.reach_text(found_to, is_least)
             row = ResultPart(name[:1].upper() + name[1:], True, *figures, reach=reach)
             if (own := found.get(name)) is not None:
                 reach = advice.lone_reach(own["reach"]["front"])

@@ -100,7 +100,7 @@ def list_variants(args: argparse.Namespace) -> app.Answer:
 
 def _listed(row: dict) -> str:
     """One line of the list: which one stands in the scene, its name, its score."""
-    score = "not scored" if row["entropy"] is None else f"{row['entropy']:.4f} nats"
+    score = "not scored" if row["entropy"] is None else f"{row['entropy']:.3f} nats"
     old = "  (scored before vehicle, prior or settings changed)" if row["stale"] else ""
     return f"{'*' if row['active'] else ' '} {row['name']}  {score}{old}"
 

@@ -10,8 +10,7 @@ from typing import NamedTuple
 import bpy
 
 from .. import engine_process, viewport
-from ..choices import SIMPLE
-from ..language import plain
+from ..language import is_simple, plain
 from ..language import shown as in_language
 from ..viewport import FAINT, INK, PLATE, SMALL, Rgba
 from .readout_text import BETTER, WORSE, ReadoutLine, TextPiece, readout_of
@@ -64,7 +63,7 @@ def draw() -> None:
         if shown is not None and shown.exact and engine_process.busy(engine_process.OVERLAY):
             shown = shown._replace(view_outdated=True)
         rows = rows_of(state.score, state.note, shown)
-        if scene.perception_entropy.panels == SIMPLE:
+        if is_simple(scene):
             rows = [row._replace(words=tuple((plain(t), c) for t, c in row.words)) for row in rows]
         corner = viewport.beside_toolbar(context), viewport.above_hud(context)
         box = draw_rows(rows, *corner, viewport.ui_scale())

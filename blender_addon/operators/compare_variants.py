@@ -8,7 +8,7 @@ import bpy
 
 from .. import bridge, result_staleness, variant_pictures
 from ..engine import advice, pe
-from ..language import draw_label, shown
+from ..language import draw_label, shown, worded
 from ..live import SAME, SENSE_ICONS
 from ..own_jobs import ComparedVariant, CompareJob, PendingVariant
 from .declared import INTERNAL, OperatorResult, Told, operator
@@ -21,19 +21,7 @@ MIN_WIDTH_PX, LETTER_PX = 560, 7
 PICTURE_SCALE, BAR_SHARE = 7.0, 0.45
 """Height of a picture in rows, and share of a cell that is its bar."""
 MAX_VARIANTS = 8
-TITLES = {
-    "margin": "Margin of stories [s], –: never confirmed",
-    "sector": "Widest blind sector [°], lower is better",
-    "blind": "Blind ground [m²], lower is better",
-    "reach": "Reach ahead [m], AP 0.5 or more",
-    "ap": "Expected AP",
-    "entropy": "Entropy [nats], lower is better",
-    "coverage": "Coverage",
-}
-"""In the order of the table: what a designer asks for first."""
 KEY_FIGURES = ("margin", "sector", "blind", "reach", "ap")
-FORMATS = {"entropy": ".3f", "coverage": ".1%", "ap": ".3f"}
-"""Formats of the figures by measure; those of the others are .1f."""
 WHOLE_RIG = "Everywhere"
 IN_TRAFFIC = ", in traffic"
 
@@ -90,19 +78,19 @@ def _open(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> Ope
     width = max(LABEL_PX + COLUMN_PX * len(self.names), MIN_WIDTH_PX)
     letters = width // LETTER_PX
     self.said = sentences(self.names, self.rows, letters)
-    self.said += wrap(shown(bridge.hardware_note(compared_variants(context.scene))), letters)
+    self.said += wrap(bridge.hardware_note(compared_variants(context.scene)), letters)
     title, close = shown(self.bl_label), shown("Close")
     return context.window_manager.invoke_props_dialog(
         self, width=width, title=title, confirm_text=close, translate=False
     )
 
 
-def _draw(self: Any, _context: bpy.types.Context) -> None:
+def _draw(self: Any, context: bpy.types.Context) -> None:
     """Draw figures of the rigs as bars, the scores in words, and the scores by zone and class."""
     _draw_bars(self.layout, self.names, of_rigs(self.rows), self.pictures)
     said = self.layout.column(align=True)
     for line in self.said:
-        draw_label(said, line)
+        said.label(text=worded(context.scene, line), translate=False)
     _draw_table(self.layout, self.names, [r for r in self.rows if r.measure not in KEY_FIGURES])
     text = (
         f"A star marks the best; in brackets: the difference to {self.names[0]}, "
@@ -141,7 +129,7 @@ def _draw_bars(
     for row in [None, *rows]:
         split = lines.split(factor=share)
         label = "The largest difference first" if row is None else label_of(row)
-        draw_label(split, label)
+        split.label(text=worded(bpy.context.scene, label), translate=False)
         cells = _cells(split, names)
         for k, name in enumerate(names):
             if row is None:
@@ -159,7 +147,7 @@ def _cells(layout: bpy.types.UILayout, names: list[str]) -> bpy.types.UILayout:
 
 def label_of(row: advice.ComparedRow) -> str:
     """Return what a bar is of: "Blind ground [m²], 0.5 m tall, within 10 m"."""
-    measure, name = TITLES[row.measure].partition(",")[0], row.name.capitalize()
+    measure, name = row.how.title, row.name.capitalize()
     traffic = IN_TRAFFIC if row.group == advice.TRAFFIC else ""
     return f"{measure}{f', {name}' if name else ''}{traffic}"
 
@@ -200,7 +188,8 @@ def draw_column(column: bpy.types.UILayout, cells: list[TableCell], alignment: s
         row.alignment = alignment
         if cell.change:
             row.label(text=cell.change, icon=SENSE_ICONS[cell.sense], translate=False)
-        draw_label(row, cell.text, "SOLO_ON" if cell.best else other)
+        icon, text = "SOLO_ON" if cell.best else other, worded(bpy.context.scene, cell.text)
+        row.label(text=text, icon=icon, translate=False)
 
 
 def pending_variants(scene: bpy.types.Scene) -> list[bpy.types.PropertyGroup]:
@@ -244,9 +233,9 @@ def columns_of(names: list[str], rows: Sequence[advice.ComparedRow]) -> list[lis
     empty = TextCell("")
     gap: list[TableCell] = [None] * (len(names) + 1)
     table: list[list[TableCell]] = [[empty, *map(TextCell, names)]]
-    for measure, title in TITLES.items():
-        found = [row for row in rows if row.measure == measure]
-        table += [[TextCell(title), *[empty] * len(names)]] if found else []
+    for key, measure in advice.MEASURES.items():
+        found = [row for row in rows if row.measure == key]
+        table += [[TextCell(measure.heading), *[empty] * len(names)]] if found else []
         group = "rig"
         for row in found:
             table += [gap] if row.group != group else []
@@ -259,11 +248,6 @@ def columns_of(names: list[str], rows: Sequence[advice.ComparedRow]) -> list[lis
 
 def _cell(row: advice.ComparedRow, k: int) -> TextCell:
     """Return a figure, with its difference to the first variant's if that is not 0."""
-    value, less = row.told[k], row.change(k)
-    if value in (None, advice.NEVER):
-        return TextCell("–", sense=row.sense(k))
-    way = FORMATS.get(row.measure, ".1f")
-    change = "" if less is None else f"{less:+{way}}".removesuffix("%")
-    is_visible = bool(change.strip("+-0."))
-    change = f"({change})" if is_visible else ""
-    return TextCell(f"{value:{way}}", row.best[k], change, row.sense(k))
+    change = row.change_text(k)
+    change = f"({change})" if change.strip("+-0.") else ""
+    return TextCell(row.text(k), row.best[k], change, row.sense(k))

@@ -13,9 +13,8 @@ import numpy as np
 from mathutils import Matrix
 
 from .. import body_query, bridge, engine_process, vehicle_cache, viewport
-from ..choices import SIMPLE
 from ..engine import graphics, pe
-from ..language import plain
+from ..language import is_simple, plain
 from . import labels, scheduler, strip, surroundings, wipe
 from .batches import Batches
 from .layer_cache import shown_of
@@ -157,7 +156,7 @@ def draw_text() -> None:
     if context.scene.perception_entropy.view.show_legend:
         found = (_legend(scene, layer, name) for layer, name in visible)
         legends = list(dict.fromkeys(each for each in found if each is not None))
-        if context.scene.perception_entropy.panels == SIMPLE:
+        if is_simple(context.scene):
             legends = [
                 replace(k, title=plain(k.title), values=(*map(plain, k.values),)) for k in legends
             ]

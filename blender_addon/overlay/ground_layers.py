@@ -290,6 +290,6 @@ def _distance_labels(found: sight.Reach, color: graphics.Rgba) -> Iterable[graph
     for at in range(0, len(found.bearings), step):
         metres, angle = float(found.distance[at]), float(found.bearings[at])
         if metres >= MIN_LABEL_M:
-            text = f"{'≥ ' if cut[at] else ''}{sight.shown_reach(metres)} m"
+            text = sight.reach_text(metres, bool(cut[at]))
             place = (metres * float(np.cos(angle)), metres * float(np.sin(angle)), 0.0)
             yield graphics.Tag(text, place, graphics.with_alpha(color, 1.0))

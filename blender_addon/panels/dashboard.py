@@ -4,11 +4,11 @@ from bpy.types import Context, Scene, UILayout
 
 from ..bridge import shown_state, wanted_of
 from ..engine import advice, search
-from ..language import draw_label
+from ..language import draw_label, is_simple
 from ..live import BETTER, SAME, SENSE_ICONS, WORSE, change_text, shown_score, told_figures
 from ..operators import known_rigs, shown_verdicts
 from ..sensor_cache import sensors as listed_sensors
-from .layout import columns, draw_sentence, is_simple
+from .layout import columns, draw_sentence
 
 MET_ICONS = {True: "COLORSET_03_VEC", False: "ERROR"}
 """Blender's own green, and its orange triangle."""

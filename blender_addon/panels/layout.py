@@ -10,9 +10,8 @@ import blf
 import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 
-from ..choices import SIMPLE
 from ..engine import advice
-from ..language import draw_label, plain, shown
+from ..language import draw_label, is_simple, shown, worded
 from ..live import SAME, SENSE_ICONS
 from ..operators import FIX_LABELS
 from ..properties import ROWS, DeclaredRow, declared_rows
@@ -25,11 +24,6 @@ TAB: dict[str, Any] = {
     "bl_region_type": "UI",
     "bl_category": "Perception",
 }
-
-
-def is_simple(scene: bpy.types.Scene) -> bool:
-    """Whether the tab has the panels of the first hour alone, and plain words."""
-    return scene.perception_entropy.panels == SIMPLE
 
 
 def is_empty(scene: bpy.types.Scene) -> bool:
@@ -289,8 +283,7 @@ def draw_sentence(
     icon = icon if sense == SAME else SENSE_ICONS[sense]
     rest = "NONE" if icon == "NONE" else "BLANK1"
     beside_px += 0.0 if icon == "NONE" else ICON_PX
-    told = plain(shown(text)) if is_simple(context.scene) else shown(text)
-    for k, line in enumerate(wrapped(context, told, beside_px)):
+    for k, line in enumerate(wrapped(context, worded(context.scene, text), beside_px)):
         column.label(text=line, icon=rest if k else icon, translate=False)
 
 

@@ -3,9 +3,9 @@
 from bpy.types import Context, Object, PropertyGroup, UILayout
 
 from ..bridge import holder_of, in_surroundings
-from ..language import draw_label, shown
+from ..language import draw_label, is_simple, shown
 from ..properties import AXIS_LABELS
-from .layout import draw_declared, draw_sentence, is_simple, panel
+from .layout import draw_declared, draw_sentence, panel
 
 POSITION_LABELS = ("X", "Y", "Height")
 """Height is z of the optical centre over the ground."""

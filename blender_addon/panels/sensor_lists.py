@@ -6,9 +6,9 @@ from bpy.types import Context, Object, PropertyGroup, Scene, UILayout
 
 from ..bridge import figures_of_sensor, sensor_loss
 from ..diagnostics import explanation
-from ..language import draw_label
+from ..language import draw_label, is_simple
 from ..sensor_cache import sensors as listed_sensors
-from .layout import ICON_PX, fitted, is_simple, row_list
+from .layout import ICON_PX, fitted, row_list
 
 MODEL_FROM = 0.64  # Where the model begins, in shares of the room for name and model
 MAX_ROWS = 7  # More sensors are a list that scrolls: the panel stays as long as it is

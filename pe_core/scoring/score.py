@@ -349,8 +349,9 @@ class Score(Tabular):
     ap: float | None = None
 
     def _caption(self) -> str:
-        error = f" ± {self.stderr:.4f}" if self.stderr else ""
-        return f"{self.entropy:.4f}{error} nats, coverage {self.coverage:.1%}"
+        error = f" ± {max(self.stderr, 1e-3):.3f}" if self.stderr else ""
+        seen = self.coverage if self.coverage >= 1.0 else min(self.coverage, 0.999)
+        return f"{self.entropy:.3f}{error} nats, coverage {seen:.1%}"
 
     def _rows(self) -> list[dict[str, Any]]:
         whole = PartScore(self.entropy, self.coverage, 1.0)

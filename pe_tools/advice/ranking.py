@@ -9,7 +9,7 @@ from pe_core.search.key_figures import KEY_FIGURES, KeyFigures
 
 from ..wording import joined, metres, percent
 from .location import WAYS
-from .score_comparison import AP, COVERAGE, ENTROPY, MIN_CHANGE, SECTOR, TRAFFIC, ComparedRow
+from .score_comparison import AP, COVERAGE, ENTROPY, MEASURES, SECTOR, TRAFFIC, ComparedRow
 from .summary import WHERE
 
 ZONES_NAMED = 2
@@ -18,10 +18,10 @@ NOTHING = "It cost nothing"
 
 
 RANKED = {
-    ENTROPY: ("entropy", 1.0, 2, " nats", " nats"),
-    COVERAGE: ("coverage", 100.0, 1, "%", " points"),
-    AP: ("expected AP", 1.0, 3, "", ""),
-}  # Measures that rank rigs: name, factor, decimals, units after a value and after a difference
+    ENTROPY: ("entropy", " nats", " nats"),
+    COVERAGE: ("coverage", "%", " points"),
+    AP: ("expected AP", "", ""),
+}  # Measures that rank rigs: name, units after a value and after a difference
 
 
 def ranking(names: Sequence[str], rows: Sequence[ComparedRow]) -> tuple[str, ...]:
@@ -35,18 +35,17 @@ def ranking(names: Sequence[str], rows: Sequence[ComparedRow]) -> tuple[str, ...
 
 
 def _ranked(names: Sequence[str], row: ComparedRow) -> str:
-    noun, factor, digits, unit, unit_of_gap = RANKED[row.measure]
-    values = {k: factor * value for k, value in enumerate(row.told) if value is not None}
+    (noun, unit, unit_of_gap), digits = RANKED[row.measure], row.how.digits
+    values = {k: value for k, value in enumerate(row.told) if value is not None}
     first = row.order[0]
     best = [k for k in row.order if not row.differ(first, k)]
     worse = []
     for k in (k for k in row.order if k not in best):
-        error = factor * row.errors[first][k]
+        error = row.how.factor * row.errors[first][k]
         plus_minus = f" +- {max(error, 10.0**-digits):.{digits}f}" if error else ""
         worse.append(f"{names[k]} by {abs(values[k] - values[first]):.{digits}f}{plus_minus}")
-    better = f"{'lower' if row.lower_is_better else 'higher'} is better"
     shown = joined([f"{names[k]} ({values[k]:.{digits}f}{unit})" for k in best])
-    told = f"By {noun} {shown} {'is best' if len(best) == 1 else 'are alike'}; {better}."
+    told = f"By {noun} {shown} {'is best' if len(best) == 1 else 'are alike'}; {row.how.about}."
     return f"{told} Worse: {joined(worse)}{unit_of_gap}." if worse else told
 
 
@@ -110,22 +109,22 @@ def search_cost(before: Score, after: Score, start: KeyFigures, result: KeyFigur
         if first is not None and last is not None and row.cost_of(last) > row.cost_of(first):
             texts = row.text(first), row.text(last)
             losses += [f"{row.name} ({' to '.join(texts)})"] * (texts[0] != texts[1])
-    if before.coverage - after.coverage >= MIN_CHANGE[COVERAGE]:
+    if before.coverage - after.coverage >= MEASURES[COVERAGE].least:
         losses.append(f"coverage ({percent(before.coverage, 1)} to {percent(after.coverage, 1)})")
     if before.objects is not None and after.objects is not None:
-        if before.objects.ap - after.objects.ap >= MIN_CHANGE[AP]:
+        if before.objects.ap - after.objects.ap >= MEASURES[AP].least:
             losses.append(f"expected AP ({before.objects.ap:.3f} to {after.objects.ap:.3f})")
-    elif after.entropy - before.entropy >= MIN_CHANGE[ENTROPY]:
+    elif after.entropy - before.entropy >= MEASURES[ENTROPY].least:
         losses.append(f"entropy ({before.entropy:.3f} to {after.entropy:.3f} nats)")
     rises = {
         name: after.per_zone[name].entropy - zone.entropy
         for name, zone in before.per_zone.items()
         if name in after.per_zone
     }
-    worse = [name for name, rise in rises.items() if rise >= MIN_CHANGE[ENTROPY]]
+    worse = [name for name, rise in rises.items() if rise >= MEASURES[ENTROPY].least]
     for name in sorted(worse, key=lambda name: -rises[name])[:ZONES_NAMED]:
         first, last = before.per_zone[name].entropy, after.per_zone[name].entropy
-        losses.append(f"sight {WHERE.get(name, name)} ({first:.2f} to {last:.2f} nats)")
+        losses.append(f"sight {WHERE.get(name, name)} ({first:.3f} to {last:.3f} nats)")
     if losses:
         return f"It cost {joined(losses)}"
     return f"{NOTHING}: key figures, coverage and all zones are no worse"

@@ -16,10 +16,6 @@ from pe_core.search.key_figures import KeyFigures
 from pe_core.study.mounting_file import same_model
 
 CERTAINTY = 0.95
-MIN_CHANGE = {"entropy": 0.005, "coverage": 0.0005, "ap": 0.0005, "reach": 0.05, "blind": 0.05}
-MIN_CHANGE |= {"sector": 1.0, "margin": 0.05}
-"""Smallest difference of each measure that counts: half of the last digit that is shown; of a blind
-sector the error of its edges [deg]."""
 
 
 def sure_factor(studies: int, degrees: int = BLOCKS - 1) -> float:
@@ -86,12 +82,41 @@ def _error(score: Score, figure: FigureKey) -> float:
 
 ENTROPY, COVERAGE, AP, REACH, BLIND = "entropy", "coverage", "ap", "reach", "blind"
 SECTOR, TRAFFIC, MARGIN = "sector", "in traffic", "margin"
-SHOWN: dict[str, Callable[[float], float]] = {
-    BLIND: shown_end,
-    SECTOR: shown_end,
-    REACH: shown_start,
-    COVERAGE: lambda share: share if share == 1.0 else min(share, 0.999),  # less than all
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """How a measure is told. `factor` times a value has so many `digits`; `shown` rounds the value
+    to the safe side. `least` is the smallest difference that counts."""
+
+    title: str
+    about: str
+    digits: int = 1
+    factor: float = 1.0
+    shown: Callable[[float], float] = float
+    lower_is_better: bool = False
+    least: float = 0.05
+
+    @property
+    def heading(self) -> str:
+        """Title and meaning: "Blind ground [m2], lower is better"."""
+        return f"{self.title}, {self.about}"
+
+
+LOWER, HIGHER = "lower is better", "higher is better"
+MEASURES = {
+    MARGIN: Measure("Margin of stories [s]", "none: never confirmed"),
+    SECTOR: Measure("Widest blind sector [deg]", LOWER, 1, 1.0, shown_end, True, 1.0),
+    BLIND: Measure("Blind ground [m2]", LOWER, 1, 1.0, shown_end, True),
+    REACH: Measure("Reach ahead (AP 0.5) [m]", HIGHER, 1, 1.0, shown_start),
+    AP: Measure("Expected AP", HIGHER, 3, least=0.0005),
+    ENTROPY: Measure("Entropy [nats]", LOWER, 3, 1.0, float, True, 0.005),
+    COVERAGE: Measure(
+        "Coverage [%]", HIGHER, 1, 100.0, lambda v: v if v == 1.0 else min(v, 0.999), least=0.0005
+    ),
 }
+"""By name, in the order of a table: what a designer asks for first. A sector's edges are known to
+half a degree each; 0.005 nats are 0.2 % of a detector's standard deviation."""
 NEVER = -math.inf  # Margin of a story that is never confirmed: there is no worse one
 OTHER_HARDWARE = (
     "The rigs differ in models or numbers of sensors. On simulated rigs of LiDARs entropy was not "
@@ -101,7 +126,6 @@ OTHER_HARDWARE = (
 )
 """Note beside scores of rigs that differ in their sensors, not in their placement alone."""
 OTHER_RETURNS = "LiDAR returns differ, as in the paper or on the road: do not compare scores."
-LOWER_IS_BETTER = frozenset({ENTROPY, BLIND, SECTOR})
 AHEAD = "front"  # Direction whose reach is compared
 
 
@@ -123,10 +147,28 @@ class ComparedRow:
     factor: float = 0.0
 
     @property
+    def how(self) -> Measure:
+        """How its measure is told."""
+        return MEASURES[self.measure]
+
+    @property
     def told(self) -> tuple[float | None, ...]:
-        """The values as they are told, on the safe side."""
-        shown = SHOWN.get(self.measure, float)
-        return tuple(None if value is None else shown(value) for value in self.values)
+        """The values as they are told, on the safe side, in units of the heading."""
+        return tuple(None if value is None else self._told(value) for value in self.values)
+
+    def _told(self, value: float) -> float:
+        return round(self.how.factor * self.how.shown(value), self.how.digits) + 0.0  # no -0.0
+
+    def text(self, k: int) -> str:
+        """Return a value as text; "-" where it is missing."""
+        value = self.told[k]
+        none = "-" if value is None else "none"
+        return none if value in (None, NEVER) else f"{value:.{self.how.digits}f}"
+
+    def change_text(self, k: int) -> str:
+        """Return a told value minus the first as text; empty where there is none."""
+        change = self.change(k)
+        return "" if change is None else f"{change:+.{self.how.digits}f}"
 
     @property
     def differences(self) -> tuple[float | None, ...]:
@@ -146,14 +188,9 @@ class ComparedRow:
         return tuple(k in best and len(best) < len(self.order) for k in range(len(self.values)))
 
     @property
-    def lower_is_better(self) -> bool:
-        """Whether the measure is entropy, blind ground or a blind sector."""
-        return self.measure in LOWER_IS_BETTER
-
-    @property
     def order(self) -> tuple[int, ...]:
         """Indices of the scores that have a value, the best first."""
-        sign = 1.0 if self.lower_is_better else -1.0
+        sign = 1.0 if self.how.lower_is_better else -1.0
         present = [(sign * v, k) for k, v in enumerate(self.values) if v is not None]
         return tuple(k for _, k in sorted(present))
 
@@ -161,9 +198,9 @@ class ComparedRow:
         """Return -1 if a value is clearly better than the first one, 1 if it is worse, else 0. A
         loss counts also within the error, a gain does not."""
         less = self.differences[k]
-        if less is None or abs(less) <= MIN_CHANGE[self.measure]:
+        if less is None or abs(less) <= self.how.least:
             return 0
-        if (less < 0.0) != self.lower_is_better:
+        if (less < 0.0) != self.how.lower_is_better:
             return 1
         return -1 if self.differ(0, k) else 0
 
@@ -185,7 +222,7 @@ class ComparedRow:
     def differ(self, one: int, other: int) -> bool:
         """Whether two values, given by index, differ significantly; False where one is missing."""
         a, b = self.values[one], self.values[other]
-        threshold = max(MIN_CHANGE[self.measure], self.factor * self.errors[one][other])
+        threshold = max(self.how.least, self.factor * self.errors[one][other])
         return a is not None and b is not None and abs(a - b) > threshold
 
     def to_dict(self) -> dict[str, Any]:

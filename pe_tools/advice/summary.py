@@ -17,7 +17,15 @@ from pe_core.scoring.score import (
     PartScore,
     Score,
 )
-from pe_core.scoring.sight import BlindGround, Reach, Sight, VisibleShares, shown_end, shown_reach
+from pe_core.scoring.sight import (
+    BlindGround,
+    Reach,
+    Sight,
+    VisibleShares,
+    reach_text,
+    shown_end,
+    shown_reach,
+)
 from pe_core.search.key_figures import blind_height
 from pe_tools.wording import percent
 
@@ -50,7 +58,7 @@ def lone_reach(metres: float) -> str:
     """Return the reach for a lone object: "73 m", "≥ 80 m" at the evaluated limit, or "nowhere"."""
     if metres < NEAREST_M:
         return "nowhere"
-    return f"{'≥ ' if metres >= FARTHEST_M else ''}{shown_reach(metres)} m"
+    return reach_text(metres, metres >= FARTHEST_M)
 
 
 def reach_words(own: FoundClass) -> str:

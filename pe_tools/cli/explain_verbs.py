@@ -25,16 +25,6 @@ from .terminal import DONE, Answer, warned, with_error
 
 BEST = "*"
 NOT_BLIND = "not blind: what is 0.5 m tall is visible there"
-MEASURES = {
-    "entropy": ("entropy [nats], lower is better", ".4f", 1.0),
-    "coverage": ("seen, of where objects are", ".1%", 100.0),
-    "ap": ("expected AP", ".3f", 1.0),
-    "margin": ("margin of stories [s], none: never confirmed", ".1f", 1),
-    "sector": ("widest blind sector [deg], lower is better", ".1f", 1),
-    "reach": ("reach ahead (AP 0.5) [m]", ".1f", 1),
-    "blind": ("blind ground [m2], lower is better", ".1f", 1),
-}
-"""Title of each measure, format of its figures, and the factor of their differences."""
 WIDEST = 24  # Longer names of studies are cut at the front: their ends tell them apart
 
 
@@ -43,10 +33,10 @@ def comparison(names: Sequence[str], rows: Sequence[ComparedRow]) -> list[str]:
     refer to the first study."""
     heads = [name if len(name) <= WIDEST else f"...{name[3 - WIDEST :]}" for name in names]
     table, columns = [["", *heads]], range(len(heads))
-    for measure, (title, *_) in MEASURES.items():
-        own = [row for row in rows if row.measure == measure]
+    for name, measure in advice.MEASURES.items():
+        own = [row for row in rows if row.measure == name]
         if own:
-            table.append([title, *[""] * len(heads)])
+            table.append([measure.heading, *[""] * len(heads)])
         for row in own:
             traffic = ", in traffic" * (row.group == advice.TRAFFIC)
             table.append([f"  {row.name or 'all'}{traffic}", *(_cell(row, k) for k in columns)])
@@ -56,12 +46,8 @@ def comparison(names: Sequence[str], rows: Sequence[ComparedRow]) -> list[str]:
 
 
 def _cell(row: ComparedRow, k: int) -> str:
-    value, less = row.told[k], row.change(k)
-    if value is None:
-        return "- "
-    (_, way, times), mark = MEASURES[row.measure], BEST if row.best[k] else " "
-    change = f" ({times * less:+{way.replace('%', 'f')}})" if less is not None else ""
-    return f"{'none' if value == advice.NEVER else f'{value:{way}}'}{change}{mark}"
+    change = row.change_text(k)
+    return f"{row.text(k)}{f' ({change})' * bool(change)}{BEST if row.best[k] else ' '}"
 
 
 COMPARED = ("space", "prior", "model", "targets")
@@ -166,8 +152,8 @@ def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
     lines += [] if alike else ["their vehicles differ"]
     if error := max(score.stderr for score in scores.values()):
         lines.append(
-            f"on samples: entropies have a standard error of up to {error:.4f} nats; +- is that of "
-            "a difference, smaller on a shared sample"
+            f"on samples: entropies have a standard error of up to {max(error, 1e-3):.3f} nats; "
+            "+- is that of a difference, smaller on a shared sample"
         )
     return _answer(data, [*lines, *notes], args.json)
 

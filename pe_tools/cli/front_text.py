@@ -49,7 +49,7 @@ def _figure(design: jobs.Design, name: str) -> str:
         return f"{value:,.10g}"
     if design.is_led_in:
         return "infeasible"
-    return f"{value:.4f}" if name in (AP, ENTROPY) else f"{value:,.4g}"
+    return f"{value:.3f}" if name in (AP, ENTROPY) else f"{value:,.4g}"
 
 
 def _placed(design: jobs.Design, margin: str) -> Iterator[str]:

@@ -16,6 +16,7 @@ from ..advice import curve_note, hardware_note
 from ..sweep import RunTask, SweepRun, read_settings, run_all, sweep_runs
 from ..sweep import sweep_table as table
 from ..sweep.sweep_table import BEGUN, DONE, UNWRITTEN, WAITING, SweepRow
+from ..wording import percent
 from . import terminal
 from .command import add_executor_option, add_score_options, add_search_options, with_options
 from .executors import workplace
@@ -161,7 +162,7 @@ class _SweepVerb:
         if isinstance(found, InputError):
             self._print_failure("" if found.source == name else name, found)
         elif not self._on_terminal:
-            figures = f"entropy {row.entropy:.4f}  coverage {row.coverage:.1%}"
+            figures = f"entropy {row.entropy:.3f}  coverage {percent(row.coverage, 1)}"
             line = f"[{self.count(DONE)}/{len(self.rows)}] {name}  {figures}"
             show(f"{one_line(line)}\n", sys.stderr)
 

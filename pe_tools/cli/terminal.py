@@ -95,7 +95,7 @@ def _shown(character: str, encoding: str) -> str:
     return "".join(f"\\u{units[i]:02x}{units[i + 1]:02x}" for i in range(0, len(units), 2))
 
 
-MIN_SHOWN_ERROR = 1e-4  # Smallest standard error that is printed [nats]: one unit of the last digit
+MIN_SHOWN_ERROR = 1e-3  # Smallest standard error that is printed [nats]: one unit of the last digit
 
 
 def summary(outcome: Outcome) -> str:
@@ -125,7 +125,7 @@ def summary(outcome: Outcome) -> str:
         stopped = f", {own.occluded / own.beams:.1%} of its {what}" if own.occluded else ""
         lines.append(
             f"{sensor.name}: {sensor.model.name} at ({x:g}, {y:g}, {z:g}) m, roll {roll:g}, "
-            f"pitch {pitch:g}, yaw {yaw:g} deg; alone {own.entropy:.4f}{stopped}"
+            f"pitch {pitch:g}, yaw {yaw:g} deg; alone {own.entropy:.3f}{stopped}"
         )
     if outcome.kind == "optimize":
         search, (levels, what) = outcome.start.search, searched_on(outcome.start)
@@ -140,7 +140,7 @@ def summary(outcome: Outcome) -> str:
 def _before_and_after(outcome: Outcome) -> Iterator[str]:
     """Yield what a search began and ended with, also under mounting errors and failures."""
     before, after = outcome.before, outcome.after
-    entropy = f"entropy   {before.entropy:.4f} -> {after.entropy:.4f} nats"
+    entropy = f"entropy   {before.entropy:.3f} -> {after.entropy:.3f} nats"
     beside = figure_lines(outcome)
     yield from [*beside, entropy] if outcome.in_traffic is not None else [entropy, *beside]
     yield f"coverage  {percent(before.coverage, 1)} -> {percent(after.coverage, 1)}"
@@ -149,16 +149,16 @@ def _before_and_after(outcome: Outcome) -> Iterator[str]:
     if (found := outcome.robustness) is not None:
         one, other = found.before, found.after
         off = off_by(found.errors.position, found.errors.angle)
-        yield f"{off} (1 sigma)  {one.rise:+.4f} -> {other.rise:+.4f} nats on average"
+        yield f"{off} (1 sigma)  {one.rise:+.3f} -> {other.rise:+.3f} nats on average"
         if one.loss is not None and other.loss is not None:
-            yield f"one sensor lost  {one.loss:+.4f} -> {other.loss:+.4f} nats on average"
+            yield f"one sensor lost  {one.loss:+.3f} -> {other.loss:+.3f} nats on average"
 
 
 def figure_lines(outcome: Outcome) -> list[str]:
     """Return the dashboard of a rig, or of start and result: what is beside its entropy."""
     first = outcome.kind == "score"
     told, ends = (outcome.figures or ())[first:], (outcome.before, outcome.after)[first:]
-    over = [f"{w:.4f}" for each in told if (w := each.over_frames) is not None]
+    over = [f"{w:.3f}" for each in told if (w := each.over_frames) is not None]
     lines = [f"entropy over frames  {' -> '.join(over)} nats"] if over else []
     plain: list[str] = []
     for row in outcome.dashboard:
@@ -181,5 +181,5 @@ def warned(outcome: Outcome) -> list[str]:
 
 def with_error(entropy: float, stderr: float) -> str:
     """Return an entropy with its standard error: none for a grid, never 0 for a sample."""
-    error = f" +- {max(stderr, MIN_SHOWN_ERROR):.4f}" if stderr else ""
-    return f"{entropy:.4f}{error} nats"
+    error = f" +- {max(stderr, MIN_SHOWN_ERROR):.3f}" if stderr else ""
+    return f"{entropy:.3f}{error} nats"

@@ -67,15 +67,15 @@ def where(study: Study, args: argparse.Namespace, inputs: Sequence[Path] = ()) -
 def place_lines(found: PlaceMap) -> list[str]:
     """Return the best places as a table, with what is forbidden and how sure the figures are."""
     row, name = found.row, found.row.label[:1].lower() + found.row.label[1:]
-    rows = [["position [m]", "yaw [deg]", name, "gain"]]
+    rows = [["position [m]", "yaw [deg]", name, "change"]]
     for place in found.best(BEST, APART_M):
         value = place.value or 0.0
         at = ", ".join(f"{v:.3f}" for v in place.pose.position)
-        figures = row.text(value), row.text(value - found.base, "+")
+        figures = row.text(value), row.change(value - found.base)
         rows.append([f"({at})", f"{place.pose.rotation_deg[2]:.0f}", *figures])
     free = sum(each.value is not None for each in found.places)
     head = f"{found.sensor.model.name} at {free:,} of {len(found.places):,} places"
     lines = [f"{head}; without it {name} {row.text(found.base)}", *aligned(rows)]
     lines += [f"{plural(n, 'place')} forbidden: {why}" for why, n in found.reasons().items()]
-    sure = f"gains are within +- {row.text(found.error)}" if found.error else ""
+    sure = f"changes are within +- {row.text(found.error)}" if found.error else ""
     return [*lines, *[f"{sure} of exact ones (root mean square)"] * bool(sure)]

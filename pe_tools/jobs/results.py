@@ -224,11 +224,11 @@ def condition_lines(table: ConditionTable) -> list[str]:
     worst = table.worst
     sensor, lossy = table.worst_loss
     lines = [f"conditions, on {table.samples:,} samples:", *map(_line, table.rows)]
-    lines.append(f"mean of the conditions {table.mean:.4f} nats, worst {worst.entropy:.4f}")
+    lines.append(f"mean of the conditions {table.mean:.3f} nats, worst {worst.entropy:.3f}")
     lines[-1] += f" ({worst.name})"
     if len(table.sensors) > 1:
         lines.append(
-            f"worst with one sensor lost {lossy.without[sensor]:.4f} nats: "
+            f"worst with one sensor lost {lossy.without[sensor]:.3f} nats: "
             f"without {sensor}, {lossy.name}"
         )
     return lines
@@ -237,7 +237,7 @@ def condition_lines(table: ConditionTable) -> list[str]:
 def _line(row: ConditionScore) -> str:
     ap = "" if row.ap is None else f", expected AP {row.ap:.3f}"
     return (
-        f"  {row.name}: {row.entropy:.4f} nats, coverage {percent(row.coverage, 1)}{ap}, "
+        f"  {row.name}: {row.entropy:.3f} nats, coverage {percent(row.coverage, 1)}{ap}, "
         f"weight {row.weight:g}"
     )
 

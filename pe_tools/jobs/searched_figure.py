@@ -34,11 +34,11 @@ class SearchedFigure:
         """Return a placement's value as text: the figure, or by how much it breaks constraints."""
         if is_infeasible(value):
             return f"constraints broken by {value - INFEASIBLE:.3f}"
-        return f"{self.label} {self.to_figure(value):.4f}"
+        return f"{self.label} {self.to_figure(value):.3f}"
 
     def ended(self, value: float) -> str:
-        """Return where a search ended: "at 0.5000 nats", "with constraints broken by 0.473"."""
-        found = f"at {self.amount(f'{self.to_figure(value):.4f}')}"
+        """Return where a search ended: "at 0.500 nats", "with constraints broken by 0.473"."""
+        found = f"at {self.amount(f'{self.to_figure(value):.3f}')}"
         return f"with {self.text(value)}" if is_infeasible(value) else found
 
 

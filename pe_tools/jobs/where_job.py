@@ -57,7 +57,8 @@ def _met(study: Study, _samples: int) -> Objective:
 class PlaceFigure:
     """A figure by which places are compared. `objective` returns what is minimised, of a study and
     a number of voxels; the figure is `sign` times its value. `places` is how many are scored in
-    about 20 s. `exact` is whether it does not depend on the voxels."""
+    about 20 s. `exact` is whether it does not depend on the voxels; `shown` rounds it to the safe
+    side."""
 
     key: str
     label: str
@@ -67,11 +68,15 @@ class PlaceFigure:
     places: int
     sign: float = 1.0
     exact: bool = False
+    shown: Callable[[float], float] = float
 
-    def text(self, value: float, sign: str = "") -> str:
-        """Return a value with its unit, blind sectors rounded up; `sign` "+" shows one."""
-        value = shown_end(value) if self.key == "blind" and not sign else value
-        return f"{value:{sign}.{self.decimals}f} {self.unit}".strip()
+    def text(self, value: float) -> str:
+        """Return a value with its unit."""
+        return f"{self.shown(value):.{self.decimals}f} {self.unit}".strip()
+
+    def change(self, by: float) -> str:
+        """Return a difference with its sign and its unit."""
+        return f"{by:+.{self.decimals}f} {self.unit}".strip()
 
 
 PLACE_FIGURES = {
@@ -81,7 +86,7 @@ PLACE_FIGURES = {
         PlaceFigure("ap", "Expected AP in traffic", "", 3, _by_ap, 600, -1.0),
         PlaceFigure(
             *("blind", "Widest blind sector", "deg", 1, lambda study, _: _RigValue(study.sight())),
-            *(350, 1.0, True),
+            *(350, 1.0, True, shown_end),
         ),
         PlaceFigure("verdicts", "Requirements met", "", 0, _met, 700, -1.0, True),
     )
@@ -94,9 +99,9 @@ class PlaceMap:
     sensors, and the placed one: its model and its name. `figure`: A key of `PLACE_FIGURES`.
     `mount`: name of the mount that is covered; empty for the body or parts of it. `count`: how many
     places there will be. `surface` (F, 3, 3): the surface that they cover [m]. `base`: the figure
-    without the sensor, on the same sample. `error`: root mean square difference of the gain on the
-    sample and the exact one, at places from the best to the worst; None where it is not known yet,
-    0 where places are scored exactly."""
+    without the sensor, on the same sample. `error`: root mean square of the change on the sample
+    minus the exact one, at places from the best to the worst; None where it is not known yet, 0
+    where places are scored exactly."""
 
     rig: Rig
     sensor: Sensor
@@ -129,10 +134,10 @@ class PlaceMap:
         return {t: texts.count(t) for t in sorted(set(texts), key=lambda t: (-texts.count(t), t))}
 
     def text(self, value: float) -> str:
-        """Return the figure of a place, with the gain and how sure that is."""
+        """Return the figure of a place, with its change and how sure that is."""
         sure = f" ± {self.row.text(self.error)}" if self.error else ""
-        gain = self.row.text(value - self.base, "+")
-        return f"{self.row.label} {self.row.text(value)} ({gain}{sure})"
+        change = self.row.change(value - self.base)
+        return f"{self.row.label} {self.row.text(value)} ({change}{sure})"
 
     def rows(self) -> list[dict[str, Any]]:
         """Return the places as flat tables."""
@@ -142,8 +147,9 @@ class PlaceMap:
         for place in self.places:
             pose = *place.pose.position, *place.pose.rotation_deg
             row = dict(zip(names, (*place.point, *place.normal, *pose), strict=True))
-            gain = None if place.value is None else rounded(place.value - self.base)
-            rows.append({**row, "value": place.value, "gain": gain, "forbidden_by": place.reason})
+            change = None if place.value is None else rounded(place.value - self.base)
+            row |= {"value": place.value, "change": change, "forbidden_by": place.reason}
+            rows.append(row)
         return rows
 
     def to_dict(self) -> dict[str, Any]:
@@ -238,7 +244,7 @@ class WhereJob(Job):
         return [each if each.reason else replace(each, value=next(values)) for each in some]
 
     def _off(self) -> float:
-        """Return the error of the gains on the sample (`PlaceMap.error`)."""
+        """Return the error of the changes on the sample (`PlaceMap.error`)."""
         row, found = self.row, self.found
         ranked = [] if found is None else found.best(len(self.places))
         if row.exact or not ranked:
@@ -248,6 +254,6 @@ class WhereJob(Job):
         off = []
         for k in np.unique(np.linspace(0, len(ranked) - 1, COMPARED).astype(int)).tolist():
             rig = self._places.with_sensor(ranked[k].pose)
-            gain = row.sign * objective.entropy(rig) - base
-            off.append((ranked[k].value or 0.0) - self.base - gain)
+            change = row.sign * objective.entropy(rig) - base
+            off.append((ranked[k].value or 0.0) - self.base - change)
         return rounded(sqrt(float(np.mean(np.square(off)))))

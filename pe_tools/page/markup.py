@@ -56,6 +56,7 @@ def _environment() -> Environment:
         "lone_reach": advice.lone_reach,
         "tall": lambda height: f"{height:g} m tall" if height else "flat on the ground",
         "margin": margin_text,
+        "minus": lambda text: text.replace("-", MINUS),
         "unseen": unseen_text,
         "verdict": verdict_text,
         "study_name": lambda context: macros().study_name(context),

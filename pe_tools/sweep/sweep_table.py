@@ -13,7 +13,7 @@ from pe_core.study.study import EXPECTED_AP
 from pe_core.version import __version__
 
 from ..jobs import FileSet, Outcome, files_of_other_runs, fingerprint, prepare_folder
-from ..wording import aligned
+from ..wording import aligned, percent
 from .sweep_runner import SweepRun
 
 SWEEP_CSV, SWEEP_JSON = "sweep.csv", "sweep.json"
@@ -94,8 +94,8 @@ def table_lines(rows: Sequence[SweepRow], kind: str) -> list[str]:
     for row in rows:
         before = [_figure(row.before)] if kind != "score" else []
         best = BEST if row.entropy is not None and row.entropy == lowest else " "
-        entropy = row.status if row.entropy is None else f"{row.entropy:.4f}{best}"
-        coverage = "-" if row.coverage is None else f"{row.coverage:.1%}"
+        entropy = row.status if row.entropy is None else f"{row.entropy:.3f}{best}"
+        coverage = "-" if row.coverage is None else percent(row.coverage, 1)
         named = [*[row.run.study_name] * several, *(row.run.changes.get(k, "") for k in keys)]
         best = BEST if row.ap is not None and row.ap == highest else " "
         aps = [_figure(row.ap_before), f"{_figure(row.ap)}{best}"] * (highest is not None)
@@ -104,7 +104,7 @@ def table_lines(rows: Sequence[SweepRow], kind: str) -> list[str]:
 
 
 def _figure(value: float | None) -> str:
-    return "-" if value is None else f"{value:.4f}"
+    return "-" if value is None else f"{value:.3f}"
 
 
 def _keys(rows: Sequence[SweepRow]) -> list[str]:

@@ -32,7 +32,7 @@ def test_variants_are_listed(blend):
     answer = run_here(blend, "variants")
     assert answer.returncode == 0, answer.stderr
     entropy = bpy.context.scene.perception_entropy.variants["Low"].entropy
-    assert answer.stdout.splitlines() == [f"  Low  {entropy:.4f} nats", "* High  not scored"]
+    assert answer.stdout.splitlines() == [f"  Low  {entropy:.3f} nats", "* High  not scored"]
     listed = json.loads(run_here(blend, "variants", "--json").stdout)
     assert [row["name"] for row in listed] == ["Low", "High"]
     assert [row["active"] for row in listed] == [False, True]

@@ -11,6 +11,7 @@ import pytest
 from blender_addon import bridge, diagnostics, result_staleness
 from blender_addon.engine import advice
 from blender_addon.operators import compare_variants
+from pe_tools.advice.score_comparison import NEVER
 from tests.addon import scenes
 from tests.addon.layouts import Layout
 
@@ -214,11 +215,15 @@ def test_a_variant_that_cannot_be_scored_is_reported_and_the_others_are(ideas):
 def test_a_story_that_is_never_confirmed_is_drawn_as_the_worst():
     """An orange square without a number; where all are confirmed but the first, a star."""
     cells = {}
-    for margins in (0.2, advice.NEVER), (advice.NEVER, 0.2), (advice.NEVER, advice.NEVER):
+    for margins in ((0.2, NEVER), (NEVER, 0.2), (NEVER, NEVER)):
         row = advice.ComparedRow("story", "child", "margin", margins, ((0.0, 0.0),) * 2)
         cells[margins] = compare_variants._cell(row, 1)
         compare_variants._draw_bars(Layout(), ["a", "b"], [row])
-    assert list(cells.values()) == [("–", False, "", 1), ("0.2", True, "", -1), ("–", False, "", 0)]
+    assert list(cells.values()) == [
+        ("none", False, "", 1),
+        ("0.2", True, "", -1),
+        ("none", False, "", 0),
+    ]
 
 
 def test_bars_have_the_largest_difference_first_and_the_longest_is_full(ideas):

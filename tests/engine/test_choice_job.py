@@ -197,14 +197,14 @@ def test_the_table_tells_price_entropy_and_where_each_sensor_sits(file, tmp_path
     assert out[0].split() == ["price", "[EUR]", "entropy", "[nats]", "design"]
     data = json.loads((tmp_path / "out" / "front.json").read_text())
     first = next(row for row in data["designs"] if row["on_front"])
-    assert out[1].split()[:2] == ["2", f"{first['entropy']:.4f}"]
+    assert out[1].split()[:2] == ["2", f"{first['entropy']:.3f}"]
     assert out[1].endswith(f"  {mounting.CAN}")
     assert out[2].strip() == f"roof: {mounting.CAN}; (-0.43, 0, 1.478) m"
     assert out[-1] == advice.OTHER_HARDWARE and data["notes"] == [advice.OTHER_HARDWARE]
     assert (tmp_path / "out" / "front.html").exists()
     study = tmp_path / "out" / first["study"]
     assert verbs.main(["score", str(study)]) == 0
-    assert f"{first['entropy']:.4f}" in capsys.readouterr().out
+    assert f"{first['entropy']:.3f}" in capsys.readouterr().out
 
 
 def test_a_user_s_own_file_is_refused_before_the_work(file, tmp_path, capsys, monkeypatch):

@@ -91,7 +91,7 @@ def test_a_search_raises_the_ap_and_tells_both(plain):
     assert plain.robustness.after.entropy == plain.after.entropy
     text = summary(plain)
     assert f"AP in traffic {first.ap:.3f} -> {last.ap:.3f}\n" in text
-    assert f"{plain.before.entropy:.4f} -> {plain.after.entropy:.4f} nats" in text
+    assert f"{plain.before.entropy:.3f} -> {plain.after.entropy:.3f} nats" in text
     assert "30 placements evaluated on 8 scenes of objects" in text
 
 

@@ -112,7 +112,7 @@ def test_compare_tells_blind_ground_reach_and_ap_and_a_known_rig_beside(tmp_path
     row = KEY_FIGURES["blind_ground"]
     assert all(row.text(own.blind_m2).split()[0] in ground for own in figures)
     assert ground.count("*") == 1, "less blind ground is better"
-    title = lines.index("reach ahead (AP 0.5) [m]")
+    title = lines.index(advice.MEASURES["reach"].heading)
     assert lines[title + 1].split()[:2] == ["car", f"{figures[0].reach['car'][0]:.1f}".rstrip("*")]
     assert main([*call, "--json"]) == 0
     data = json.loads(capsys.readouterr().out)

@@ -87,9 +87,9 @@ def test_result_json_and_the_terminal_say_it(outcome):
         assert told[when]["mounted_off"] == stands.mounted_off
         assert told[when]["missed"] == stands.missed
     text = summary(outcome)
-    line = f"mounted 2 cm and 0.5 deg off (1 sigma)  {before.rise:+.4f} -> {after.rise:+.4f} nats"
+    line = f"mounted 2 cm and 0.5 deg off (1 sigma)  {before.rise:+.3f} -> {after.rise:+.3f} nats"
     assert line in text
-    assert f"one sensor lost  {before.loss:+.4f} -> {after.loss:+.4f} nats" in text
+    assert f"one sensor lost  {before.loss:+.3f} -> {after.loss:+.3f} nats" in text
 
 
 def test_a_search_under_errors_keeps_what_it_found_though_it_scores_worse_as_it_stands(outcome):

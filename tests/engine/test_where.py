@@ -49,7 +49,7 @@ def test_points_are_on_the_surface_and_every_beginning_covers_it():
 
 def test_a_blind_sector_is_rounded_up_and_its_change_is_not():
     row = where_job.PLACE_FIGURES["blind"]
-    assert [row.text(0.21), row.text(0.21, "+")] == ["0.3 deg", "+0.2 deg"]
+    assert [row.text(0.21), row.change(0.21)] == ["0.3 deg", "+0.2 deg"]
 
 
 @pytest.mark.parametrize("figure", ["entropy", "ap", "blind"])

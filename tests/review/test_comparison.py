@@ -72,6 +72,7 @@ def test_the_comparison_marks_the_engine_s_winner(scored, other, comparison):
     better = min((scored, other), key=lambda one: one.after.entropy)
     winner = (scored, other).index(better)
     assert rows[0].best.index(True) == winner
-    first = re.search(r'class="wins whose-(\w)-ink">([^<]*)<', comparison)
-    assert first.groups() == ("ab"[winner], f"{better.after.entropy:.2f}")
+    heading = comparison.index(pt.advice.MEASURES["entropy"].heading)
+    first = re.search(r'class="wins whose-(\w)-ink">([^<]*)<', comparison[heading:])
+    assert first.groups() == ("ab"[winner], f"{better.after.entropy:.3f}")
     assert comparison_section(keyed_contexts([scored, other]))["overall"] == rows[0]

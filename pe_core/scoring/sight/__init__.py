@@ -6,6 +6,7 @@ from .blind_ground import (
     BlindGround,
     BlindSector,
     BlindSpot,
+    reach_text,
     shown_end,
     shown_reach,
     shown_start,

@@ -194,6 +194,11 @@ def shown_reach(distance: float) -> int:
     return math.floor(distance + ROUNDING)
 
 
+def reach_text(distance: float, is_cut: bool) -> str:
+    """Return how far is seen as text: "37 m", or "≥ 37 m" where what is evaluated ends there."""
+    return f"{'≥ ' * is_cut}{shown_reach(distance)} m"
+
+
 def blind_ground(
     cells: GroundCells, blind: Flags, body: Rectangle, height: float, within: float
 ) -> BlindGround:

@@ -73,10 +73,11 @@ def comparison(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:
     rows = advice.compare({context.key: context.after for context in contexts})
     told = {c.key: c.outcome.figures[1] for c in contexts if c.outcome.figures is not None}
     figures = advice.compare_figures(told) if len(told) == len(contexts) else ()
-    rows = (*rows, *(row for row in figures if row.measure in ("ap", "sector")))
+    rows = (*rows, *figures)
     return {
         "names": [macros().bold_study(context) for context in contexts],
         "rows": rows,
+        "measures": advice.MEASURES,
         "overall": next(row for row in rows if (row.group, row.measure) == ("rig", "entropy")),
         "lines": [Markup(line) for line in _summary_lines(contexts, rows)],
         **sensor_differences(contexts),
@@ -117,8 +118,9 @@ def _summary_lines(
         yield f"{escaped(note)}."
     if error := max(context.after.stderr for context in contexts):
         yield (
-            f"Scores are based on samples, with a standard error up to {error:.4f} nats. ± is the "
-            "standard error of a difference, which is smaller where studies share the sample."
+            "Scores are based on samples, with a standard error up to "
+            f"{max(error, 1e-3):.3f} nats. ± is the standard error of a difference, which is "
+            "smaller where studies share the sample."
         )
 
 

@@ -12,7 +12,13 @@ from ..pictures.dimension_drawing import side_view, top_view
 from ..pictures.ground_plan import COVERAGE, ENTROPY, LAYERS, difference_map, ground_map
 from ..pictures.reference_figures import count_text, worst_bodies
 from ..pictures.sensor_views import sensor_view
-from ..pictures.sight_plans import blind_plan, reach_plan, reach_text, requirement_plan, side_text
+from ..pictures.sight_plans import (
+    blind_plan,
+    reach_plan,
+    reach_towards,
+    requirement_plan,
+    side_text,
+)
 from ..pictures.time_strip import strip_data, time_strip
 from ..pictures.vehicle_picture import sensor_key
 from ..report_context import MAP_STEP_M, ReportContext
@@ -56,7 +62,7 @@ def visibility(context: ReportContext) -> dict[str, Any]:
         plans.append((name, bool(reach.sector), plan))
         for title, each in ((capitalized(name), reach), (f"{name}, before", was)):
             if each is not None:
-                rows.append((title, *(reach_text(each, deg) for deg in BEARINGS_DEG.values())))
+                rows.append((title, *(reach_towards(each, deg) for deg in BEARINGS_DEG.values())))
     return {
         **maps,
         "blind_by_height": blind_by_height,

@@ -132,17 +132,14 @@ class Suggestion:
         }
 
 
-def blind_spot(study: Study, x: float, y: float) -> Requirement:
-    """Return what a place [m] has to meet: nothing as tall as for blind ground is invisible."""
+def with_blind_spot(study: Study, x: float, y: float) -> Study:
+    """Return the study with the place x, y [m] as a requirement, `BLIND_SPOT`: nothing as tall as
+    for blind ground is invisible in a square round it, of the same size with voxels of any size."""
     zone = Zone(x=(x - SPOT_M, x + SPOT_M), y=(y - SPOT_M, y + SPOT_M))
     height = max(BLIND_TO_M, study.space.z[0])
-    return Requirement(BLIND_SPOT, zone, (), Criterion(blind_m2=0.0, blind_height=height))
-
-
-def with_blind_spot(study: Study, x: float, y: float) -> Study:
-    """Return the study with the place x, y [m] as a requirement, `BLIND_SPOT`."""
+    spot = Requirement(BLIND_SPOT, zone, (), Criterion(blind_m2=0.0, blind_height=height))
     kept = [each for each in study.requirements if each.name != BLIND_SPOT]
-    return replace(study, requirements=(*kept, blind_spot(study, x, y)))
+    return replace(study, requirements=(*kept, spot))
 
 
 def suggestions(study: Study) -> dict[str, Suggestion | None]:

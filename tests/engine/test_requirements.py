@@ -43,6 +43,16 @@ def test_blind_ground_of_a_zone_is_that_of_sight():
     assert not tight.met
 
 
+def test_blind_ground_is_searched_in_all_of_a_zone_with_voxels_of_any_size():
+    """Columns of voxels that are only in part in the zone count: else edges would not be searched,
+    nor a zone without a whole one."""
+    for zone in (Zone(x=(-1.42, 2.78), y=(1.17, 3.48)), Zone(x=(-0.3, 0.2), y=(1.7, 2.2))):
+        own = Requirement("ground", zone, (), Criterion(blind_m2=0.0, blind_height=0.5))
+        spaces = (pe.PerceptionSpace((-6, 6), (-4, 4), (0, 3), side) for side in (0.05, 0.5))
+        fine, coarse = (RequirementChecker([own], van(), space=space) for space in spaces)
+        assert fine.check(rig())[0].blind_m2 == coarse.check(rig())[0].blind_m2 > 0.0
+
+
 def test_blind_ground_counts_the_kinds_that_are_asked_for():
     """`of` is of ground, too; a radar sees neither flat ground nor what is lower than a child."""
     zone, space = (

@@ -93,9 +93,8 @@ def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] =
     job = CheckJob(study)
     with stop_at_first(job.stop) as received:
         drive(job)
-    verdicts = job.verdicts
+    verdicts, driven = job.verdicts, job.driven
     unwritten = save_text(table, verdicts_csv(verdicts))
-    driven = job.driven
     met = all(v.met for v in verdicts) and all(each.is_met for each in driven)
     status = received.status(DONE if met else NOT_MET)
     unchecked |= dict.fromkeys(job.missing, STOPPED)
@@ -125,10 +124,8 @@ def suggested_for(job: SuggestJob) -> dict[str, list[Suggestion]]:
 
 def suggestion_lines(name: str, found: Sequence[Suggestion]) -> list[str]:
     """Return what would mend something as lines: each with where the sensors would be."""
-    none = (
-        f"{name}: no move of one sensor, or linked pair, and no added one that was tried mends it"
-    )
-    return [f"{name}: {each.sentence} ({each.text})" for each in found] or [none]
+    none = "no move of one sensor, or linked pair, and no added one that was tried mends it"
+    return [f"{name}: {each.sentence} ({each.text})" for each in found] or [f"{name}: {none}"]
 
 
 def with_presets(study: Study, names: Sequence[str]) -> tuple[Study, dict[str, str]]:

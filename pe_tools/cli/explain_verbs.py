@@ -63,7 +63,7 @@ def add_explain_options(parser: argparse.ArgumentParser) -> None:
     about = "with --at: a test body there (child, adult, cyclist, car, pole, cone ...): m by sensor"
     parser.add_argument("--body", metavar="NAME", help=about)
     about = "with --body: its heading, to the left (0)"
-    parser.add_argument("--heading", type=number, default=0.0, metavar="DEG", help=about)
+    parser.add_argument("--heading", type=number, metavar="DEG", help=about)
     about = "class whose reach is told (pedestrian)"
     parser.add_argument("--class", dest="class_name", metavar="NAME", help=about)
     parser.add_argument("--json", action="store_true", help="print JSON")
@@ -84,13 +84,18 @@ def explain(study: Study, args: argparse.Namespace) -> Answer:
     if at is not None and not (len(at) in (2, 3 - with_body) and all(map(math.isfinite, at))):
         expected = f"X Y{'' if with_body else ', perhaps Z'}: numbers of metres"
         raise InputError("command line", "--at", expected, " ".join(f"{v:g}" for v in at))
-    if args.suggest and (at is None or with_body):
-        found = "--body" if with_body else "none"
-        raise InputError("command line", "--suggest", "--at X Y, a place to mend", found)
+    nowhere, turned, of_class = at is None, args.heading is not None, args.class_name is not None
+    for option, is_idle, expected, found in (
+        ("--suggest", args.suggest and with_body, "--at X Y, a place to mend", "--body"),
+        ("--suggest", args.suggest and nowhere, "--at X Y, a place to mend", "none"),
+        ("--body", with_body and nowhere, "--at X Y, where it stands", "none"),
+        ("--heading", turned and not with_body, "--body NAME, which it turns", "none"),
+        ("--class", of_class and not nowhere, "no --at: it says whose reach is told", "--at"),
+    ):
+        if is_idle:
+            raise InputError("command line", option, expected, found)
     if with_body:
-        if at is None:
-            raise InputError("command line", "--body", "--at X Y, where it stands", "none")
-        standing = advice.StandingBody(args.body, at, args.heading)
+        standing = advice.StandingBody(args.body, at, args.heading or 0.0)
         (body,) = advice.see_bodies(study.rig, study.vehicle, (standing,), study.model)
         print_vehicle(study)
         return _answer({"body": body.to_dict()}, list(body.text), args.json)
@@ -98,8 +103,7 @@ def explain(study: Study, args: argparse.Namespace) -> Answer:
         parts = (study.rig, study.space, study.prior, study.vehicle, at, study.model)
         place = advice.ask_place(*parts)
         print_vehicle(study)
-        told = list(place.text)
-        answer: dict[str, Any] = {"place": place.to_dict()}
+        told, answer = list(place.text), dict[str, Any](place=place.to_dict())
         if args.suggest:
             suggested = suggested_for(SuggestJob(study, spot=(at[0], at[1])))
             answer["suggestions"] = [each.to_dict() for own in suggested.values() for each in own]
@@ -131,9 +135,7 @@ def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
     studies = {**studies, **_beside(studies, args.beside)}
     outcomes = {name: scored(study, args.workers) for name, study in studies.items()}
     scores = {name: outcome.after for name, outcome in outcomes.items()}
-    figures = {
-        name: study.key_figures(outcomes[name].figures_after) for name, study in studies.items()
-    }
+    figures = {n: each.key_figures(outcomes[n].figures_after) for n, each in studies.items()}
     rows, figure_rows = advice.compare(scores), advice.compare_figures(figures)
     alike = len({vehicle_digest(study.vehicle) for study in studies.values()}) == 1
     data = {
@@ -170,8 +172,7 @@ def _beside(studies: Mapping[str, Study], key: str | None) -> dict[str, Study]:
 def named_by_file(paths: list[str]) -> dict[str, str]:
     """Return study files by short, different names: the file's, with its folder's if needed."""
     for depth in (1, 2):
-        parts = [(*Path(path).parts[:-1], Path(path).stem)[-depth:] for path in paths]
-        names = ["/".join(each) for each in parts]
+        names = ["/".join((*Path(p).parts[:-1], Path(p).stem)[-depth:]) for p in paths]
         if len(set(names)) == len(names):
             return dict(zip(names, paths, strict=True))
     return dict(zip(paths, paths, strict=False))

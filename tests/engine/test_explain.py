@@ -65,10 +65,12 @@ def test_explain_one_place(study, capsys):
         ("--at 1 2 3 --body adult", "--at: expected X Y: numbers of metres, found 1 2 3"),
         ("--suggest", "--suggest: expected --at X Y, a place to mend, found none"),
         ("--at 1 2 --body adult --suggest", "--suggest: expected --at X Y, a place to mend, found"),
+        ("--heading 30 --at 1 2", "--heading: expected --body NAME, which it turns, found none"),
+        ("--class car --at 1 2", "--class: expected no --at: it says whose reach is told, found"),
         ("--at x 2", "argument --at: expected a number, found 'x'"),
     ],
 )
-def test_a_place_that_is_none_is_named_by_its_option(study, asked, message, capsys):
+def test_what_is_no_place_or_would_be_ignored_is_named_by_its_option(study, asked, message, capsys):
     try:
         assert main(["explain", study, *asked.split()]) == 1
     except SystemExit as usage:

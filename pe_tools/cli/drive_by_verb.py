@@ -53,10 +53,9 @@ def drive_by_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path
     chosen = chosen_stories(study, args.story)
     print_vehicle(study)
     driven = [study.drive_by(story) for story in chosen]
-    text = dump_json(
-        {"met": all(d.is_met for d in driven), "stories": [d.to_dict() for d in driven]}
-    )
-    status = save_text(output, text) or (DONE if all(d.is_met for d in driven) else NOT_MET)
+    met = all(each.is_met for each in driven)
+    text = dump_json({"met": met, "stories": [each.to_dict() for each in driven]})
+    status = save_text(output, text) or (DONE if met else NOT_MET)
     return text if args.json else "\n".join(story_lines(driven)), status
 
 
@@ -81,21 +80,19 @@ def chosen_stories(study: Study, names: Sequence[str]) -> list[Story]:
 
 def story_lines(driven: Sequence[DriveBy]) -> list[str]:
     """Return stories as a table: a row for each watched body."""
-    chances = sorted({chance for each in driven for body in each.bodies for chance in body.moments})
+    bodies = [body for each in driven for body in each.bodies]
+    chances = sorted({chance for body in bodies for chance in body.moments})
     head = ["", "story", "body", *(f"confirmed {c:.0%}" for c in chances), "lost", "margin"]
-    head += ["stops in"] + ["seam"] * any(
-        body.seam_m is not None for each in driven for body in each.bodies
-    )
+    head += ["stops in"] + ["seam"] * any(body.seam_m is not None for body in bodies)
     rows = [[*_row(each, body, chances)] for each in driven for body in each.bodies]
     met = sum(each.is_met for each in driven)
     return [*aligned([head, *rows]), f"{met} of {len(driven)} stories confirmed in time"]
 
 
 def _row(driven: DriveBy, body: SeenBody, chances: Sequence[float]) -> list[str]:
-    moments = [body.moments.get(chance) for chance in chances]
     texts = [
         "never" if m is None else f"{shown_end(m.time_s):+.1f} s, {shown_start(m.distance_m):.1f} m"
-        for m in moments
+        for m in map(body.moments.get, chances)
     ]
     margin = "-" if body.margin_s is None else f"{body.shown_margin_s:+.1f} s"
     met = "met" if body.is_met else "NOT MET"

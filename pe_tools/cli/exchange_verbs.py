@@ -25,9 +25,8 @@ from .terminal import DONE, Answer, tell
 def add_rigs_verb(verbs: Any) -> None:
     """Add ``rigs``: list known rigs and templates, describe one, or write a study of one."""
     parser = verbs.add_parser("rigs", help="list known rigs and templates, or write one as a study")
-    parser.add_argument(
-        "name", nargs="?", metavar="NAME", help="a rig's name in the list, or its line"
-    )
+    about = "a rig's name in the list, or its line"
+    parser.add_argument("name", nargs="?", metavar="NAME", help=about)
     about = "print the rig of a study as one line, to send: a study file, and NAME here"
     parser.add_argument("--of", metavar="STUDY", help=about)
     parser.add_argument("-o", "--output", metavar="STUDY", help="study to write")

@@ -58,9 +58,8 @@ class RoofSensor:
         name = self.sensor.name
         if self.mount is None:
             return Search(free={name: ("x", "y", "pitch")})
-        return Search(
-            free={name: ("pitch",)}, mounting=Mounting({MOUNT: self.mount}, {name: MOUNT})
-        )
+        mounting = Mounting({MOUNT: self.mount}, {name: MOUNT})
+        return Search(free={name: ("pitch",)}, mounting=mounting)
 
 
 def find_roof(vehicle: Vehicle) -> Roof:

@@ -33,7 +33,7 @@ def set_keys(args: argparse.Namespace) -> Answer:
     `InputError` when a key or a value does not fit the study, or stands where only an editor can
     change it."""
     path = Path(args.study)
-    text, lines = decode_text(read_bytes(path)), []
+    text, lines, typed = decode_text(read_bytes(path)), [], dict[TomlPath, Sequence[str]]()
     for setting in read_settings(args.changes):
         if len(setting.values) > 1:
             raise InputError("set", setting.key, "one value", shown(", ".join(setting.values)))
@@ -49,9 +49,23 @@ def set_keys(args: argparse.Namespace) -> Answer:
             raise InputError(path, setting.key, *(of_table if is_table else of_line))
         told = "no value" if old is None else inline(old)
         lines.append(f"{path}: {setting.key}: {told} -> {inline(value)}")
-    study_from_dict(load_toml(path, "study", text), str(path), path.parent)
+        typed[where] = [*map(dotted, setting.path)]
+    try:
+        study_from_dict(load_toml(path, "study", text), str(path), path.parent)
+    except InputError as error:
+        field = _as_typed(error.field, typed)
+        raise InputError(error.source, field, error.expected, error.found) from None
     write_bytes(path, text.encode())
     return "\n".join(lines), DONE
+
+
+def _as_typed(field: str, typed: Mapping[TomlPath, Sequence[str]]) -> str:
+    """Return a field of the loader, ``sensor[0].model``, as it was typed: ``sensor.roof.model``."""
+    for path, parts in typed.items():
+        for number, key in enumerate(path):
+            if field.startswith(f"{'.'.join(parts[:number])}[{key}]"):
+                field = field.replace(f"[{key}]", f".{parts[number]}", 1)
+    return field
 
 
 class _Statement(NamedTuple):

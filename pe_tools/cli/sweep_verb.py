@@ -69,10 +69,8 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
         kept = f", {work.count(BEGUN)} begun and kept" if work.count(BEGUN) else ""
         note = f"{work.done} runs are done{kept}; the same command goes on"
         raise Interrupted(received.signum, note)
-    notes = [
-        hardware_note([s.model for s in run.study.rig] for run in runs),
-        curve_note(run.study for run in runs),
-    ]
+    studies = [run.study for run in runs]
+    notes = hardware_note([s.model for s in each.rig] for each in studies), curve_note(studies)
     rows = list(work.rows.values())
     missing = [row for row in rows if row.status == UNWRITTEN]
     where = (f"{row.run.name}: {row.status}: {row.message}" for row in missing)
@@ -90,8 +88,7 @@ class _SweepVerb:
     def __init__(
         self, runs: Sequence[SweepRun], kind: str, folder: Path, writes_table: bool
     ) -> None:
-        self._writes_table = writes_table
-        self._kind, self._folder = kind, folder
+        self._writes_table, self._kind, self._folder = writes_table, kind, folder
         self.failed_to_write = False
         self.rows: dict[str, SweepRow] = {}
         for run in runs:
@@ -140,9 +137,8 @@ class _SweepVerb:
                 def goes_on() -> bool:
                     if self._on_terminal:
                         left = self.count(WAITING) + self.count(BEGUN)
-                        self._reporter.report(
-                            jobs.Progress("sweeping", 1.0 - left / len(self.rows))
-                        )
+                        share = 1.0 - left / len(self.rows)
+                        self._reporter.report(jobs.Progress("sweeping", share))
                     return received.signum is None
 
                 run_all(left, make_task, place, self._take, goes_on)

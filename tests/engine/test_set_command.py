@@ -85,6 +85,10 @@ def test_a_change_replaces_one_place_and_leaves_the_rest(path, change, capsys):
         ("sensor.roof=1", "sensor.roof: expected a key of this table, found 1"),
         ("sensor=1", "sensor: expected a key of this table, found 1"),
         ("story.cut.speed_kmh=9", "story.cut.speed_kmh: expected cut_in, or one of crossing_child"),
+        ("sensor.roof.model=None", "study.toml: sensor.roof.model: expected one of"),
+        ("sensor.tail.bounds.q.w=1", "study.toml: sensor.tail.bounds.q: expected one of"),
+        ("sensor.1.mount=1", "study.toml: sensor.1.mount: expected"),
+        ("space.x.0=15", "study.toml: space.x: expected two finite numbers"),
         ("space.x.high=1", "space.x.high: expected an index from 0 to 1, found 'high'"),
     ],
 )

@@ -142,6 +142,16 @@ def test_the_vehicle_s_own_footprint_is_not_blind():
     assert set(blind.seen_from.values()) == set(blind.zone.values()) == {0.0}
 
 
+@pytest.mark.parametrize("side", [0.1, 0.25, 1.0])
+def test_all_ground_within_is_searched_with_voxels_of_any_size(side):
+    """A camera that looks up sees none of it; at most a column of voxels more is searched."""
+    space, up = pe.PerceptionSpace((-15, 15), (-15, 15), (0, 2), side), (0.0, -90.0, 0.0)
+    rig = pe.Rig([shapes.camera(position=(0.0, 0.0, 1.1), rotation=up)])
+    area = Sight(space, pe.Prior.road(), BOX).blind(rig, 0.5, within=3.37).area
+    exact, most = ((4.0 + 2.0 * far) * (1.0 + 2.0 * far) for far in (3.37, 3.37 + side))
+    assert exact - 4.0 <= area <= most - 4.0, "without what is below the box"
+
+
 @pytest.mark.parametrize(("lowest", "room"), [(1.2, False), (1.9, True)])
 def test_what_stands_below_an_open_tailgate_may_be_blind(lowest, room):
     gate = shapes.box((-3.0, -0.5, lowest), (-2.0, 0.5, lowest + 0.1))

@@ -146,7 +146,6 @@ NO_VIEWS = [
     ("step", {"step": -1.0}),
     ("step", {"step": 1e-3}),
     ("within", {"within": 0.0}),
-    ("within", {"within": 0.1}),
 ]
 
 

@@ -161,9 +161,9 @@ class _ZoneGround:
 
     @cached_property
     def cells(self) -> GroundCells:
-        """The squares: of all columns of voxels that the zone touches, however wide."""
+        """The squares."""
         (x0, y0), (x1, y1) = (w.tolist() for w in self.check._zone.bounds)
-        room = self.grown + max(STEP_M, self.check._space.interval)
+        room = self.grown + STEP_M
         around = ((x0 - room, x1 + room), (y0 - room, y1 + room))
         return GroundCells.of(self.check._space, STEP_M, around)
 

@@ -71,13 +71,13 @@ class GroundCells:
     def of(
         cls, space: PerceptionSpace, step: float, part: Rectangle | None = None
     ) -> "GroundCells":
-        """Cut the ground of a space, or a part of it, into cells.
+        """Cut the ground of a space, or all columns that a part of it touches, into cells.
 
          `InputError` when the step is not positive, the cells are too many, or the part is beside
         the space.
         """
         step = STEP.checked("sight", "step", step)
-        bounds = [_whole_columns(space, axis, part) for axis in (0, 1)]
+        bounds = [_touched_columns(space, axis, part) for axis in (0, 1)]
         counts = [math.ceil((high - low) / step - ROUNDING) for low, high in bounds]
         if math.prod(counts) > MAX_CELLS:
             found = f"{step:g} m: {math.prod(counts):,}"
@@ -137,13 +137,13 @@ def widened(rectangle: Rectangle, within: float) -> Rectangle:
     return (x0 - within, x1 + within), (y0 - within, y1 + within)
 
 
-def _whole_columns(space: PerceptionSpace, axis: int, part: Rectangle | None) -> Bounds:
-    """Bounds along an axis of the space's columns that lie in a part of it."""
+def _touched_columns(space: PerceptionSpace, axis: int, part: Rectangle | None) -> Bounds:
+    """Bounds along an axis of the space's columns that a part of it touches."""
     low, high = (space.x, space.y)[axis]
     if part is None:
         return low, high
-    first = max(0, math.ceil((part[axis][0] - low) / space.interval - ROUNDING))
-    last = min(space.shape[axis], math.floor((part[axis][1] - low) / space.interval + ROUNDING))
+    first = max(0, math.floor((part[axis][0] - low) / space.interval + ROUNDING))
+    last = min(space.shape[axis], math.ceil((part[axis][1] - low) / space.interval - ROUNDING))
     if first >= last:
         expected = f"a part of the space, {'xy'[axis]} = [{low:g}, {high:g}]"
         found = "[{:g}, {:g}]".format(*part[axis])

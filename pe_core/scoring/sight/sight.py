@@ -146,7 +146,8 @@ class Sight:
         """Return the ground round the vehicle where a body is invisible to all sensors.
 
         The body is an upright cylinder, 0.3 m wide. All figures are conservative: no blind ground
-        and no distance is too small, and edges are at most three squares too far out.
+        and no distance is too small, edges are at most three squares too far out, and ground less
+        than a voxel beyond `within` may count.
 
         `InputError` when the height is not in the space, or no square is within, or too many are.
 

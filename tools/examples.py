@@ -120,8 +120,8 @@ def figures_of(result: Result) -> Values:
     key = advice.KeyFigures.of_rig(sight, study.rig)
     values = {
         "sensors": sensors_text(study.rig),
-        "entropy": f"{score.entropy:.2f}",
-        "stderr": f"{score.stderr:.2f}",
+        "entropy": f"{score.entropy:.3f}",
+        "stderr": f"{max(score.stderr, 1e-3):.3f}",
         "coverage": f"{100.0 * score.coverage:.1f} %",
         "met": f"{result.met} of {len(result.verdicts)}",
         "blind": f"{math.ceil(10.0 * key.blind_m2) / 10.0:.1f} m²",

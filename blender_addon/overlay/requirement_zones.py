@@ -154,9 +154,7 @@ def _margin_line(verdict: Verdict) -> tuple[graphics.Primitives, graphics.Tag] |
     outwards = outwards / np.hypot(*outwards)
     end = start + verdict.margin * outwards
     across = TICK_M * np.array([-outwards[1], outwards[0]])
-    points = np.array(
-        [start, end, start - across, start + across, end - across, end + across], float
-    )
+    points = np.array([start, end, *(p + way for p in (start, end) for way in (-across, across))])
     white = graphics.with_alpha(graphics.VIEWPORT.words, 0.9)
     place = (float(end[0]), float(end[1]), ON_GROUND_M)
     text = f"{'at least ' if verdict.at_least else ''}{verdict.margin:+.2f} m".replace(

@@ -49,9 +49,7 @@ class Grid(ShortRepr):
         if array.ndim == 3 and (array == array[:, :, :1]).all():
             array = array[:, :, 0]
         if not (array >= 0.0).all() or not 0.0 < array.sum() < np.inf:
-            raise InputError(
-                "grid", "weights", "finite numbers >= 0, one of them above 0", "others"
-            )
+            raise InputError("grid", "weights", "finite numbers >= 0, one above 0", "others")
         if array.ndim == 3 and shape[2] > MAX_CLASSES:
             expected = f"at most {MAX_CLASSES} layers where weights differ by height"
             raise InputError("grid", "space", expected, shape[2])

@@ -154,32 +154,25 @@ class ComparedRow:
     @property
     def told(self) -> tuple[float | None, ...]:
         """The values as they are told, on the safe side, in units of the heading."""
-        return tuple(None if value is None else self._told(value) for value in self.values)
-
-    def _told(self, value: float) -> float:
-        return round(self.how.factor * self.how.shown(value), self.how.digits) + 0.0  # no -0.0
+        how = self.how
+        told = (None if v is None else how.factor * how.shown(v) for v in self.values)
+        return tuple(None if v is None else round(v, how.digits) + 0.0 for v in told)  # no -0.0
 
     def text(self, k: int) -> str:
         """Return a value as text; "-" where it is missing."""
         value = self.told[k]
-        none = "-" if value is None else "none"
-        return none if value in (None, NEVER) else f"{value:.{self.how.digits}f}"
+        return {None: "-", NEVER: "none"}.get(value, f"{value or 0.0:.{self.how.digits}f}")
 
     def change_text(self, k: int) -> str:
-        """Return a told value minus the first as text; empty where there is none."""
-        change = self.change(k)
-        return "" if change is None else f"{change:+.{self.how.digits}f}"
+        """Return a told value minus the first as text; empty for the first, or without a number."""
+        first, own = (math.nan if v is None else v for v in (self.told[0], self.told[k]))
+        return f"{own - first:+.{self.how.digits}f}" if k and math.isfinite(own - first) else ""
 
     @property
     def differences(self) -> tuple[float | None, ...]:
         """Each value minus the first one; None where one of the two is missing."""
         first = self.values[0] if self.values else None
         return tuple(None if v is None or first is None else v - first for v in self.values)
-
-    def change(self, k: int) -> float | None:
-        """Return a told value minus the first; None for the first itself, or without a number."""
-        first, own = (math.nan if v is None else v for v in (self.told[0], self.told[k]))
-        return own - first if k and math.isfinite(own - first) else None
 
     @property
     def best(self) -> tuple[bool, ...]:

@@ -1,13 +1,14 @@
 """Reach, blind ground and expected AP of a rig: the figures, and their description in sentences."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from pe_core.base.values import choice
 from pe_core.prior.prior import Prior
 from pe_core.scene.rig import Rig
+from pe_core.scoring import sight
 from pe_core.scoring.score import (
     FAR_M,
     FARTHEST_M,
@@ -17,22 +18,11 @@ from pe_core.scoring.score import (
     PartScore,
     Score,
 )
-from pe_core.scoring.sight import (
-    BlindGround,
-    Reach,
-    Sight,
-    VisibleShares,
-    reach_text,
-    shown_end,
-    shown_reach,
-)
 from pe_core.search.key_figures import blind_height
 from pe_tools.wording import percent
 
 from .advice import Advice
 from .warnings import hidden_sensors, hidden_words
-
-NEAREST_M = 0.5  # A shorter reach [m] is described as "nowhere"
 
 
 def object_words(found: ObjectScore) -> tuple[str, ...]:
@@ -55,23 +45,26 @@ def objects_looked_at(found: ObjectScore) -> str:
 
 
 def lone_reach(metres: float) -> str:
-    """Return the reach for a lone object: "73 m", "≥ 80 m" at the evaluated limit, or "nowhere"."""
-    if metres < NEAREST_M:
-        return "nowhere"
-    return reach_text(metres, metres >= FARTHEST_M)
+    """Return the reach for a lone object: "73 m", "≥ 80 m" at the evaluated limit, or "none"."""
+    return sight.reach_text(metres, metres >= FARTHEST_M)
 
 
 def reach_words(own: FoundClass) -> str:
     """Describe how far a class is found ahead, behind, left and right."""
-    reaches = {words: own.reach[way] for way, words in SIDES.items() if own.reach[way] >= NEAREST_M}
-    if not reaches:
+    return _ways([(own.reach[way], own.reach[way] >= FARTHEST_M) for way in SIDES])
+
+
+def _ways(reaches: Iterable[tuple[float, bool]]) -> str:
+    """Describe how far [m], and whether it may be more, ahead, behind, left and right."""
+    ways, missing = [], []
+    for words, (metres, is_cut) in zip(SIDES.values(), reaches, strict=True):
+        if sight.shown_reach(metres):
+            ways.append(f"{sight.shown_reach(metres)} m{' and more' * is_cut} {words}")
+        else:
+            missing.append(words)
+    if not ways:
         return "nowhere ahead, behind, left or right"
-    missing = ", ".join(words for words in SIDES.values() if words not in reaches)
-    ways = ", ".join(
-        f"{shown_reach(reach)} m{' and more' if reach >= FARTHEST_M else ''} {words}"
-        for words, reach in reaches.items()
-    )
-    return f"up to {ways}{f'; not {missing}' if missing else ''}"
+    return f"up to {', '.join(ways)}{'; not ' * bool(missing)}{', '.join(missing)}"
 
 
 USUAL_CLASS = "pedestrian"  # Class of the reach unless the user chooses another
@@ -91,9 +84,9 @@ class Outlook:
     space if that is greater."""
 
     expected_ap: Mapping[str, float]
-    shares: VisibleShares
-    reach: Reach
-    blind: BlindGround
+    shares: sight.VisibleShares
+    reach: sight.Reach
+    blind: sight.BlindGround
 
     def to_dict(self) -> dict[str, Any]:
         """Return the results as plain JSON data, without the outlines of blind ground."""
@@ -115,11 +108,11 @@ class Outlook:
         }
 
 
-def outlook(sight: Sight, rig: Rig, class_name: str | None = None) -> Outlook:
+def outlook(view: sight.Sight, rig: Rig, class_name: str | None = None) -> Outlook:
     """Compute the outlook of a rig; for the class of the reach see `class_of`."""
-    name = class_of(sight.prior, class_name)
-    seen = sight.expected_ap(rig), sight.shares(rig), sight.reach(rig, name)
-    return Outlook(*seen, sight.blind(rig, blind_height(sight)))
+    name = class_of(view.prior, class_name)
+    seen = view.expected_ap(rig), view.shares(rig), view.reach(rig, name)
+    return Outlook(*seen, view.blind(rig, blind_height(view)))
 
 
 def class_of(prior: Prior, name: str | None) -> str:
@@ -143,37 +136,26 @@ def outlook_words(found: Outlook, of_voxels: bool = True) -> Iterator[str]:
     yield _blind_words(found.blind)
 
 
-def _reach_words(reach: Reach) -> str:
+def _reach_words(reach: sight.Reach) -> str:
     noun = "object" if reach.class_name == ANY_CLASS else reach.class_name
     article = "an" if noun[:1].lower() in "aeiou" else "a"
-    subject = f"{article} {noun} is found (AP {reach.ap:g} or more)"
-    ways = {}
-    for side in SIDES:
-        away = [abs(math.remainder(b - BEARINGS[side], math.tau)) for b in reach.bearings.tolist()]
-        k = away.index(min(away))
-        distance, limit = float(reach.distance[k]), float(reach.limit[k])
-        more = " and more" if distance >= limit else ""
-        ways[side] = f"{shown_reach(distance)} m{more}" if distance > 0.0 else ""
-    if not any(ways.values()):
-        return f"{subject} nowhere ahead, behind, left or right"
-    return f"{subject} up to " + ", ".join(
-        f"{way or 'nowhere'} {SIDES[s]}" for s, way in ways.items()
-    )
+    ways = _ways([reach.towards(BEARINGS[side]) for side in SIDES])
+    return f"{article} {noun} is found (AP {reach.ap:g} or more) {ways}"
 
 
-def _blind_words(blind: BlindGround) -> str:
+def _blind_words(blind: sight.BlindGround) -> str:
     subject = f"blind to what is {blind.height:g} m tall"
     if all(end == 0.0 for end in blind.zone.values()):
         return f"{subject} nowhere at the body"
     ways = []
     for side, words in SIDES.items():
         end = blind.zone[side]
-        to = f"beyond {blind.within:g} m" if end is None else f"to {shown_end(end):.1f} m"
+        to = f"beyond {blind.within:g} m" if end is None else f"to {sight.shown_end(end):.1f} m"
         ways.append(f"{'none' if end == 0.0 else to} {words}")
     return f"{subject}, from the body: {', '.join(ways)}"
 
 
-def _blind_dict(blind: BlindGround) -> dict[str, Any]:
+def _blind_dict(blind: sight.BlindGround) -> dict[str, Any]:
     spots = {
         side: None if spot is None else {"point": list(spot.point), "distance_m": spot.distance}
         for side, spot in blind.nearest.items()

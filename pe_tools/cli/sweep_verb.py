@@ -158,7 +158,7 @@ class _SweepVerb:
         if isinstance(found, InputError):
             self._print_failure("" if found.source == name else name, found)
         elif not self._on_terminal:
-            figures = f"entropy {row.entropy:.3f}  coverage {percent(row.coverage, 1)}"
+            figures = f"entropy {row.entropy:.3f}  coverage {percent(row.coverage or 0.0, 1)}"
             line = f"[{self.count(DONE)}/{len(self.rows)}] {name}  {figures}"
             show(f"{one_line(line)}\n", sys.stderr)
 

@@ -361,11 +361,9 @@ class Job:
         yield waiting
         if not self._goes_on(to_the_end):
             return None
-        begun_work = begun(guarded)
+        running = begun(guarded)
         return (
-            yield from self._awaited(
-                begun_work, lambda: replace(waiting, fraction=done), to_the_end
-            )
+            yield from self._awaited(running, lambda: replace(waiting, fraction=done), to_the_end)
         )
 
     def _awaited(

@@ -11,6 +11,7 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_core.scoring.score import TrafficAp
+from pe_core.scoring.sight import Reach
 from pe_core.search.key_figures import dashboard
 from pe_tools import advice
 from pe_tools.advice.ranking import moved_words
@@ -201,14 +202,8 @@ def test_key_figures_are_told_where_they_exist_and_to_where_the_space_ends():
 def reach(by_degrees, name="pedestrian", limit=80.0):
     """A reach along eight bearings: what is not named is 0."""
     degrees = [0, 45, 90, 135, 180, 225, 270, 315]
-    return SimpleNamespace(
-        class_name=name,
-        ap=0.5,
-        bearings=np.radians(degrees),
-        distance=np.array([float(by_degrees.get(d, 0.0)) for d in degrees]),
-        limit=np.full(8, limit),
-        per_sensor={},
-    )
+    distance = np.array([float(by_degrees.get(d, 0.0)) for d in degrees])
+    return Reach(name, 0.5, np.radians(degrees), distance, {}, np.full(8, limit))
 
 
 def blind(**zone):
@@ -229,7 +224,7 @@ def test_what_is_said():
     assert said(reach({0: 43.9, 180: 80.0, 270: 12.0, 45: 99.0}), ROUND) == [
         "expected AP: car 0.61, cone 0.20",
         "a pedestrian is found (AP 0.5 or more) up to 43 m ahead, 80 m and more behind, "
-        "nowhere left, 12 m right",
+        "12 m right; not left",
         "blind to what is 0.5 m tall, from the body: to 4.3 m ahead, beyond 10 m behind, "
         "none left, to 2.0 m right",
     ]

@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from pe_core.scoring.sight import GroundSight
+from pe_core.scoring.sight import GroundSight, reach_text
 from pe_tools import graphics
 from pe_tools.page.pictures.ground_plan import (
     ENTROPY,
@@ -16,7 +16,7 @@ from pe_tools.page.pictures.ground_plan import (
     difference_map,
     ground_map,
 )
-from pe_tools.page.pictures.sight_plans import reach_towards, side_text
+from pe_tools.page.pictures.sight_plans import side_text
 from pe_tools.page.sections.visibility import visibility
 from tests.engine.test_masks import decoded
 from tests.review.conftest import html_of
@@ -88,7 +88,7 @@ def test_the_section_tells_what_the_engine_found(scored):
     for side in ("front", "left"):
         assert f"<td>{side_text(blind, side)}</td>" in html
     reach = scored.sight.reach(scored.rig, "pedestrian")
-    assert f"<td>{reach_towards(reach, 0.0)}</td>" in html
+    assert f"<td>{reach_text(*reach.towards(0.0))}</td>" in html
 
 
 def test_a_search_shows_before_and_what_changed(searched, bare):

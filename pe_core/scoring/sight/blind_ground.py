@@ -195,8 +195,8 @@ def shown_reach(distance: float) -> int:
 
 
 def reach_text(distance: float, is_cut: bool) -> str:
-    """Return how far is seen as text: "37 m", or "≥ 37 m" where what is evaluated ends there."""
-    return f"{'≥ ' * is_cut}{shown_reach(distance)} m"
+    """Return how far is seen as text: "37 m", "≥ 37 m" where what is evaluated ends, or "none"."""
+    return f"{'≥ ' * is_cut}{shown_reach(distance)} m" if shown_reach(distance) else "none"
 
 
 def blind_ground(

@@ -71,6 +71,11 @@ class Reach(ShortRepr):
     limit: Floats
     sector: float = 0.0
 
+    def towards(self, bearing: float) -> tuple[float, bool]:
+        """Return the reach [m] nearest to a bearing [rad], and whether the space ends there."""
+        k = int(np.abs(np.angle(np.exp(1j * (self.bearings - bearing)))).argmin())
+        return float(self.distance[k]), bool(ends_with_space(self, self.distance)[k])
+
 
 @dataclass(frozen=True, slots=True)
 class Spokes:

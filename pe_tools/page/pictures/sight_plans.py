@@ -90,15 +90,6 @@ def reach_plan(
     return plan.canvas.svg()
 
 
-def reach_towards(reach: sight.Reach, bearing_deg: float) -> str:
-    """Return the reach in a direction as text; the bearing is counter-clockwise from ahead."""
-    k = int(np.abs(np.angle(np.exp(1j * (reach.bearings - np.radians(bearing_deg))))).argmin())
-    distance = float(reach.distance[k])
-    if distance <= 0.0:
-        return "none"
-    return sight.reach_text(distance, bool(sight.ends_with_space(reach, reach.distance)[k]))
-
-
 def _reach_outline(reach: sight.Reach, distance: Floats, bounds: PlanBounds) -> Floats:
     """(N, 2) closed outline of a reach, clipped to the plan: lone objects may be beyond it."""
     low, high = np.transpose(bounds)

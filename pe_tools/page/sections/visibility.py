@@ -1,10 +1,13 @@
 """What the rig sees where: maps, blind ground, reach, requirements, and what each sensor sees."""
 
 import base64
+import math
 from collections.abc import Sequence
+from itertools import starmap
 from typing import Any
 
 from pe_core.motion import DriveBy
+from pe_core.scoring.sight import reach_text
 
 from ... import graphics
 from ..markup import TEMPLATES, capitalized, percent
@@ -12,13 +15,7 @@ from ..pictures.dimension_drawing import side_view, top_view
 from ..pictures.ground_plan import COVERAGE, ENTROPY, LAYERS, difference_map, ground_map
 from ..pictures.reference_figures import count_text, worst_bodies
 from ..pictures.sensor_views import sensor_view
-from ..pictures.sight_plans import (
-    blind_plan,
-    reach_plan,
-    reach_towards,
-    requirement_plan,
-    side_text,
-)
+from ..pictures.sight_plans import blind_plan, reach_plan, requirement_plan, side_text
 from ..pictures.time_strip import strip_data, time_strip
 from ..pictures.vehicle_picture import sensor_key
 from ..report_context import MAP_STEP_M, ReportContext
@@ -27,8 +24,8 @@ CHANGE_ENDS = ("8 nats better", "8 nats worse")
 HEIGHTS = (0.0, 0.5, 1.5)  # Heights of objects for which blind ground is shown [m]
 SIDES = {"front": "ahead", "left": "left", "right": "right", "rear": "behind"}
 PREFERRED_CLASSES = ("pedestrian", "car")  # Classes whose reach is shown, if the prior has them
-BEARINGS_DEG = {"ahead": 0.0, "ahead left": 45.0, "left": 90.0, "behind": 180.0, "right": 270.0}
-BEARINGS_DEG["ahead right"] = 315.0
+WAYS_DEG = {"ahead": 0, "ahead left": 45, "left": 90, "behind": 180, "right": 270}
+WAYS_DEG["ahead right"] = 315
 MAX_PARTS, MIN_SHARE = 3, 0.0005
 """Parts of the vehicle that a row names, and the smallest share that such a part occludes."""
 
@@ -62,14 +59,15 @@ def visibility(context: ReportContext) -> dict[str, Any]:
         plans.append((name, bool(reach.sector), plan))
         for title, each in ((capitalized(name), reach), (f"{name}, before", was)):
             if each is not None:
-                rows.append((title, *(reach_towards(each, deg) for deg in BEARINGS_DEG.values())))
+                told = map(each.towards, map(math.radians, WAYS_DEG.values()))
+                rows.append((title, *starmap(reach_text, told)))
     return {
         **maps,
         "blind_by_height": blind_by_height,
         "sides": SIDES,
         "side_text": side_text,
         "reach_plans": plans,
-        "reach_heads": ["class", *BEARINGS_DEG],
+        "reach_heads": ["class", *WAYS_DEG],
         "reach_rows": rows,
         "key": sensor_key(rig),
     }

@@ -30,7 +30,7 @@ choices:
 sensor_kinds: engine
 view_settings: choices engine
 translation_context:
-language: engine translation_context
+language: choices engine translation_context
 own_catalog: engine
 properties: bridge choices engine sensor_kinds signals view_settings
 bridge: choices engine sensor_kinds

@@ -95,12 +95,12 @@ def told(stream):
 
 def test_a_terminal_shows_the_time_that_is_left():
     text = told(Screen())
-    assert re.search(r"optimizing  25% \|#{6} +\| \d\d:\d\d<\?, entropy 1\.4000", text)
+    assert re.search(r"optimizing  25% \|#{6} +\| \d\d:\d\d<\?, entropy 1\.400", text)
     assert re.search(r"scoring the start  50% \|", text)
     assert "\n" not in text and text.endswith("\r\x1b[K"), "the bar is taken away"
 
 
 def test_a_log_has_lines_and_no_bar():
     lines = told(io.StringIO()).splitlines()
-    assert lines[0] == "scoring the start   0%" and lines[-1] == "optimizing 100%  entropy 1.1000"
+    assert lines[0] == "scoring the start   0%" and lines[-1] == "optimizing 100%  entropy 1.100"
     assert len(lines) == len(SCORING + SEARCHING)

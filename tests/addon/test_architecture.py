@@ -63,7 +63,7 @@ overlay.snapshot: best_so_far bridge choices engine live location_query overlay 
 overlay.scheduler: analysis_calls engine engine_process overlay overlay.snapshot sensor_cache
     viewport
 overlay.surroundings: engine overlay viewport
-overlay.draw_handler: body_query bridge choices engine engine_process language overlay
+overlay.draw_handler: body_query bridge engine engine_process language overlay
     overlay.scheduler overlay.surroundings vehicle_cache viewport
 operators: best_so_far body_query bridge choices diagnostics engine engine_calls engine_process
     film housing language library live location_query overlay overlay.scheduler

@@ -34,7 +34,7 @@ from studies.detectors.runs import parts_of
 from studies.detectors.scan_curves import counts_of
 from studies.detectors.scenes import NOBODY, Layouts
 from studies.detectors.scores import COVERAGE, PRIMARY
-from studies.detectors.second.analysis import BEYOND, FINDS_MORE, second_analysis
+from studies.detectors.second.analysis import BEYOND, FINDS_MORE, good_runs, second_analysis
 from studies.detectors.second.law import (
     PUBLISHED,
     camera_law,
@@ -191,6 +191,11 @@ def made_up(plan, gain, noise=0.002, far=0.1):
     return results, scores
 
 
+def needed(plan, results):
+    """Return the names of the runs that figures of part 1 use."""
+    return [run.name for run in good_runs(plan, parts(plan)[GOOD], results)]
+
+
 def quickly(plan):
     return plan.but(statistics={"permutations": 999, "resamples": 300})
 
@@ -199,7 +204,7 @@ def test_verdicts_of_made_up_runs():
     plan = quickly(full_second_plan())
     results, scores = made_up(plan, 0.05)
     found = second_analysis(plan, parts(plan), results, scores)
-    counts = {EQUAL_M: [36, 36], GOOD: [192, 192], LAYOUTS: [3, 3], SEARCHES: [84, 84]}
+    counts = {EQUAL_M: [36, 36], GOOD: [144, 144], LAYOUTS: [3, 3], SEARCHES: [84, 84]}
     assert found["parts"] == counts
     arms = found[EQUAL_M]["minus_first"]
     assert arms["64"]["mean"] == pytest.approx(0.1, abs=0.01) and arms["64"]["tie"] == REFUTED
@@ -208,6 +213,10 @@ def test_verdicts_of_made_up_runs():
         assert figures[PRIMARY]["verdict"] == figures[BEYOND]["verdict"] == HOLDS
         assert figures[PRIMARY]["rho"] > 0.9 > abs(figures[COVERAGE]["rho"])
         assert figures[COVERAGE]["verdict"] in (UNDECIDED, REFUTED)
+    unused = [r.name for r in parts(plan)[GOOD] if r.name not in needed(plan, results)]
+    assert len(unused) == 48 and all(name.endswith("s2") for name in unused)
+    fewer = {name: result for name, result in results.items() if name not in unused}
+    assert second_analysis(plan, parts(plan), fewer, scores) == found, "they enter no figure"
     near, *others = found[SEARCHES]["minus_entropy"].values()
     assert near["mean"] == 0.0 and near["verdict"] == UNDECIDED
     assert all(row["verdict"] == FINDS_MORE[1] and len(row["by_rig"]) == 6 for row in others)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
 from pe_core.base import dump_json, write_bytes
@@ -15,10 +16,10 @@ from ...results_file import RESULTS, Json, print_progress
 from ..after_search import on_roofs, searched_placements
 from ..placements import good_placements
 from ..plan import EQUAL_M, GOOD, LAYOUTS, SEARCHES, SECOND, full_second_plan, quick_second_plan
-from ..runs import RunFiles, add_run_options, do_runs, parts_of
+from ..runs import Run, RunFiles, add_run_options, do_runs, parts_of
 from ..scenes import Layouts
 from ..scores import placement_scores
-from .analysis import second_analysis
+from .analysis import good_runs, second_analysis
 
 
 def validate_second(args: argparse.Namespace, folder: Path) -> Answer:
@@ -28,14 +29,23 @@ def validate_second(args: argparse.Namespace, folder: Path) -> Answer:
     report = print_progress if args.searches and not args.page_only else None
     parts = parts_of(plan, searched_placements(on_roofs(plan), folder, report))
     layouts = Layouts(Path(args.layouts)) if args.layouts else None
-    wanted = parts[EQUAL_M] + parts[GOOD]
+    kept = RunFiles(folder, plan, [run for runs in parts.values() for run in runs])
+    wanted: Sequence[Run] = parts[LAYOUTS if layouts else SEARCHES]
     if layouts or args.searches:
-        wanted = parts[LAYOUTS if layouts else SEARCHES]
-    do_runs(args, RunFiles(folder, on_roofs(plan) if args.searches else plan, wanted), layouts)
-    results = RunFiles(folder, plan, [run for runs in parts.values() for run in runs]).read()
+        do_runs(args, RunFiles(folder, on_roofs(plan) if args.searches else plan, wanted), layouts)
+    else:
+        for _ in plan.second.good.seeds:  # the first chooses what is done of the others
+            wanted = parts[EQUAL_M] + good_runs(plan, parts[GOOD], kept.read())
+            do_runs(args, RunFiles(folder, plan, wanted))
+            if args.runs is not None:
+                break
+            args.resume = True
+    results = kept.read()
     scores = dict[str, Json]()
-    ranked = [parts[name] for name in (GOOD, LAYOUTS) if plan.second.good.each >= MIN_GROUP]
-    if any(all(run.name in results for run in part) for part in ranked):
+    ranked = [good_runs(plan, parts[GOOD], results), parts[LAYOUTS]]
+    if plan.second.good.each >= MIN_GROUP and any(
+        all(run.name in results for run in part) for part in ranked
+    ):
         rigs = [(placement, placement.rig()) for placement in good_placements(plan)]
         scores = placement_scores(plan, rigs, folder, print_progress)
     found = second_analysis(plan, parts, results, scores)

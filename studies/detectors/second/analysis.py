@@ -35,16 +35,33 @@ def second_analysis(
         LAYOUTS: lambda: _layouts(plan, results, scores),
         SEARCHES: lambda: _searches(on_roofs(plan), results),
     }
-    done = {name: sum(run.name in results for run in parts[name]) for name in parts}
+    counted = {**parts, GOOD: good_runs(plan, parts[GOOD], results)}
+    done = {name: sum(run.name in results for run in own) for name, own in counted.items()}
     rule = plan.searches
     rig_runs = len(plan.searched_seeds) * (1 + len(rule.objectives) * len(rule.seeds))
+    seeds, chosen = len(plan.second.good.seeds), plan.second.good.selected * len(plan.vehicles)
     planned = {name: len(parts[name]) for name in parts}
+    planned[GOOD] = planned[GOOD] // seeds + (seeds - 1) * chosen
     planned[SEARCHES] = rule.count * rig_runs
     found: Json = {"parts": {name: [done[name], planned[name]] for name in parts}}
     for name, conclusion in conclusions.items():
         known = done[name] == planned[name] and (scores or name in (EQUAL_M, SEARCHES))
         found[name] = conclusion() if known else None
     return found
+
+
+def good_runs(plan: Plan, runs: Sequence[Run], results: Results) -> list[Run]:
+    """Return the runs of part 1 that its figures use.
+
+    They are those of the first seed and, once all are done, those of the other seeds at the
+    placements that they choose.
+    """
+    first = [run for run in runs if run.seed == plan.second.good.seeds[0]]
+    if len(first) == len(runs) or any(run.name not in results for run in first):
+        return first
+    whole = of_runs(GOOD, first, results)
+    chosen = {whole.chosen[k] for k in whole.samples.better_half()[0]}
+    return first + [run for run in runs if run not in first and run.placement in chosen]
 
 
 def tie_verdict(low: float, high: float, tie: float) -> str:
@@ -75,12 +92,11 @@ def _arms(plan: Plan, runs: Sequence[Run], results: Results) -> Json:
 
 def _good(plan: Plan, runs: Sequence[Run], results: Results, scores: Results) -> Json:
     """Return rho of each figure with the AP of the last seed, in the half chosen by the first."""
-    whole = of_runs(GOOD, runs, results)
-    index, half = whole.samples.better_half()
-    value = {name: all_of[index] for name, all_of in whole.all_values(scores).items()}
+    later = [run for run in runs if run.seed != plan.second.good.seeds[0]]
+    half = of_runs(GOOD, [r for r in good_runs(plan, runs, results) if r in later], results)
     return {
-        "placements": [whole.chosen[k].name for k in index],
-        "figures": _figures(plan, value, half),
+        "placements": [placement.name for placement in half.chosen],
+        "figures": _figures(plan, half.all_values(scores), half.samples),
     }
 
 

@@ -5,6 +5,7 @@ import math
 from collections.abc import Callable, Container, Mapping, Sequence
 from typing import Any
 
+from pe_core.base.values import shown_share
 from pe_core.scoring.requirements import Reason, VerdictSummary
 from pe_core.scoring.sight import shown_end
 
@@ -14,8 +15,7 @@ def percent(share: float, digits: int | None = None) -> str:
     100%. Without `digits`: "85%" as in a sentence, with one decimal for shares near 0 or 1: "0.4%".
     """
     if digits is not None:
-        most = 100.0 if share >= 1.0 else 100.0 - 10.0**-digits
-        return f"{min(100.0 * share, most):.{digits}f}%"
+        return f"{100.0 * shown_share(share, digits):.{digits}f}%"
     value = 100.0 * share
     if 0.0 < value < 0.05:
         return "under 0.1%"

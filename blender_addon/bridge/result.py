@@ -78,7 +78,7 @@ class Result:
     def ap(self) -> str:
         """The expected AP of all objects with its standard error; empty without objects."""
         found = self.after.get("objects")
-        return "" if found is None else f"{found['ap']:.3f} ± {max(found['ap_stderr'], 1e-3):.3f}"
+        return f"{found['ap']:.3f} ± {advice.error_text(found['ap_stderr'])}" if found else ""
 
     def robustness(self, which: str) -> str:
         """Return how a figure of robustness ("rise", "loss") changed; empty where it is unknown."""

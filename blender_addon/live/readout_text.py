@@ -74,7 +74,7 @@ def state_of(shown: ShownScore) -> str:
     if shown.view_outdated:
         state += ", beams and maps follow"
     whole = shown.stored and not shown.stderr
-    return f"on all voxels, {state}" if whole else f"± {max(shown.stderr, 1e-3):.3f}  {state}"
+    return f"on all voxels, {state}" if whole else f"± {advice.error_text(shown.stderr)}  {state}"
 
 
 def shortened(name: str) -> str:

@@ -188,8 +188,8 @@ def draw_column(column: bpy.types.UILayout, cells: list[TableCell], alignment: s
         row.alignment = alignment
         if cell.change:
             row.label(text=cell.change, icon=SENSE_ICONS[cell.sense], translate=False)
-        icon, text = "SOLO_ON" if cell.best else other, worded(bpy.context.scene, cell.text)
-        row.label(text=text, icon=icon, translate=False)
+        text = worded(bpy.context.scene, cell.text) if alignment == "LEFT" else cell.text
+        row.label(text=text, icon="SOLO_ON" if cell.best else other, translate=False)
 
 
 def pending_variants(scene: bpy.types.Scene) -> list[bpy.types.PropertyGroup]:

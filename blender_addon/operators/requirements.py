@@ -12,8 +12,6 @@ from ..overlay.requirement_zones import VerdictShape
 from .declared import OperatorResult, RowList, operator
 
 OWN, ALL = "OWN", "ALL"
-
-
 PRESETS = (
     (OWN, "Own Requirement", "An adult ahead of the vehicle, to be changed below"),
     *(

@@ -13,8 +13,6 @@ from ..engine import pe
 from .declared import INTERNAL, UNDO, operator, remove_row
 
 UNSAVED = "Unsaved"
-
-
 KEY = IntProperty(
     name="Key", description="Key of the variant; 0: the selected one", options={"HIDDEN"}
 )

@@ -301,3 +301,13 @@ def all_as_in_file(angles: Floats) -> Floats:
     rounded = angles + 0.0
     rounded[~exact] = [as_in_file(a) for a in angles[~exact].tolist()]
     return rounded
+
+
+def shown_share(share: float, decimals: int = 1) -> float:
+    """Return a share, 0 to 1, for percent with so many decimals: less than all is not 100 %."""
+    return share if share >= 1.0 else min(share, 1.0 - 10.0 ** (-decimals - 2))
+
+
+def error_text(stderr: float) -> str:
+    """Return a standard error with three decimals, for a sample: never 0."""
+    return f"{max(stderr, 0.001):.3f}"

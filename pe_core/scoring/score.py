@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..base.arrays import Floats, read_only
 from ..base.notebook import ShortRepr, Tabular
-from ..base.values import DECIMALS, rounded
+from ..base.values import DECIMALS, error_text, rounded, shown_share
 from ..geometry.grids import PerceptionSpace
 from ..scene.rig import Rig
 from ..sensors import Occlusion
@@ -349,9 +349,8 @@ class Score(Tabular):
     ap: float | None = None
 
     def _caption(self) -> str:
-        error = f" ± {max(self.stderr, 1e-3):.3f}" if self.stderr else ""
-        seen = self.coverage if self.coverage >= 1.0 else min(self.coverage, 0.999)
-        return f"{self.entropy:.3f}{error} nats, coverage {seen:.1%}"
+        error = f" ± {error_text(self.stderr)}" if self.stderr else ""
+        return f"{self.entropy:.3f}{error} nats, coverage {shown_share(self.coverage):.1%}"
 
     def _rows(self) -> list[dict[str, Any]]:
         whole = PartScore(self.entropy, self.coverage, 1.0)

@@ -1,6 +1,7 @@
 """Texts for the designer of a rig: warnings, scores in words, comparisons, and one location.
 Nothing here computes a score; results of `pe_core` are checked, compared and described."""
 
+from pe_core.base.values import error_text
 from pe_core.search.key_figures import KeyFigures
 from pe_tools.wording import joined, percent
 from ..wording import off_by

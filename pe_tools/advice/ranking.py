@@ -15,8 +15,6 @@ from .summary import WHERE
 ZONES_NAMED = 2
 SENSORS_NAMED = 3
 NOTHING = "It cost nothing"
-
-
 RANKED = {
     ENTROPY: ("entropy", " nats", " nats"),
     COVERAGE: ("coverage", "%", " points"),

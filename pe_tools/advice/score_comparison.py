@@ -7,13 +7,14 @@ from itertools import permutations
 from statistics import NormalDist
 from typing import Any
 
+from pe_core import catalog
+from pe_core.base.values import shown_share
 from pe_core.motion.drive_by import shown_margin
 from pe_core.scene.rig import SensorModel
 from pe_core.scoring.sampling import BLOCKS
 from pe_core.scoring.score import BY_DISTANCE, FigureKey, PartScore, Score, TrafficAp, paired_error
 from pe_core.scoring.sight import SECTOR_RADIUS_M, shown_end, shown_start
 from pe_core.search.key_figures import KeyFigures
-from pe_core.study.mounting_file import same_model
 
 CERTAINTY = 0.95
 
@@ -94,8 +95,12 @@ class Measure:
     digits: int = 1
     factor: float = 1.0
     shown: Callable[[float], float] = float
-    lower_is_better: bool = False
     least: float = 0.05
+
+    @property
+    def lower_is_better(self) -> bool:
+        """Whether less of it is better."""
+        return self.about == LOWER
 
     @property
     def heading(self) -> str:
@@ -106,14 +111,12 @@ class Measure:
 LOWER, HIGHER = "lower is better", "higher is better"
 MEASURES = {
     MARGIN: Measure("Margin of stories [s]", "none: never confirmed"),
-    SECTOR: Measure("Widest blind sector [deg]", LOWER, 1, 1.0, shown_end, True, 1.0),
-    BLIND: Measure("Blind ground [m2]", LOWER, 1, 1.0, shown_end, True),
+    SECTOR: Measure("Widest blind sector [deg]", LOWER, 1, 1.0, shown_end, 1.0),
+    BLIND: Measure("Blind ground [m2]", LOWER, 1, 1.0, shown_end),
     REACH: Measure("Reach ahead (AP 0.5) [m]", HIGHER, 1, 1.0, shown_start),
     AP: Measure("Expected AP", HIGHER, 3, least=0.0005),
-    ENTROPY: Measure("Entropy [nats]", LOWER, 3, 1.0, float, True, 0.005),
-    COVERAGE: Measure(
-        "Coverage [%]", HIGHER, 1, 100.0, lambda v: v if v == 1.0 else min(v, 0.999), least=0.0005
-    ),
+    ENTROPY: Measure("Entropy [nats]", LOWER, 3, least=0.005),
+    COVERAGE: Measure("Coverage [%]", HIGHER, 1, 100.0, shown_share, least=0.0005),
 }
 """By name, in the order of a table: what a designer asks for first. A sector's edges are known to
 half a degree each; 0.005 nats are 0.2 % of a detector's standard deviation."""
@@ -308,15 +311,8 @@ def _row(
 def hardware_note(rigs: Iterable[Sequence[SensorModel]]) -> str:
     """Return `OTHER_HARDWARE` where rigs, by their models in any order, differ; else nothing. Where
     LiDARs have other `returns`, it is `OTHER_RETURNS`."""
-    first, *others = rows = [list(models) for models in rigs] or [[]]
+    rows = [list(models) for models in rigs]
     if len({m.returns for models in rows for m in models if hasattr(m, "returns")}) > 1:
         return OTHER_RETURNS
-    for left in others:
-        for model in first:
-            match = next((k for k, each in enumerate(left) if same_model(model, each)), None)
-            if match is None:
-                return OTHER_HARDWARE
-            del left[match]
-        if left:
-            return OTHER_HARDWARE
-    return ""
+    values = [sorted(repr(catalog.to_table(model)) for model in models) for models in rows]
+    return OTHER_HARDWARE if any(each != values[0] for each in values) else ""

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from pe_core.base.values import choice
+from pe_core.base.values import choice, error_text
 from pe_core.prior.prior import Prior
 from pe_core.scene.rig import Rig
 from pe_core.scoring import sight
@@ -27,7 +27,7 @@ from .warnings import hidden_sensors, hidden_words
 
 def object_words(found: ObjectScore) -> tuple[str, ...]:
     """Describe a score on objects in lines: expected AP, LiDAR points, and reach by class."""
-    ap = f"expected AP {found.ap:.2f} +- {max(found.ap_stderr, 0.001):.3f}"
+    ap = f"expected AP {found.ap:.2f} +- {error_text(found.ap_stderr)}"
     lines = [f"{ap}: {', '.join(f'{name} {c.ap:.2f}' for name, c in found.per_class.items())}"]
     for name, own in found.per_class.items():
         shares = ", ".join(map(percent, own.points.values()))

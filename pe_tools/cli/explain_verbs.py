@@ -11,6 +11,7 @@ from pe_core import catalog
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
 from pe_core.base.table_reader import finite
+from pe_core.base.values import error_text
 from pe_core.study import Study, vehicle_digest
 
 from .. import advice
@@ -154,7 +155,7 @@ def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
     lines += [] if alike else ["their vehicles differ"]
     if error := max(score.stderr for score in scores.values()):
         lines.append(
-            f"on samples: entropies have a standard error of up to {max(error, 1e-3):.3f} nats; "
+            f"on samples: entropies have a standard error of up to {error_text(error)} nats; "
             "+- is that of a difference, smaller on a shared sample"
         )
     return _answer(data, [*lines, *notes], args.json)

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import TextIO
 
+from pe_core.base.values import error_text
 from pe_core.search.key_figures import ENTROPY
 from pe_core.sensors import kind_of
 
@@ -23,8 +24,6 @@ from ..wording import margin_text, percent
 
 DONE, BAD_INPUT, USAGE, NOT_MET, INTERRUPTED = 0, 1, 2, 3, 130
 Answer = tuple[str, int]  # What a verb prints on stdout, and its exit status
-
-
 ESCAPED = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
 """Unicode categories that control a terminal or the direction of text, or are no characters."""
 MAX_LINE_LENGTH = 2000  # Maximum number of characters of a message; the rest is cut
@@ -93,9 +92,6 @@ def _shown(character: str, encoding: str) -> str:
     # Beyond 16 bits these are two.
     units = character.encode("utf-16-be", "surrogatepass")
     return "".join(f"\\u{units[i]:02x}{units[i + 1]:02x}" for i in range(0, len(units), 2))
-
-
-MIN_SHOWN_ERROR = 1e-3  # Smallest standard error that is printed [nats]: one unit of the last digit
 
 
 def summary(outcome: Outcome) -> str:
@@ -181,5 +177,5 @@ def warned(outcome: Outcome) -> list[str]:
 
 def with_error(entropy: float, stderr: float) -> str:
     """Return an entropy with its standard error: none for a grid, never 0 for a sample."""
-    error = f" +- {max(stderr, MIN_SHOWN_ERROR):.3f}" if stderr else ""
+    error = f" +- {error_text(stderr)}" if stderr else ""
     return f"{entropy:.3f}{error} nats"

@@ -38,8 +38,6 @@ from .terminal import Answer, open_missing_streams, tell
 from .where_verb import add_where_options, where
 
 ONE, PERHAPS, SOME = "one", "?", "+"  # How many study files a verb takes
-
-
 GROUPS = {
     "begin": "new set import rigs sensors curves requirements",
     "score": "score explain check compare drive-by",

@@ -212,7 +212,7 @@ def test_a_variant_that_cannot_be_scored_is_reported_and_the_others_are(ideas):
         bpy.ops.pe.compare_variants()
 
 
-def test_a_story_that_is_never_confirmed_is_drawn_as_the_worst():
+def test_a_story_that_is_never_confirmed_is_drawn_as_the_worst(addon):
     """An orange square without a number; where all are confirmed but the first, a star."""
     cells = {}
     for margins in ((0.2, NEVER), (NEVER, 0.2), (NEVER, NEVER)):
@@ -254,3 +254,6 @@ def test_bars_have_the_largest_difference_first_and_the_longest_is_full(ideas):
     assert texts[0] == "The largest difference first"
     assert texts[1 + len(names)] == compare_variants.label_of(rows[0])
     assert layout.texts("bar")[: len(names)] == [pytest.approx(rows[0].share(k)) for k in (0, 1)]
+    ideas.perception_entropy.panels, layout = "SIMPLE", Layout()
+    compare_variants._draw_table(layout, ["entropy", "b"], table)
+    assert {"Score, lower is better", "entropy"} <= set(layout.texts("label")), "names stay"

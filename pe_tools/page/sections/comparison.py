@@ -10,6 +10,7 @@ from markupsafe import Markup
 import pe_core as pe
 from pe_core import catalog
 from pe_core import sensors as kinds
+from pe_core.base.values import error_text
 
 from ... import advice
 from ..markup import escaped, macros, price_text
@@ -119,7 +120,7 @@ def _summary_lines(
     if error := max(context.after.stderr for context in contexts):
         yield (
             "Scores are based on samples, with a standard error up to "
-            f"{max(error, 1e-3):.3f} nats. ± is the standard error of a difference, which is "
+            f"{error_text(error)} nats. ± is the standard error of a difference, which is "
             "smaller where studies share the sample."
         )
 

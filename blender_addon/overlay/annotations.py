@@ -106,8 +106,6 @@ def location_mark(place: advice.AskedPlace, sensors: Sequence[pe.Sensor]) -> gra
 
 REASON_COLORS = {"sees": VISIBLE, "occluded": OCCLUDED}
 """By the reason that `advice.ask_place` gives."""
-
-
 RING_M, VIEW_M = 0.18, 0.6
 """Radius of a ring, and length of a camera's view."""
 GHOST_ALPHA, LINK_ALPHA = 0.5, 0.8

@@ -88,8 +88,8 @@ def seen_in_time(layout: UILayout, settings: PropertyGroup, context: Context) ->
         for body in told.get("bodies", ()):
             draw_sentence(layout, context, _body_text(body))
             if "seam_m" in body:
-                apart = f"{' and '.join(body['seam_of'])} see it up to {body['seam_m']:.2f} m apart"
-                draw_sentence(layout, context, apart)
+                pair, most = " and ".join(body["seam_of"]), sight.shown_end(body["seam_m"])
+                draw_sentence(layout, context, f"{pair} see it up to {most:.1f} m apart")
         draw_declared(layout, row, "story")
         layout.separator()
     draw_declared(layout, settings, "time")

@@ -85,6 +85,4 @@ ELSEWHERE = ("ground_difference", "ground_fits", "ghost_key")
 SLIDERS = {"ground_opacity", "wipe_at"}
 EXPANDED = {"ground_quantity", "blind_height", "reach_of", "beams_of", "channels"}
 """Menus whose entries are buttons beside each other."""
-
-
 CLASSES = (view,)

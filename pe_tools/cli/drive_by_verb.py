@@ -96,6 +96,8 @@ def _row(driven: DriveBy, body: SeenBody, chances: Sequence[float]) -> list[str]
     ]
     margin = "-" if body.margin_s is None else f"{body.shown_margin_s:+.1f} s"
     met = "met" if body.is_met else "NOT MET"
-    seam = [] if body.seam_m is None else [f"{body.seam_m:.2f} m, {' and '.join(body.seam_of)}"]
     lost, stop = f"{shown_end(body.lost_s):.1f} s", f"{shown_end(driven.story.stop_m):.1f} m"
-    return [met, driven.story.name, body.name, *texts, lost, margin, stop, *seam]
+    row = [met, driven.story.name, body.name, *texts, lost, margin, stop]
+    if body.seam_m is None:
+        return row
+    return [*row, f"{shown_end(body.seam_m):.1f} m, {' and '.join(body.seam_of)}"]

@@ -86,11 +86,13 @@ def explain(study: Study, args: argparse.Namespace) -> Answer:
         expected = f"X Y{'' if with_body else ', perhaps Z'}: numbers of metres"
         raise InputError("command line", "--at", expected, " ".join(f"{v:g}" for v in at))
     nowhere, turned, of_class = at is None, args.heading is not None, args.class_name is not None
+    sampled = args.samples is not None
     for option, is_idle, expected, found in (
         ("--suggest", args.suggest and with_body, "--at X Y, a place to mend", "--body"),
         ("--suggest", args.suggest and nowhere, "--at X Y, a place to mend", "none"),
         ("--body", with_body and nowhere, "--at X Y, where it stands", "none"),
         ("--heading", turned and not with_body, "--body NAME, which it turns", "none"),
+        ("--samples", sampled and not nowhere, "no --at: a place has no sample", "--at"),
         ("--class", of_class and not nowhere, "no --at: it says whose reach is told", "--at"),
     ):
         if is_idle:

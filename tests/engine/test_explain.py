@@ -67,6 +67,7 @@ def test_explain_one_place(study, capsys):
         ("--at 1 2 --body adult --suggest", "--suggest: expected --at X Y, a place to mend, found"),
         ("--heading 30 --at 1 2", "--heading: expected --body NAME, which it turns, found none"),
         ("--class car --at 1 2", "--class: expected no --at: it says whose reach is told, found"),
+        ("--samples 2048 --at 1 2", "--samples: expected no --at: a place has no sample, found"),
         ("--at x 2", "argument --at: expected a number, found 'x'"),
     ],
 )

@@ -50,6 +50,7 @@ def _environment() -> Environment:
         "css_string": css_string,
         "degrees": degrees,
         "price": price_text,
+        "error_text": advice.error_text,
         "shown_end": shown_end,
         "shown_start": shown_start,
         "at_least": lambda count: f"{count} points or more",

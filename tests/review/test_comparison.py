@@ -8,6 +8,7 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_core.catalog import load
+from pe_core.motion import stories
 from pe_tools.page import ReportContext, keyed_contexts
 from pe_tools.page.markup import render
 from pe_tools.page.sections.comparison import comparison as comparison_section
@@ -76,3 +77,22 @@ def test_the_comparison_marks_the_engine_s_winner(scored, other, comparison):
     first = re.search(r'class="wins whose-(\w)-ink">([^<]*)<', comparison[heading:])
     assert first.groups() == ("ab"[winner], f"{better.after.entropy:.3f}")
     assert comparison_section(keyed_contexts([scored, other]))["overall"] == rows[0]
+
+
+def test_the_margins_of_stories_are_in_the_comparison(scored, other):
+    """As `pe compare` has them; a score alone does not."""
+    child = stories()["crossing_child"]
+    with_story = [dataclasses.replace(c.study, stories=(child,)) for c in (scored, other)]
+    each = keyed_contexts(
+        [
+            dataclasses.replace(c, outcome=dataclasses.replace(c.outcome, study=study))
+            for c, study in zip((scored, other), with_story, strict=True)
+        ]
+    )
+    told = {c.key: c.study.key_figures(c.outcome.figures_after) for c in each}
+    (row,) = (r for r in pt.advice.compare_figures(told) if r.measure == "margin")
+    assert row in comparison_section(each)["rows"]
+    assert ["Crossing child", row.text(0), row.text(1)] in [
+        [text.partition(" (")[0].replace("−", "-").removesuffix(" best") for text in line]
+        for line in cells(html_of(comparison_section, *each).partition("Margin of stories")[2])
+    ]

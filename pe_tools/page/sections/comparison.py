@@ -72,9 +72,10 @@ def comparison(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:
         return None
     first, *others = contexts
     rows = advice.compare({context.key: context.after for context in contexts})
-    told = {c.key: c.outcome.figures[1] for c in contexts if c.outcome.figures is not None}
-    figures = advice.compare_figures(told) if len(told) == len(contexts) else ()
-    rows = (*rows, *figures)
+    known = [(c, c.outcome.figures_after) for c in contexts]
+    if all(figures is not None for _, figures in known):
+        told = {context.key: context.study.key_figures(own) for context, own in known}
+        rows = (*rows, *advice.compare_figures(told))
     return {
         "names": [macros().bold_study(context) for context in contexts],
         "rows": rows,

@@ -52,8 +52,6 @@ origin may be at an axle, but a mirror image is on the vehicle only if the axis 
 WIDE_M = 3.2
 """Greatest width of a road vehicle [m]: a lorry is 2.6 m wide, and each mirror adds 0.3 m."""
 FLOOR_M = 6.0  # A mesh wider than any vehicle and lower than this [m] may be a vehicle on a floor
-
-
 WHEELS_BELOW = 0.1  # The wheels are this far off the middle of the up axis, as a share of the side
 
 

@@ -29,13 +29,13 @@ def second_analysis(
     `parts` has the runs of each part, as far as they are known; `scores` are those of part 1's
     placements, empty while none is wanted.
     """
+    counted = {**parts, GOOD: good_runs(plan, parts[GOOD], results)}
     conclusions: dict[str, Callable[[], Json]] = {
         EQUAL_M: lambda: _arms(plan, parts[EQUAL_M], results),
-        GOOD: lambda: _good(plan, parts[GOOD], results, scores),
+        GOOD: lambda: _good(plan, counted[GOOD], results, scores),
         LAYOUTS: lambda: _layouts(plan, results, scores),
         SEARCHES: lambda: _searches(on_roofs(plan), results),
     }
-    counted = {**parts, GOOD: good_runs(plan, parts[GOOD], results)}
     done = {name: sum(run.name in results for run in own) for name, own in counted.items()}
     rule = plan.searches
     rig_runs = len(plan.searched_seeds) * (1 + len(rule.objectives) * len(rule.seeds))
@@ -92,8 +92,8 @@ def _arms(plan: Plan, runs: Sequence[Run], results: Results) -> Json:
 
 def _good(plan: Plan, runs: Sequence[Run], results: Results, scores: Results) -> Json:
     """Return rho of each figure with the AP of the last seed, in the half chosen by the first."""
-    later = [run for run in runs if run.seed != plan.second.good.seeds[0]]
-    half = of_runs(GOOD, [r for r in good_runs(plan, runs, results) if r in later], results)
+    first = plan.second.good.seeds[0]
+    half = of_runs(GOOD, [run for run in runs if run.seed != first], results)
     return {
         "placements": [placement.name for placement in half.chosen],
         "figures": _figures(plan, half.all_values(scores), half.samples),

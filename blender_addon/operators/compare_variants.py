@@ -2,14 +2,15 @@
 
 from collections.abc import Sequence
 from textwrap import wrap
-from typing import Any, NamedTuple
+from typing import Any
 
 import bpy
+from bpy.props import EnumProperty
 
 from .. import bridge, result_staleness, variant_pictures
 from ..engine import advice, pe
 from ..language import draw_label, shown, worded
-from ..live import SAME, SENSE_ICONS
+from ..live import SENSE_ICONS
 from ..own_jobs import ComparedVariant, CompareJob, PendingVariant
 from .declared import INTERNAL, OperatorResult, Told, operator
 from .jobs import JobRow, Task
@@ -23,7 +24,12 @@ PICTURE_SCALE, BAR_SHARE = 7.0, 0.45
 MAX_VARIANTS = 8
 KEY_FIGURES = ("margin", "sector", "blind", "reach", "ap")
 WHOLE_RIG = "Everywhere"
-IN_TRAFFIC = ", in traffic"
+WHOLE = "RIG"
+PARTS = (
+    (WHOLE, "Rig", "Figures that rigs are decided by, and the scores in words"),
+    ("PARTS", "By Zone and Class", "Scores by zone and class"),
+)
+"""What is shown of a comparison: all of it is higher than many windows."""
 
 
 def compare_task(context: bpy.types.Context) -> Task | None:
@@ -86,12 +92,15 @@ def _open(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> Ope
 
 
 def _draw(self: Any, context: bpy.types.Context) -> None:
-    """Draw figures of the rigs as bars, the scores in words, and the scores by zone and class."""
-    _draw_bars(self.layout, self.names, of_rigs(self.rows), self.pictures)
-    said = self.layout.column(align=True)
-    for line in self.said:
-        said.label(text=worded(context.scene, line), translate=False)
-    _draw_table(self.layout, self.names, [r for r in self.rows if r.measure not in KEY_FIGURES])
+    """Draw figures of the rigs as bars and the scores in words, or the scores by zone and class."""
+    self.layout.row().prop(self, "part", expand=True)
+    if self.part == WHOLE:
+        _draw_bars(self.layout, self.names, of_rigs(self.rows), self.pictures)
+        said = self.layout.column(align=True)
+        for line in self.said:
+            said.label(text=worded(context.scene, line), translate=False)
+    else:
+        _draw_table(self.layout, self.names, [r for r in self.rows if r.measure not in KEY_FIGURES])
     text = (
         f"A star marks the best; in brackets: the difference to {self.names[0]}, "
         "blue for a gain, orange for a loss"
@@ -99,7 +108,13 @@ def _draw(self: Any, context: bpy.types.Context) -> None:
     draw_label(self.layout, text)
 
 
-@operator("Variants Compared", options=INTERNAL, invoke=_open, draw=_draw)
+@operator(
+    "Variants Compared",
+    options=INTERNAL,
+    invoke=_open,
+    draw=_draw,
+    part=EnumProperty(items=PARTS, name="Show", description="Which figures are shown"),
+)
 def show_comparison(_context: bpy.types.Context) -> None:
     """Show the scores of all variants side by side"""
 
@@ -119,77 +134,72 @@ def _draw_bars(
     """Draw the variants' pictures; below, a row a figure, and in it a bar a variant: its length,
     its figure and the change."""
     lines = layout.box().column(align=True)
-    share = LABEL_PX / (LABEL_PX + COLUMN_PX * len(names))
     if any(pictures):
-        split = lines.split(factor=share)
-        split.label(text="")
-        cells = _cells(split, names)
+        cells = _line(lines, names, "")
         for each in pictures:
             cells.template_icon(variant_pictures.icon_of(each), scale=PICTURE_SCALE)
-    for row in [None, *rows]:
-        split = lines.split(factor=share)
-        label = "The largest difference first" if row is None else label_of(row)
-        split.label(text=worded(bpy.context.scene, label), translate=False)
-        cells = _cells(split, names)
-        for k, name in enumerate(names):
-            if row is None:
-                cells.label(text=name, translate=False)
-                continue
-            bar, (text, best, change, sense) = cells.split(factor=BAR_SHARE), _cell(row, k)
-            bar.progress(text=text, factor=row.share(k), translate=False)
-            draw_label(bar, change, "SOLO_ON" if best else SENSE_ICONS[sense])
-
-
-def _cells(layout: bpy.types.UILayout, names: list[str]) -> bpy.types.UILayout:
-    """Return where the cells of a line go: a column of the same width for each variant."""
-    return layout.grid_flow(row_major=True, columns=len(names), even_columns=True)
-
-
-def label_of(row: advice.ComparedRow) -> str:
-    """Return what a bar is of: "Blind ground [m²], 0.5 m tall, within 10 m"."""
-    measure, name = row.how.title, row.name.capitalize()
-    traffic = IN_TRAFFIC if row.group == advice.TRAFFIC else ""
-    return f"{measure}{f', {name}' if name else ''}{traffic}"
+    _draw_names(lines, names, "The largest difference first")
+    for row in rows:
+        cells = _line(lines, names, label_of(row))
+        for k in range(len(names)):
+            _draw_figure(cells, row, k, with_bar=True)
 
 
 def _draw_table(
     layout: bpy.types.UILayout, names: list[str], rows: Sequence[advice.ComparedRow]
 ) -> None:
-    if not rows:
-        return
-    split = layout.box().split(factor=LABEL_PX / (LABEL_PX + COLUMN_PX * len(names)))
-    first, *columns = columns_of(names, rows)
-    draw_column(split.column(align=True), first, "LEFT")
-    figures = split.row()
-    for column in columns:
-        draw_column(figures.column(align=True), column, "RIGHT")
+    """Draw a row a zone and class under the heading of each measure."""
+    lines = layout.box().column(align=True)
+    _draw_names(lines, names, "")
+    for measure in advice.MEASURES.values():
+        found = [row for row in rows if row.how is measure]
+        if found:
+            _line(lines, names, measure.heading)
+        for row, last in zip(found, [*found[:1], *found], strict=False):
+            if row.group != last.group:
+                lines.separator(factor=0.6)
+            cells = _line(lines, names, f"    {row.name.capitalize() or WHOLE_RIG}")
+            for k in range(len(names)):
+                _draw_figure(cells, row, k)
 
 
-class TextCell(NamedTuple):
-    """Text of a cell, whether it is the best, and the change from the first column."""
-
-    text: str
-    best: bool = False
-    change: str = ""
-    sense: int = SAME
+def _line(lines: bpy.types.UILayout, names: list[str], label: str) -> bpy.types.UILayout:
+    """Draw a line's label; return where its cells go: a column of the same width a variant."""
+    split = lines.split(factor=LABEL_PX / (LABEL_PX + COLUMN_PX * len(names)))
+    split.label(text=worded(bpy.context.scene, label), translate=False)
+    return split.grid_flow(row_major=True, columns=len(names), even_columns=True)
 
 
-TableCell = TextCell | None  # None is a gap
+def _draw_names(lines: bpy.types.UILayout, names: list[str], label: str) -> None:
+    cells = _line(lines, names, label)
+    for name in names:
+        cells.label(text=name, translate=False)
 
 
-def draw_column(column: bpy.types.UILayout, cells: list[TableCell], alignment: str) -> None:
-    """Draw a column of the table; every cell reserves the width of a star."""
-    other = "BLANK1" if alignment == "RIGHT" else "NONE"
-    for cell in cells:
-        if cell is None:
-            column.separator(factor=0.6)
-            continue
-        row = column.row(align=True)
-        row.alignment = alignment
-        if cell.change:
-            row.label(text=cell.change, icon=SENSE_ICONS[cell.sense], translate=False)
-        text = worded(bpy.context.scene, cell.text) if alignment == "LEFT" else cell.text
-        row.label(text=text, icon="SOLO_ON" if cell.best else other, translate=False)
+def _draw_figure(
+    cells: bpy.types.UILayout, row: advice.ComparedRow, k: int, *, with_bar: bool = False
+) -> None:
+    """Draw a figure, and beside it the change with a star or a colour."""
+    cell, (text, best, change, sense) = cells.split(factor=BAR_SHARE), cell_of(row, k)
+    if with_bar:
+        cell.progress(text=text, factor=row.share(k), translate=False)
+    else:
+        cell.label(text=text, translate=False)
+    draw_label(cell, change, "SOLO_ON" if best else SENSE_ICONS[sense])
+
+
+def label_of(row: advice.ComparedRow) -> str:
+    """Return what a bar is of: "Blind ground [m²], 0.5 m tall, within 10 m"."""
+    traffic = advice.TRAFFIC if row.group == advice.TRAFFIC else ""
+    return ", ".join(filter(None, (row.how.title, row.name.capitalize(), traffic)))
+
+
+def cell_of(row: advice.ComparedRow, k: int) -> tuple[str, bool, str, int]:
+    """Return a figure, whether it is the best, its difference to the first variant's if that is not
+    0, and whether this is a gain or a loss."""
+    change = row.change_text(k)
+    change = f"({change})" if change.strip("+-0.") else ""
+    return row.text(k), row.best[k], change, row.sense(k)
 
 
 def pending_variants(scene: bpy.types.Scene) -> list[bpy.types.PropertyGroup]:
@@ -226,28 +236,3 @@ def sentences(names: list[str], rows: tuple[advice.ComparedRow, ...], letters: i
     apart = advice.disagreement(names, rows)
     lines = (apart, *advice.ranking(names, scored))
     return [line for sentence in lines if sentence for line in wrap(sentence, letters)]
-
-
-def columns_of(names: list[str], rows: Sequence[advice.ComparedRow]) -> list[list[TableCell]]:
-    """Return the table by columns; the first column holds the names of the rows."""
-    empty = TextCell("")
-    gap: list[TableCell] = [None] * (len(names) + 1)
-    table: list[list[TableCell]] = [[empty, *map(TextCell, names)]]
-    for key, measure in advice.MEASURES.items():
-        found = [row for row in rows if row.measure == key]
-        table += [[TextCell(measure.heading), *[empty] * len(names)]] if found else []
-        group = "rig"
-        for row in found:
-            table += [gap] if row.group != group else []
-            group = row.group
-            traffic = IN_TRAFFIC if row.group == advice.TRAFFIC else ""
-            label = TextCell(f"    {row.name.capitalize() or WHOLE_RIG}{traffic}")
-            table.append([label, *(_cell(row, k) for k in range(len(names)))])
-    return [list(column) for column in zip(*table, strict=True)]
-
-
-def _cell(row: advice.ComparedRow, k: int) -> TextCell:
-    """Return a figure, with its difference to the first variant's if that is not 0."""
-    change = row.change_text(k)
-    change = f"({change})" if change.strip("+-0.") else ""
-    return TextCell(row.text(k), row.best[k], change, row.sense(k))

@@ -3,6 +3,7 @@
 import base64
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -217,7 +218,7 @@ def test_a_story_that_is_never_confirmed_is_drawn_as_the_worst(addon):
     cells = {}
     for margins in ((0.2, NEVER), (NEVER, 0.2), (NEVER, NEVER)):
         row = advice.ComparedRow("story", "child", "margin", margins, ((0.0, 0.0),) * 2)
-        cells[margins] = compare_variants._cell(row, 1)
+        cells[margins] = compare_variants.cell_of(row, 1)
         compare_variants._draw_bars(Layout(), ["a", "b"], [row])
     assert list(cells.values()) == [
         ("none", False, "", 1),
@@ -254,6 +255,12 @@ def test_bars_have_the_largest_difference_first_and_the_longest_is_full(ideas):
     assert texts[0] == "The largest difference first"
     assert texts[1 + len(names)] == compare_variants.label_of(rows[0])
     assert layout.texts("bar")[: len(names)] == [pytest.approx(rows[0].share(k)) for k in (0, 1)]
-    ideas.perception_entropy.panels, layout = "SIMPLE", Layout()
-    compare_variants._draw_table(layout, ["entropy", "b"], table)
-    assert {"Score, lower is better", "entropy"} <= set(layout.texts("label")), "names stay"
+    ideas.perception_entropy.panels = "SIMPLE"
+    window = {"names": ["entropy", "b"], "rows": table, "pictures": [], "said": ["entropy"]}
+    layouts = {"RIG": Layout(), "PARTS": Layout()}
+    for part, layout in layouts.items():
+        compare_variants._draw(SimpleNamespace(layout=layout, part=part, **window), bpy.context)
+    assert len(layouts["RIG"].texts("bar")) == 2 * len(rows) and not layouts["PARTS"].texts("bar")
+    labels = layouts["PARTS"].texts("label")
+    assert {"Score, lower is better", "entropy"} <= {*labels}, "names stay"
+    assert "    Near" in labels and "score" in layouts["RIG"].texts("label")

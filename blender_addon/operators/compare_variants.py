@@ -103,7 +103,7 @@ def _draw(self: Any, context: bpy.types.Context) -> None:
         _draw_table(self.layout, self.names, [r for r in self.rows if r.measure not in KEY_FIGURES])
     text = (
         f"A star marks the best; in brackets: the difference to {self.names[0]}, "
-        "blue for a gain, orange for a loss"
+        "blue for a clear gain, orange for any loss"
     )
     draw_label(self.layout, text)
 

@@ -19,7 +19,7 @@ from .variants import unless_variants
 LABEL_PX, COLUMN_PX = 260, 170
 MIN_WIDTH_PX, LETTER_PX = 560, 7
 """Smallest width of the table, and width of a letter of the sentences above it."""
-PICTURE_SCALE, BAR_SHARE = 7.0, 0.45
+PICTURE_SCALE, BAR_SHARE = 6.0, 0.45
 """Height of a picture in rows, and share of a cell that is its bar."""
 MAX_VARIANTS = 8
 KEY_FIGURES = ("margin", "sector", "blind", "reach", "ap")

@@ -38,10 +38,9 @@ from {NAME}.operators import running_job
 settings = window.scene.perception_entropy
 settings.view.show_requirements = False
 bpy.ops.pe.add_requirement(preset="ALL")
-kept["ticks"] = []
+known = kept["known"] = []
 def tick():
-    import time
-    kept["ticks"].append(time.monotonic())
+    known.append(sum(bool(row.verdict) for row in settings.requirements))
     return 0.01 if running_job.current is not None else None
 with bpy.context.temp_override(window=window, area=area, region=region):
     bpy.ops.pe.check_requirements("INVOKE_DEFAULT")
@@ -50,8 +49,6 @@ bpy.app.timers.register(tick)
 ROWS = """
 rows = window.scene.perception_entropy.requirements
 kept["met"] = [bool(row.verdict) for row in rows]
-gaps = [b - a for a, b in zip(kept["ticks"], kept["ticks"][1:])]
-kept["longest"] = max(gaps, default=0.0)
 """
 
 
@@ -120,6 +117,6 @@ def test_verdicts_follow_a_turned_camera_and_a_check_of_all_is_ended_by_esc(stag
     stage.wait_until(f"{running} is None", EFFECT_TIMEOUT_S)
     found = stage.do(ROWS)
     met = found["met"]
-    assert found["longest"] < 5.0, "the window stood still"
+    assert len(set(found["known"])) > 2, "the window stood still"
     assert 0 < sum(met) < len(met)
     assert "Traceback" not in stage.log.read_text()

@@ -66,28 +66,20 @@ kept["names"], box = [name for name, _ in drawn], dict(drawn)["left"]
 main = next(each for each in area.regions if each.type == "WINDOW")
 kept["at"] = [main.x + (box[0] + box[2]) / 2, window.height - main.y - (box[1] + box[3]) / 2]
 """
-COST = f"""
-import time
+REDRAWN = f"""
 pictures = {PICTURES}
 view = window.scene.perception_entropy.view
-def redraws(count=6):
-    begun = time.perf_counter()
-    for _ in range(count):
-        bpy.ops.wm.redraw_timer(type="DRAW_WIN", iterations=1)
-    return (time.perf_counter() - begun) / count
-kept["on"] = redraws()
-took, kept["left"] = [], []
+def redraw():
+    bpy.ops.wm.redraw_timer(type="DRAW_WIN", iterations=1)
+kept["left"] = []
 for _ in range(14):
     pictures.note_change()
-    redraws(1)
-    begun = time.perf_counter()
+    redraw()
     pictures.render_requested()
-    took.append(time.perf_counter() - begun)
     kept["left"].append(len(pictures._requested))
-kept["picture"] = sum(took) / len(took)
 view.show_cameras = view.show_birds_eye = False
-redraws(2)
-kept["off"], kept["kept"] = redraws(), len(pictures._pictures)
+redraw()
+kept["kept"] = len(pictures._pictures)
 """
 
 
@@ -123,8 +115,6 @@ def test_a_click_on_a_picture_of_the_strip_looks_through_its_camera(window, scre
     plate = window.do(BOX)
     assert plate["taken"] == ["", "front", "left", "rear"]
     assert colors_in(shown, plate["box"]) > 500, "the road and the vehicle, in shades"
-    cost = window.do(COST)
-    print(cost)
-    assert set(cost["left"]) == {6} and cost["kept"] == 0, "one a redraw, in turn"
-    assert cost["on"] + cost["picture"] < 1.5 * cost["off"] + 0.05
+    redrawn = window.do(REDRAWN)
+    assert set(redrawn["left"]) == {6} and redrawn["kept"] == 0, "one a redraw, in turn"
     assert "Traceback" not in window.log.read_text()

@@ -33,6 +33,7 @@ from studies.detectors.plan import (
     AFTER_SEARCH,
     CAMERAS,
     FIXED,
+    GOOD,
     MIXED,
     OWN,
     PLAIN,
@@ -47,6 +48,7 @@ from studies.detectors.plan import (
 )
 from studies.detectors.runs import RunFiles, run_digest, runs, seed_by_seed
 from studies.detectors.scenes import scene
+from studies.detectors.scores import COVERAGE, EXPECTED_AP, PRIMARY
 from studies.detectors.second.analysis import FINDS_MORE
 from tests.limits import HANG_S
 from tests.studies.conftest import ROOT, study
@@ -278,11 +280,15 @@ def test_the_page_of_validity_gives_the_answer_of_the_study_and_the_readme_in_se
     told = re.sub(r"\]\([^)]*\)", "]", " ".join(section.split()))
     assert len(told.replace("- ", "").split()) <= 70
     number = r"\d+(?:\.\d+)?"
-    second = json.loads((FOLDER / "second/results.json").read_text("utf-8"))[SEARCHES]
-    rings = [n for n, row in second["minus_entropy"].items() if row["verdict"] == FINDS_MORE[1]]
-    assert rings == ["15 to 30 m", "30 to 60 m"]
-    told_there = [*re.findall(number, answer), "15"]  # beyond which the second plan's searches do
-    assert re.findall(number, told) == told_there, "each figure of the answer"
+    second = json.loads((FOLDER / "second/results.json").read_text("utf-8"))
+    searches, good = second[SEARCHES]["minus_entropy"], second[GOOD]
+    more = [ring for ring, row in searches.items() if row["verdict"] == FINDS_MORE[1]]
+    assert more == list(searches)[1:]
+    rho, *others = [
+        f"{good['figures'][name]['rho']:.2f}" for name in (PRIMARY, EXPECTED_AP, COVERAGE)
+    ]
+    of_both = [*re.findall(number, answer)[:2], rho, str(len(good["placements"])), *others]
+    assert re.findall(number, told) == [*of_both, more[0].split()[0]], "each figure of both plans"
     assert "blind sector" in told and told.index("Not shown") < told.index("cameras")
 
 

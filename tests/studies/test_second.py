@@ -209,6 +209,10 @@ def test_verdicts_of_made_up_runs():
     arms = found[EQUAL_M]["minus_first"]
     assert arms["64"]["mean"] == pytest.approx(0.1, abs=0.01) and arms["64"]["tie"] == REFUTED
     assert len(found[GOOD]["placements"]) == 48
+    afterwards = found[GOOD]["afterwards"]
+    assert afterwards["seeds"] > 0.9 > abs(afterwards["expected AP beyond coverage"]["rho"])
+    low, middle, high = found[GOOD]["ap"]
+    assert low < middle < high
     for figures in (found[GOOD]["figures"], found[LAYOUTS]["figures"]):
         assert figures[PRIMARY]["verdict"] == figures[BEYOND]["verdict"] == HOLDS
         assert figures[PRIMARY]["rho"] > 0.9 > abs(figures[COVERAGE]["rho"])

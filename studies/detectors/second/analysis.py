@@ -8,7 +8,7 @@ import numpy as np
 
 from pe_core.base import Floats
 
-from ...ranks import PlacementSamples, holm, student_interval
+from ...ranks import PlacementSamples, holm, rho_within, student_interval
 from ...results_file import Json
 from ..after_search import on_roofs, placement_name
 from ..analysis import HOLDS, REFUTED, UNDECIDED, Results, mean_ap_in, of_mixed, of_runs, rank_of
@@ -91,24 +91,40 @@ def _arms(plan: Plan, runs: Sequence[Run], results: Results) -> Json:
 
 
 def _good(plan: Plan, runs: Sequence[Run], results: Results, scores: Results) -> Json:
-    """Return rho of each figure with the AP of the last seed, in the half chosen by the first."""
+    """Return rho of each figure with the AP of the last seed, in the half chosen by the first.
+
+    `afterwards`, without a verdict: rho of both seeds' AP, and of expected AP beyond coverage.
+    """
     first = plan.second.good.seeds[0]
     half = of_runs(GOOD, [run for run in runs if run.seed != first], results)
+    values, samples = half.all_values(scores), half.samples
+    at_first = np.array([results[f"{p.name}-s{first}"]["ap"] for p in half.chosen])
     return {
         "placements": [placement.name for placement in half.chosen],
-        "figures": _figures(plan, half.all_values(scores), half.samples),
+        "ap": _extent(samples.ap),
+        "figures": _figures(plan, values, samples),
+        "afterwards": {
+            "seeds": float(rho_within(at_first, samples.ap, samples.members)),
+            "expected AP beyond coverage": rank_of(
+                plan, samples, values[EXPECTED_AP], values[COVERAGE]
+            ),
+        },
     }
 
 
 def _layouts(plan: Plan, results: Results, scores: Results) -> Json:
     """Return rho of each figure with the AP in real layouts, over all placements."""
     whole = of_mixed(LAYOUTS, parts_of(plan)[LAYOUTS], good_placements(plan), results)
-    ap = whole.samples.ap
     return {
-        "ap": [round(float(v), 4) for v in (ap.min(), np.median(ap), ap.max())],
+        "ap": _extent(whole.samples.ap),
         "noise": round(whole.samples.noise, 4),
         "figures": _figures(plan, whole.all_values(scores), whole.samples),
     }
+
+
+def _extent(ap: Floats) -> list[float]:
+    """Return the lowest, the median and the highest AP."""
+    return [round(float(v), 4) for v in (ap.min(), np.median(ap), ap.max())]
 
 
 def _figures(plan: Plan, value: Mapping[str, Floats], samples: PlacementSamples) -> Json:

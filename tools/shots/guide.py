@@ -189,7 +189,7 @@ def optimized(camera: Camera) -> None:
     stage.wait_until(f"{RUNNING}.current is None", 600)
     settled(camera)  # the sensors are moved by an update after the job
     camera.still("guide_optimized")
-    stage.point_at(800, 330)
+    stage.point_at(800, 105)
     stage.do("bpy.ops.pe.compare_variants('INVOKE_DEFAULT')")
     stage.wait_until(f"{RUNNING}.current is None", 300)
     stage.rest(3.0)

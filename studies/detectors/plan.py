@@ -159,7 +159,7 @@ def full_second_plan() -> Plan:
     return full_plan().but(digest=digest, second=own, searches=searches, **seeds)
 
 
-QUICK_SCENES = {"train": 16, "validation": 4, "test": 8}
+QUICK_SCENES = {"train": 8, "validation": 4, "test": 4}
 QUICK = {
     "scenes": QUICK_SCENES,
     "mixed": {"trained": 2, "fresh": 0, "scenes": 8, "test_scenes": 4},
@@ -193,8 +193,7 @@ def quick_camera_plan() -> Plan:
     """Return a quick plan of cameras: two placements, few pixels."""
     rig = full_camera_plan().cameras.rig
     pixels = {key: rig[key] // 2 for key in ("width_px", "height_px")}
-    scenes = {"train": 8, "validation": 4, "test": 4}
-    own = {"rig": {**pixels, "all_round": 1, "blind": 1}, "scenes": scenes}
+    own = {"rig": {**pixels, "all_round": 1, "blind": 1}, "scenes": QUICK_SCENES}
     return quickly(full_camera_plan(), cameras=own)
 
 

@@ -60,7 +60,12 @@ DIGEST = "33306cc19714a1fa"
 """Of the plan that the study began with. A changed plan is another study, with its own results."""
 SCENE = "bdedc09a393d7688"
 """Digest of what a placement sees in a scene: results of several sessions belong together."""
-QUICKLY = """
+COARSE = """
+import pe_core, studies.detectors.scores
+studies.detectors.scores.SPACE = pe_core.PerceptionSpace(interval=0.2)
+"""
+"""Scores of an eighth of the voxels: here they only have to come."""
+QUICKLY = f"""{COARSE}
 import json, runpy, sys
 folder, *options = sys.argv[1:]
 for option in options:

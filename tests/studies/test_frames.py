@@ -30,7 +30,7 @@ from studies.detectors.runs import frames_runs
 from studies.detectors.scenes import CLASSES
 from studies.detectors.scores import SPACE
 from tests.studies.conftest import study
-from tests.studies.test_detectors import in_a_process
+from tests.studies.test_detectors import COARSE, in_a_process
 from tests.thorough import THOROUGH
 
 FOLDER = Path(__file__).parents[2] / "docs/validity/own/frames"
@@ -149,7 +149,7 @@ def test_the_page_of_the_docs_is_that_of_its_runs(tmp_path):
 @pytest.mark.skipif(not importlib.util.find_spec("tensorflow"), reason="there is no TensorFlow")
 def test_the_quick_study_runs_whole(tmp_path):
     script = "import runpy; runpy.run_module('studies.detectors.frames', run_name='__main__')"
-    said = in_a_process(script, "--quick", "--output", tmp_path / "out")
+    said = in_a_process(COARSE + script, "--quick", "--output", tmp_path / "out")
     assert "told without a verdict" in said.lower()
     kept = json.loads((tmp_path / "out/runs/frames-sedan-01-s1.json").read_text("utf-8"))
     assert 0.0 <= kept["one_frame"]["ap"] <= 1.0 and kept["one_frame"]["training"]["epochs"] == 2

@@ -189,7 +189,7 @@ def fits(page):
 
 @pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
 def test_pages_open_without_complaints_and_fit_the_width(chromium, address, pages, size):
-    """With CI=true all pages, made as narrow as a phone after they were opened.
+    """With CI=true all pages as narrow as a phone, and some made wide again after that.
 
     Of a folder of many, which one template made, every fifth.
     """
@@ -207,7 +207,7 @@ def test_pages_open_without_complaints_and_fit_the_width(chromium, address, page
     every = sorted({*pages} - {*many} | {*many[::5]})
     for name in every if THOROUGH and size == DESKTOP else SOME:
         page.goto(f"{address}/{name}")
-        for each in (PHONE[0], width):
+        for each in (PHONE[0], width) if name in SOME else (PHONE[0],):
             page.set_viewport_size({"width": each, "height": height})
             assert fits(page), (name, each)
         assert not heard.complaints, (name, heard.complaints)

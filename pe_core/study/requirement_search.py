@@ -6,7 +6,9 @@ not matter and are not computed. `[optimize] keep = ["blind_ground"]`: a placeme
 ground than is wanted, or than the study's own where nothing is wanted, is infeasible, too.
 """
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
 from ..base.errors import InputError
 from ..base.values import rounded
@@ -33,23 +35,24 @@ class FiguresLimit:
         self._sight, self._keys = sight, tuple(keys)
         self._limits = {
             key: own if asked is None else (KEY_FIGURES[key].cost_of(asked),) * len(own)
-            for key, own in self._costs(start).items()
+            for key, own in self._costs(start)
             for asked in [getattr(wanted, key)]
         }
 
-    def _costs(self, rig: Rig) -> dict[str, tuple[float, ...]]:
-        rows = [KEY_FIGURES[key] for key in self._keys]
-        found = {part: PARTS[part](self._sight, rig) for part in {row.part: 0 for row in rows}}
-        return {row.key: row.costs(found[row.part]) for row in rows}
+    def _costs(self, rig: Rig) -> Iterator[tuple[str, tuple[float, ...]]]:
+        found = dict[str, Any]()
+        for row in (KEY_FIGURES[key] for key in self._keys):
+            if row.part not in found:
+                found[row.part] = PARTS[row.part](self._sight, rig)
+            yield row.key, row.costs(found[row.part])
 
-    def violation(self, rig: Rig) -> float:
-        """Return the sum of the shares of a rig's costs above their limits; 0 if none is."""
+    def violation(self, rig: Rig, enough: float = math.inf) -> float:
+        """Return the sum of the shares of a rig's costs above their limits; 0 if none is.
+        Where it comes to `enough`, further costs are not computed."""
         pairs = (
-            pair
-            for key, costs in self._costs(rig).items()
-            for pair in zip(costs, self._limits[key], strict=True)
+            p for key, own in self._costs(rig) for p in zip(own, self._limits[key], strict=True)
         )
-        return rounded(sum(1.0 - limit / value for value, limit in pairs if value > limit))
+        return _added((1.0 - limit / cost for cost, limit in pairs if cost > limit), enough)
 
 
 class RequirementConstraint:
@@ -65,7 +68,7 @@ class RequirementConstraint:
         cases = mounting_cases(wanted, rig, self._tolerance, self._seed)
         return self._checker.shortfalls(rig, cases)
 
-    def violation(self, rig: Rig) -> float:
+    def violation(self, rig: Rig, enough: float = math.inf) -> float:
         """Return the sum of the violations of all requirements; 0 where all are met."""
         return rounded(sum(self.shortfalls(rig)))
 
@@ -84,26 +87,35 @@ class FeasibleFirst:
 
     def entropy(self, rig: Rig) -> float:
         """Return the value of a placement."""
-        violation = self.violation(rig)
-        return INFEASIBLE + violation if violation else self._objective.entropy(rig)
+        return self.below(rig, math.inf)
 
     def below(self, rig: Rig, cutoff: float) -> float:
-        """Return the value of a placement; inf where it is not below `cutoff`. What is not below a
-        cutoff with its entropy is not below it if it breaks a constraint, so constraints, which
-        take longer, are then not checked."""
+        """Return the value of a placement where it is below `cutoff`; otherwise one that is not.
+        What is not below with its entropy is not if it breaks a constraint, so constraints, which
+        take longer, are then not checked; nor are further ones after a violation that is enough."""
         if cutoff > INFEASIBLE:
-            return self.entropy(rig)
+            violation = self.violation(rig, cutoff - INFEASIBLE)
+            return INFEASIBLE + violation if violation else self._objective.entropy(rig)
         found = value_below(self._objective, rig, cutoff)
-        violation = self.violation(rig) if found < cutoff else 0.0
-        return INFEASIBLE + violation if violation else found
+        return math.inf if found < cutoff and self.violation(rig, 0.0) else found
 
     def shared_parts(self) -> tuple[object, ...]:
         """Return what workers are sent once: the parts of the objective, and the constraints."""
         return (*shared_parts(self._objective), *self._constraints)
 
-    def violation(self, rig: Rig) -> float:
-        """Return the sum of the violations of all constraints; 0 where all are kept."""
-        return rounded(sum(each.violation(rig) for each in self._constraints))
+    def violation(self, rig: Rig, enough: float = math.inf) -> float:
+        """Return the sum of the violations of all constraints; 0 where all are kept.
+        Where it comes to `enough`, further ones are not computed."""
+        return _added((each.violation(rig, enough) for each in self._constraints), enough)
+
+
+def _added(violations: Iterable[float], enough: float) -> float:
+    total = 0.0
+    for each in violations:
+        total += each
+        if total and total >= enough:
+            break
+    return rounded(total)
 
 
 def constraints_of(study: Study) -> tuple[FeasibilityRule, ...]:

@@ -19,7 +19,7 @@ from pe_core.scoring.requirements import (
     Under,
     Zone,
 )
-from pe_core.scoring.sight import BLIND_TO_M
+from pe_core.scoring.sight import BLIND_TO_M, Sight
 from pe_core.search import Goals, Tolerance, Wanted
 from pe_core.search.dispatch import value_below
 from pe_core.study.requirement_search import INFEASIBLE, constraints_of, feasible_first
@@ -274,3 +274,17 @@ def test_workers_and_cutoffs_keep_the_same_blind_ground():
             assert value_below(objective, rig, cutoff) == (value if value < cutoff else math.inf)
     one, two = (finished(pt.OptimizeJob(given, workers)) for workers in (1, 2))
     assert one.evaluated == two.evaluated and one.after == two.after
+
+
+def test_after_a_violation_that_is_enough_no_further_cost_is_computed(monkeypatch):
+    given = tilted((*BLIND, "blind_sector"))
+    (limit,) = constraints_of(given)
+    objective = feasible_first(given.evaluator(), (limit,))
+    level = given.rig.with_poses([pe.Pose((2.6, 0.0, 1.0), (0.0, 0.0, 0.0))])
+    whole, asked, sectors = limit.violation(level), [], Sight.blind_sectors
+    monkeypatch.setattr(Sight, "blind_sectors", lambda *of: asked.append(of) or sectors(*of))
+    assert value_below(objective, level, INFEASIBLE + whole + 0.1) == INFEASIBLE + whole
+    assert len(asked) == 1
+    for cutoff in (INFEASIBLE - 1.0, INFEASIBLE + 1e-6):
+        assert value_below(objective, level, cutoff) == math.inf
+    assert len(asked) == 1

@@ -34,7 +34,13 @@ from studies.detectors.runs import parts_of
 from studies.detectors.scan_curves import counts_of
 from studies.detectors.scenes import NOBODY, Layouts
 from studies.detectors.scores import COVERAGE, PRIMARY
-from studies.detectors.second.analysis import BEYOND, FINDS_MORE, good_runs, second_analysis
+from studies.detectors.second.analysis import (
+    AP_BEYOND,
+    BEYOND,
+    FINDS_MORE,
+    good_runs,
+    second_analysis,
+)
 from studies.detectors.second.law import (
     PUBLISHED,
     camera_law,
@@ -210,7 +216,7 @@ def test_verdicts_of_made_up_runs():
     assert arms["64"]["mean"] == pytest.approx(0.1, abs=0.01) and arms["64"]["tie"] == REFUTED
     assert len(found[GOOD]["placements"]) == 48
     afterwards = found[GOOD]["afterwards"]
-    assert afterwards["seeds"] > 0.9 > abs(afterwards["expected AP beyond coverage"]["rho"])
+    assert afterwards["seeds"] > 0.9 > abs(afterwards[AP_BEYOND]["rho"])
     low, middle, high = found[GOOD]["ap"]
     assert low < middle < high
     for figures in (found[GOOD]["figures"], found[LAYOUTS]["figures"]):

@@ -17,7 +17,7 @@ from ..plan import EQUAL_M, GOOD, LAYOUTS, SEARCHES, Plan, rings_of
 from ..runs import Run, parts_of
 from ..scores import COVERAGE, EXPECTED_AP, PRIMARY
 
-BEYOND = "perception entropy beyond coverage"
+BEYOND, AP_BEYOND = "perception entropy beyond coverage", "expected AP beyond coverage"
 FINDS_MORE = {-1: "entropy finds more", 1: "expected AP finds more"}
 
 
@@ -91,10 +91,7 @@ def _arms(plan: Plan, runs: Sequence[Run], results: Results) -> Json:
 
 
 def _good(plan: Plan, runs: Sequence[Run], results: Results, scores: Results) -> Json:
-    """Return rho of each figure with the AP of the last seed, in the half chosen by the first.
-
-    `afterwards`, without a verdict: rho of both seeds' AP, and of expected AP beyond coverage.
-    """
+    """Return rho of each figure with the AP of the last seed, in the half chosen by the first."""
     first = plan.second.good.seeds[0]
     half = of_runs(GOOD, [run for run in runs if run.seed != first], results)
     values, samples = half.all_values(scores), half.samples
@@ -105,9 +102,7 @@ def _good(plan: Plan, runs: Sequence[Run], results: Results, scores: Results) ->
         "figures": _figures(plan, values, samples),
         "afterwards": {
             "seeds": float(rho_within(at_first, samples.ap, samples.members)),
-            "expected AP beyond coverage": rank_of(
-                plan, samples, values[EXPECTED_AP], values[COVERAGE]
-            ),
+            AP_BEYOND: rank_of(plan, samples, values[EXPECTED_AP], values[COVERAGE]),
         },
     }
 

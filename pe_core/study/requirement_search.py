@@ -113,7 +113,7 @@ def _added(violations: Iterable[float], enough: float) -> float:
     total = 0.0
     for each in violations:
         total += each
-        if total and total >= enough:
+        if (found := rounded(total)) and found >= enough:
             break
     return rounded(total)
 

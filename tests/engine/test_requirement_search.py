@@ -288,3 +288,7 @@ def test_after_a_violation_that_is_enough_no_further_cost_is_computed(monkeypatc
     for cutoff in (INFEASIBLE - 1.0, INFEASIBLE + 1e-6):
         assert value_below(objective, level, cutoff) == math.inf
     assert len(asked) == 1
+    shares = {"blind_ground": 1.0 - 1e-13, "blind_sector": 0.5}  # the former rounds to no violation
+    costs = dict(limit._costs(level))
+    limit._limits = {key: tuple(share * c for c in costs[key]) for key, share in shares.items()}
+    assert limit.violation(level, 0.0) == limit.violation(level) == 1.5

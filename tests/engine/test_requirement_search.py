@@ -291,4 +291,4 @@ def test_after_a_violation_that_is_enough_no_further_cost_is_computed(monkeypatc
     shares = {"blind_ground": 1.0 - 1e-13, "blind_sector": 0.5}  # the former rounds to no violation
     costs = dict(limit._costs(level))
     limit._limits = {key: tuple(share * c for c in costs[key]) for key, share in shares.items()}
-    assert limit.violation(level, 0.0) == limit.violation(level) == 1.5
+    assert limit.violation(level) == 1.5 and limit.violation(level, 0.0) == 0.5

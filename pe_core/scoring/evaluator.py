@@ -12,7 +12,7 @@ from ..scene.vehicle import Vehicle
 from ..sensors import PerceptionModel
 from .grid_scorer import GridScorer, columns_bytes, require_room_for, require_room_for_samples
 from .sampled_scorer import SampledScorer
-from .sampling import CENTERED, SAMPLES_OR_GRID
+from .sampling import CENTERED, SAMPLES_OR_GRID, Shift
 from .score import Score, Watch
 
 WORKERS = Whole(0, 1024, "threads")
@@ -48,7 +48,7 @@ class Evaluator:
         vehicle: Vehicle | None = None,
         *,
         samples: int = 0,
-        shift: tuple[float, float, float] = CENTERED,
+        shift: Shift = CENTERED,
         model: PerceptionModel | None = None,
         workers: int | None = None,
     ) -> None:

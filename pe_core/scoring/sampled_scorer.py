@@ -17,7 +17,7 @@ from ..prior.prior import ClassDensity
 from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
 from ..sensors import MeasurementCache, Voxels
-from .sampling import BLOCKS, CENTERED, VoxelSample, draw, outside_masses
+from .sampling import BLOCKS, CENTERED, Shift, VoxelSample, draw, outside_masses
 from .scenarios import Scenarios, fused_early
 from .score import (
     ALIKE,
@@ -50,7 +50,7 @@ class SampledScorer:
         vehicle: Vehicle | None,
         fusion: Fusion,
         samples: int,
-        shift: tuple[float, float, float] = CENTERED,
+        shift: Shift = CENTERED,
     ) -> None:
         self._fusion = fusion
         tops = None if vehicle is None else vehicle.top(space)

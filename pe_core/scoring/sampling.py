@@ -50,7 +50,15 @@ SAMPLES = Whole(MIN_SAMPLES, MAX_SAMPLES, "voxels")
 FIRST_SAMPLES = 262_144
 """Voxels that a score of a newly made study evaluates, in a file or in Blender: seconds instead of
 minutes. A study file that does not name them is scored on all voxels."""
-CENTERED = (0.5, 0.5, 0.5)
+Shift = tuple[float, float, float]
+"""Three numbers in [0, 1) that scramble a sample's sequence: others give another sample."""
+CENTERED: Shift = (0.5, 0.5, 0.5)
+"""Shift of the sample that results are reported on."""
+SEARCHED: Shift = (0.319, 0.171, 0.049)
+"""Shift of the sample that a search evaluates its candidates on. A placement fits the voxels that
+it was searched on, so its score on them is too good: it is reported on those of `CENTERED`."""
+HELD_OUT: tuple[Shift, ...] = (CENTERED, (0.819, 0.671, 0.549))
+"""Shifts of samples that no search uses; the difference of two estimates tells their error."""
 AT_ONCE = 1 << 16
 
 
@@ -151,7 +159,7 @@ def draw(
     space: PerceptionSpace,
     count: int,
     excluded: Floats | None = None,
-    shift: tuple[float, float, float] = CENTERED,
+    shift: Shift = CENTERED,
 ) -> VoxelSample:
     """Draw `count` voxels from the prior.
 

@@ -24,6 +24,7 @@ from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_state import State
 from ..scoring import Score
+from ..scoring.sampling import SEARCHED, Shift
 from ..scoring.scenarios import mean_or_worst
 from ..scoring.score import Objective, RigEvaluator, Watch
 from ..scoring.targets import OBJECTS, ObjectEvaluator
@@ -66,10 +67,11 @@ def searched_study(study: Study) -> Study:
 
 
 def search_evaluator(
-    study: Study, samples: int | None = None, workers: int | None = None
+    study: Study, samples: int | None = None, workers: int | None = None, shift: Shift = SEARCHED
 ) -> RigEvaluator:
-    """Return the evaluator of a search's candidates; arguments are those of `Study.evaluator`."""
-    return searched_study(study).evaluator(samples, workers, on_objects(study))
+    """Return what evaluates candidates of a study's search; arguments are those of
+    `Study.evaluator`."""
+    return searched_study(study).evaluator(samples, workers, on_objects(study), shift)
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,13 +184,20 @@ def condition_table(
 
 
 class StateEvaluators:
-    """The evaluators of a study by state of the vehicle, or of its search; each is made once."""
+    """The evaluators of a study by state of the vehicle; each is made once. `make` returns one of a
+    study, a number of samples and a number of workers."""
 
     def __init__(
-        self, study: Study, samples: int, workers: int | None = None, searching: bool = False
+        self,
+        study: Study,
+        samples: int,
+        workers: int | None = None,
+        make: Callable[[Study, int, int | None], RigEvaluator] = Study.evaluator,
     ) -> None:
-        self._study, self._samples, self._workers = study, samples, workers
-        self._make = search_evaluator if searching else Study.evaluator
+        self._study = study
+        self._samples = samples
+        self._workers = workers
+        self._make = make
         self._made: dict[str, tuple[RigEvaluator, Vehicle | None]] = {}
 
     def in_state(self, state: State | None) -> tuple[RigEvaluator, Vehicle | None]:
@@ -248,16 +257,21 @@ def _covered(
 
 
 class ConditionObjective:
-    """What a search over a study's conditions minimises, evaluated on `samples` voxels."""
+    """What a search over a study's conditions minimises, evaluated on `samples` voxels of a
+    `shift`."""
 
-    def __init__(self, study: Study, samples: int, workers: int | None = None) -> None:
-        self._study, self._samples, self._workers = study, samples, workers
+    def __init__(
+        self, study: Study, samples: int, workers: int | None = None, shift: Shift = SEARCHED
+    ) -> None:
+        self._given = study, samples, workers, shift
+        self._study = study
         self._worst = study.search.conditions == WORST
         self._conditions = [c for c in study.conditions.all if c.weight > 0.0]
-        self._evaluators = StateEvaluators(study, samples, workers, searching=True)
+        make = partial(search_evaluator, shift=shift)
+        self._evaluators = StateEvaluators(study, samples, workers, make)
 
     def __reduce__(self) -> tuple[object, ...]:
-        return ConditionObjective, (self._study, self._samples, self._workers)
+        return ConditionObjective, self._given
 
     def entropy(self, rig: Rig) -> float:
         """Return the mean or the worst of a rig's entropies under all conditions [nats]."""
@@ -282,14 +296,19 @@ class ConditionObjective:
 
 
 def study_objective(
-    study: Study, evaluator: RigEvaluator, samples: int, workers: int | None = None
+    study: Study,
+    evaluator: RigEvaluator,
+    samples: int,
+    workers: int | None = None,
+    shift: Shift = SEARCHED,
 ) -> Objective:
-    """Return what a study's search minimises, without its requirements. `InputError` when
-    conditions are to be searched over and the study has none."""
+    """Return what a study's search minimises, without its requirements, on the sample of a `shift`,
+    which is the evaluator's. `InputError` when conditions are to be searched over and the study has
+    none."""
     search = study.search
     if search.conditions is None:
         return objective_of(evaluator, search.tolerance, search.seed)
     if not study.conditions:
         expected = "[[state]] or [[weather]] with it"
         raise InputError("optimize", "conditions", expected, "neither")
-    return ConditionObjective(study, samples, workers)
+    return ConditionObjective(study, samples, workers, shift)

@@ -13,6 +13,7 @@ from typing import Any
 from ..base.errors import InputError
 from ..base.values import rounded
 from ..scene.rig import Rig
+from ..scoring.sampling import SEARCHED
 from ..scoring.score import Objective
 from ..scoring.sight import Sight
 from ..search import shared_parts
@@ -28,31 +29,52 @@ INFEASIBLE = 100.0
 
 class FiguresLimit:
     """The constraint that key figures of a rig cost no more than limits; the vehicle is as drawn.
-    `keys` are those of `KEY_FIGURES`. A limit is the cost of what is wanted, and those of the rig
-    `start` where nothing is."""
 
-    def __init__(self, sight: Sight, keys: Sequence[str], wanted: Wanted, start: Rig) -> None:
-        self._sight, self._keys = sight, tuple(keys)
-        self._limits = {
-            key: own if asked is None else (KEY_FIGURES[key].cost_of(asked),) * len(own)
-            for key, own in self._costs(start)
-            for asked in [getattr(wanted, key)]
-        }
+    A limit is the cost of what is wanted, and those of the rig `start` where nothing is. Scenes of
+    a search are others than those that its result is reported on: what is wanted is moved by the
+    difference of the start's figures on both. So a limit is one of the change from the start, in
+    which the scatter of scenes cancels.
 
-    def _costs(self, rig: Rig) -> Iterator[tuple[str, tuple[float, ...]]]:
-        found = dict[str, Any]()
-        for row in (KEY_FIGURES[key] for key in self._keys):
-            if row.part not in found:
-                found[row.part] = PARTS[row.part](self._sight, rig)
-            yield row.key, row.costs(found[row.part])
+    Parameters
+    ----------
+    sight : Sight
+        Has the scenes of the search.
+    reported : Sight
+        Has the scenes that the result is reported on.
+    keys : sequence of str
+        Names of `KEY_FIGURES`.
+    """
+
+    def __init__(
+        self, sight: Sight, reported: Sight, keys: Sequence[str], wanted: Wanted, start: Rig
+    ) -> None:
+        self._sight = sight
+        self._keys = tuple(keys)
+        self._limits = dict(_costs(sight, self._keys, start))
+        asked = [key for key in self._keys if getattr(wanted, key) is not None]
+        for key, costs in _costs(reported, asked, start):
+            limit = KEY_FIGURES[key].cost_of(getattr(wanted, key))
+            pairs = zip(self._limits[key], costs, strict=True)
+            self._limits[key] = tuple(rounded(limit + searched - own) for searched, own in pairs)
 
     def violation(self, rig: Rig, enough: float = math.inf) -> float:
         """Return the sum of the shares of a rig's costs above their limits; 0 if none is.
         Where it comes to `enough`, further costs are not computed."""
         pairs = (
-            p for key, own in self._costs(rig) for p in zip(own, self._limits[key], strict=True)
+            pair
+            for key, own in _costs(self._sight, self._keys, rig)
+            for pair in zip(own, self._limits[key], strict=True)
         )
         return _added((1.0 - limit / cost for cost, limit in pairs if cost > limit), enough)
+
+
+def _costs(sight: Sight, keys: Sequence[str], rig: Rig) -> Iterator[tuple[str, tuple[float, ...]]]:
+    """Yield the names of key figures and their costs; each part of the figures is computed once."""
+    found = dict[str, Any]()
+    for row in (KEY_FIGURES[key] for key in keys):
+        if row.part not in found:
+            found[row.part] = PARTS[row.part](sight, rig)
+        yield row.key, row.costs(found[row.part])
 
 
 class RequirementConstraint:
@@ -127,7 +149,9 @@ def constraints_of(study: Study) -> tuple[FeasibilityRule, ...]:
     if keep := [key for key in KEPT if key in search.goals.keep]:
         if "reach" in keep and study.targets.are_objects:
             raise InputError("optimize", "keep", "a reach of voxels", "a study on objects")
-        limit = FiguresLimit(study.sight(), keep, search.goals.wanted, study.rig)
+        limit = FiguresLimit(
+            study.sight(SEARCHED), study.sight(), keep, search.goals.wanted, study.rig
+        )
         constraints.append(limit)
     return tuple(constraints)
 

@@ -33,7 +33,7 @@ from ..scoring.requirements import (
     Verdict,
     checked_requirements,
 )
-from ..scoring.sampling import FIRST_SAMPLES, SAMPLES_OR_GRID
+from ..scoring.sampling import CENTERED, FIRST_SAMPLES, SAMPLES_OR_GRID, Shift
 from ..scoring.sight import Sight
 from ..scoring.targets import ObjectEvaluator, TargetRule
 from ..search import (
@@ -288,19 +288,34 @@ class Study(Tabular):
         samples: int | None = None,
         workers: int | None = None,
         on_objects: type[ObjectEvaluator] = ObjectEvaluator,
+        shift: Shift = CENTERED,
     ) -> RigEvaluator:
         """Return the evaluator of this study; `samples` replaces the study's own.
 
         Objects stand in fewer scenes for a search's coarser levels, else in all of them;
-        `on_objects` evaluates them.
+        `on_objects` evaluates them. `shift` is that of `Evaluator`: a search has a sample of its
+        own, `sampling.SEARCHED`.
         """
         samples = self.samples if samples is None else samples
-        problem = self.space, self.prior, self.vehicle
         with self._naming_vehicle():
             if self.targets.are_objects:
-                targets = replace(self.targets, scenes=self.looks_at(samples))
-                return on_objects(*problem, targets=targets, model=self.model)
-            return Evaluator(*problem, samples=samples, model=self.model, workers=workers)
+                return on_objects(
+                    self.space,
+                    self.prior,
+                    self.vehicle,
+                    targets=replace(self.targets, scenes=self.looks_at(samples)),
+                    model=self.model,
+                    shift=shift[0],
+                )
+            return Evaluator(
+                self.space,
+                self.prior,
+                self.vehicle,
+                samples=samples,
+                shift=shift,
+                model=self.model,
+                workers=workers,
+            )
 
     def looks_at(self, samples: int) -> int:
         """Return the number of voxels (0: all) or scenes that a score with so many samples uses."""
@@ -318,15 +333,19 @@ class Study(Tabular):
         search, sensors = self.search, len(self.coding().blocks)
         return METHODS[search.method].samples(search.samples, search.from_each_start, sensors)
 
-    def sight(self) -> Sight:
-        """Return the `Sight` of this study: what its rigs see of the ground."""
+    def sight(self, shift: Shift = CENTERED) -> Sight:
+        """Return the `Sight` of this study: what its rigs see of the ground. `shift` is that of
+        `evaluator`."""
         with self._naming_vehicle():
             return Sight(
-                *(self.space, self.prior, self.vehicle),
+                self.space,
+                self.prior,
+                self.vehicle,
                 model=self.model,
                 targets=self.targets,
                 frames=self.frames,
                 samples=self.samples,
+                shift=shift,
             )
 
     def key_figures(self, known: KeyFigures | None = None) -> KeyFigures:

@@ -10,6 +10,7 @@ from functools import cached_property
 from pe_core.base.errors import InputError
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigEvaluator
+from pe_core.scoring.sampling import CENTERED, SEARCHED, Shift
 from pe_core.search import (
     SCHEDULED_METHOD,
     DesignSearch,
@@ -310,18 +311,29 @@ class FrontJob(Job):
                 return []
             placed = self._study_of(picks).with_rig(rig)
             verdicts = (yield from self._verdicts(placed, waiting)) or ()
-            design = self._design(picks, placed, self._measured.scored(rig, score))
+            design = self._design(picks, placed, self._reported.scored(rig, score))
             score = replace(score, ground_map=None)
             designs.append(replace(design, score=score, verdicts=verdicts))
         return designs
 
     @cached_property
     def _measured(self) -> FrontFigures:
-        """Computes the objectives that a placement has, of all designs; it is sent once."""
+        """Computes the objectives of candidates, of all designs; it is sent once."""
+        return self._figures_on(SEARCHED)
+
+    @cached_property
+    def _reported(self) -> FrontFigures:
+        """Computes the objectives of the front's designs, on samples that no search uses."""
+        return self._figures_on(CENTERED)
+
+    def _figures_on(self, shift: Shift) -> FrontFigures:
         samples = self.study.search.samples
-        in_traffic = self.evaluators.searching(samples) if is_by_ap(self.study) else None
         moving = [name for name in self.names if name not in SUMS]
-        return FrontFigures(self.study, moving, self.evaluators.on(samples), in_traffic, self._own)
+        evaluator = self.evaluators.on(samples, shift)
+        in_traffic = None
+        if is_by_ap(self.study):
+            in_traffic = self.evaluators.searching(samples, shift)
+        return FrontFigures(self.study, moving, evaluator, in_traffic, self._own)
 
     def _design(self, picks: Picks, study: Study, figures: FrontValues) -> Design:
         if self.study.selection.choices:

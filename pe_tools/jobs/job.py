@@ -15,6 +15,7 @@ from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigEvaluator
 from pe_core.scoring.requirements import CheckStep, RequirementChecker, Verdict
+from pe_core.scoring.sampling import CENTERED, SEARCHED, Shift
 from pe_core.scoring.score import ObjectScore, Score, ScoreStopped
 from pe_core.search import EvaluatedRig, KeyFigures, Reading, Robustness, dashboard
 from pe_core.search.key_figures import REQUIREMENTS
@@ -51,17 +52,18 @@ def best_so_far(*starts: Sequence[HistoryRow]) -> tuple[tuple[int, float], ...]:
     placement's own changed: they are of the same samples then. Placements that break requirements
     are left out once one keeps them."""
     best: list[tuple[int, float]] = []
+    is_kept = any(not is_infeasible(row.entropy) for rows in starts for row in rows)
     for rows in starts:
         curve: list[tuple[int, float]] = []
-        for row, before in zip(rows, (None, *rows), strict=False):
+        counted = [row for row in rows if not (is_kept and is_infeasible(row.entropy))]
+        for row, before in zip(counted, (None, *counted), strict=False):
             if before is not None and _poses(row) == _poses(before):
                 shift = row.entropy - before.entropy
                 curve = [(evaluation, value + shift) for evaluation, value in curve]
             elif not curve or row.entropy < curve[-1][1]:
                 curve.append((row.evaluation, row.entropy))
         best += [point for point in curve if not best or point[1] < best[-1][1]]
-    kept = [point for point in best if not is_infeasible(point[1])]
-    return tuple(kept or best)
+    return tuple(best)
 
 
 def _poses(row: HistoryRow) -> list[Pose]:
@@ -231,27 +233,37 @@ ProgressSteps = Generator[Progress, None, T | None]
 
 
 class StudyEvaluators:
-    """The evaluators of a study's rigs, each made once; jobs of other rigs may share them."""
+    """The evaluators of a study's rigs, each made once; jobs of other rigs may share them.
+
+    A search evaluates its candidates on a sample of its own. Its result fits that sample, so all
+    that is reported of it is evaluated on another one.
+    """
 
     def __init__(self, study: Study, workers: int | None) -> None:
-        self._study, self._workers = study, workers
-        self._own: dict[int, RigEvaluator] = {}
-        self._in_traffic: dict[int, RigEvaluator] = {}
+        self._study = study
+        self._workers = workers
+        self._own: dict[tuple[int, Shift], RigEvaluator] = {}
+        self._in_traffic: dict[tuple[int, Shift], RigEvaluator] = {}
 
-    def on(self, samples: int) -> RigEvaluator:
-        """Return the evaluator of the study's own targets with so many samples."""
+    def on(self, samples: int, shift: Shift = CENTERED) -> RigEvaluator:
+        """Return the evaluator of the study's own targets, with a number of samples."""
         count = self._study.looks_at(samples)
-        if count not in self._own:
-            self._own[count] = self._study.evaluator(samples, self._workers)
-        return self._own[count]
+        has_sample = count or self._study.targets.are_objects
+        key = count, shift if has_sample else CENTERED
+        if key not in self._own:
+            self._own[key] = self._study.evaluator(samples, self._workers, shift=shift)
+        return self._own[key]
 
-    def searching(self, samples: int) -> RigEvaluator:
-        """Return what evaluates candidates with so many samples: by expected AP, in traffic."""
+    def searching(self, samples: int, shift: Shift = SEARCHED) -> RigEvaluator:
+        """Return the evaluator of the figure that a search improves: by expected AP, in traffic.
+        Without another `shift` it has the sample that candidates are evaluated on."""
         if not is_by_ap(self._study):
-            return self.on(samples)
-        if samples not in self._in_traffic:
-            self._in_traffic[samples] = search_evaluator(self._study, samples, self._workers)
-        return self._in_traffic[samples]
+            return self.on(samples, shift)
+        key = samples, shift
+        if key not in self._in_traffic:
+            made = search_evaluator(self._study, samples, self._workers, shift)
+            self._in_traffic[key] = made
+        return self._in_traffic[key]
 
 
 class Job:

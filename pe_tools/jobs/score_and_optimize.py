@@ -5,10 +5,13 @@ from collections.abc import Generator, Iterator
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import cached_property
+from statistics import fmean
 from typing import NamedTuple
 
+from pe_core.base.values import rounded
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigEvaluator
+from pe_core.scoring.sampling import CENTERED, HELD_OUT, MIN_SAMPLES
 from pe_core.scoring.score import ObjectScore, Score
 from pe_core.search import (
     Journal,
@@ -150,6 +153,28 @@ class OptimizeJob(Job):
         return [study_objective(self.study, each, n, self.workers) for each, n in levels.items()]
 
     @cached_property
+    def _held_out(self) -> list[Objective]:
+        """What the search minimises, on samples that it does not use: two, each of half the voxels,
+        so that their difference tells the error; or all voxels."""
+        samples = searched_samples(self.study, self.study.search.samples)
+        if not samples and not searched_study(self.study).targets.are_objects:
+            return [self._free[-1]]
+        half = max(samples // len(HELD_OUT), MIN_SAMPLES)
+        return [
+            study_objective(
+                self.study, self.evaluators.searching(half, shift), half, self.workers, shift
+            )
+            for shift in HELD_OUT
+        ]
+
+    def _reported(self, rig: Rig) -> float:
+        """Return the value of a placement as it is reported: on samples that no search uses; of one
+        that breaks a constraint, its violation."""
+        if is_infeasible(value := self._objectives[-1].entropy(rig)):
+            return value
+        return rounded(fmean(each.entropy(rig) for each in self._held_out))
+
+    @cached_property
     def _objectives(self) -> list[Objective]:
         """Objectives that evaluate candidates, by level."""
         constraints = constraints_of(self.study)
@@ -190,9 +215,17 @@ class OptimizeJob(Job):
             against = yield from self._beside(lambda _: unmet(suggestions(best)), analysing)
         sensitivity = None
         if self.analyses and not self.stopped:
-            given = self.study, best, self._archive, self.evaluations, self._free[-1], self._helpers
             sensitivity = yield from self._beside(
-                lambda _: analyse(*given, lambda: not self.stopped), analysing
+                lambda _: analyse(
+                    self.study,
+                    best,
+                    self._archive,
+                    self.evaluations,
+                    self._held_out,
+                    self._helpers,
+                    lambda: not self.stopped,
+                ),
+                analysing,
             )
         table = yield from self._conditions(best, analysing, to_the_end=False)
         if self.dropped or warnings is None or figures is None:
@@ -243,7 +276,7 @@ class OptimizeJob(Job):
         all_scenes = self.study.search.samples
         scoring = None
         if apart:
-            scoring = begun(lambda: self.evaluators.searching(all_scenes).score(rig))
+            scoring = begun(lambda: self.evaluators.searching(all_scenes, CENTERED).score(rig))
         score = known or (yield from self._score(rig, waiting, to_the_end=to_the_end))
         if score is None or scoring is None:
             return None if score is None else _Scored(score, score.objects if by_ap else None)
@@ -286,7 +319,7 @@ class OptimizeJob(Job):
         objectives = self.journal.wrap(self._objectives, self._archive.note)
         starts = self.study.search.goals.starts
         rigs = {"": self.study.rig, **{s.name: s.placed(self.study.rig) for s in starts}}
-        ended: list[list[HistoryRow]] = []
+        ended: list[tuple[float, list[HistoryRow]]] = []
         began = time.monotonic()
         for number, (name, rig) in enumerate(rigs.items()):
             if self.stopped or self.stop_reason == TARGET:
@@ -298,12 +331,11 @@ class OptimizeJob(Job):
             share = number / len(rigs), 1.0 / len(rigs)
             yield from self._search_from(rig, objectives, watch, share)
             if len(rigs) > 1 and self.history:
-                ended.append(self.history)
-                told = self._objectives if self.stopped else objectives  # resumed, it goes on first
-                entropy = told[-1].entropy(self.history[-1].rig)
-                self.ends.append(StartEnd(name, entropy, self.evaluations))
-                best = min(range(len(ended)), key=lambda k: self.ends[k].entropy)
-                self.history = self._ended = ended[best]
+                end = self.history[-1].rig
+                levels = self._objectives if self.stopped else objectives  # resumed: known first
+                ended.append((levels[-1].entropy(end), self.history))
+                self.ends.append(StartEnd(name, self._reported(end), self.evaluations))
+                self.history = self._ended = min(ended, key=lambda each: each[0])[1]
 
     def _candidate_workers(self) -> AbstractContextManager[ExecutorSource]:
         """Return what evaluates candidates of the search and of its analysis."""

@@ -1,6 +1,6 @@
 """The sensitivity analysis of a search's result: what is computed, its data, and its lines."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from itertools import groupby
@@ -90,20 +90,21 @@ def analyse(
     best: Study,
     archive: Archive,
     evaluations: int,
-    objective: Objective,
+    objectives: Sequence[Objective],
     helpers: Callable[[], Executor | None] = lambda: None,
     goes_on: Callable[[], bool] = lambda: True,
 ) -> Sensitivity | None:
     """Return the sensitivity analysis of a search's result; None where its budget is too small. The
     result depends on the study alone, not on workers or time. `start` is the study as it was given,
     `best` with the result, `archive` what the search evaluated in so many `evaluations`.
-    `objective` is what the search minimised. Where `goes_on` returns False, it is given up."""
+    `objectives` are what the search minimised, on samples that it did not use. Where `goes_on`
+    returns False, it is given up."""
     parts = budget_of(best, evaluations)
     if parts is None or not goes_on():
         return None
     steps, with_endings = parts
     space, by_ap = start.search_space(), is_by_ap(best)
-    samples = StepCosts(best.rig, objective, STEEP_AP if by_ap else STEEP_NATS, helpers)
+    samples = StepCosts(best.rig, objectives, STEEP_AP if by_ap else STEEP_NATS, helpers)
     design = Neighbourhood(best.rig, space)
     axes = []
     for row in flatness(samples, design.status, steps):
@@ -145,7 +146,7 @@ def sensitivity_lines(found: Sensitivity) -> Iterator[str]:
     if len(found.active) > NAMED:
         yield f"held by {len(found.active) - NAMED} more constraints"
     if not found.active:
-        yield "no constraint holds it back: no step that is forbidden would gain"
+        yield "no constraint limits the result"
     if (more := found.unfinished) is not None:
         gain = f"{-more.gain:.4f} {unit}"
         yield f"not quite settled: {more.step.text} is allowed and would gain {gain}"
@@ -163,4 +164,6 @@ def _ending_lines(found: Sensitivity, unit: str) -> Iterator[str]:
         return
     yield f"{count + 1} optima found; runners-up:"
     for number, each in enumerate(found.endings.runners_up, 1):
-        yield f"  {number}: {each.behind:+.4f} {unit}, with {', '.join(each.moved)} elsewhere"
+        sure = f" +- {each.stderr:.4f}" if each.stderr else ""
+        moved = ", ".join(each.moved)
+        yield f"  {number}: {each.behind:+.4f}{sure} {unit}, with {moved} elsewhere"

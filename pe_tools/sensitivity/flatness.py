@@ -8,6 +8,9 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+import numpy as np
+
+from pe_core.base.arrays import Floats
 from pe_core.base.values import rounded
 from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig
@@ -29,9 +32,9 @@ UNIT_M, UNIT_RAD = 0.01, math.radians(1.0)
 NEAR, FAR = 1.0, 5.0  # Steps to both sides [cm or deg]
 FLAT, STEEP = "flat", "steep"
 STEEP_NATS, STEEP_AP = 0.01, 0.001
-"""From this cost of one step on, an axis is called steep [nats; expected AP]: a third of what the
-default search flatters itself by; half of that by AP, for 600 placements of experiment 3."""
-NOTICED = 0.1  # A smaller difference is noise of the search's own sample, in costs of a steep axis
+"""From this cost of one step on, an axis is called steep [nats; expected AP]."""
+NOTICED = 0.1  # A smaller difference says nothing, in costs of a steep axis
+SURE = 2.0  # So many standard errors of a difference are more than noise
 SLACK = 1e-6  # A value this far outside of its bounds is rounding [m or rad]
 ON_SURFACE_M = 0.1 * UNIT_M  # A step along a surface ends this near to the surface at most
 CLEARANCE = "standoff of "
@@ -78,13 +81,15 @@ def _moved(pose: Pose, step: PoseStep) -> Pose:
 class AxisCost:
     """What moving one sensor alone along one axis costs. `status` is what the search does with the
     axis: "free", "surface", "slot", "fixed" or "linked". `cost` is by step [cm or deg] how much the
-    entropy rises [nats] (or the expected AP falls). From a cost of `steep` on the axis is steep."""
+    entropy rises [nats] (or the expected AP falls), with the standard error `stderr`. From a cost
+    of `steep` on the axis is steep."""
 
     sensor: str
     axis: str
     status: str
     cost: Mapping[float, float]
     steep: float = STEEP_NATS
+    stderr: float = 0.0
 
     @property
     def worst(self) -> float:
@@ -94,36 +99,45 @@ class AxisCost:
     @property
     def noticed(self) -> float:
         """The smallest cost or gain that is told from 0."""
-        return NOTICED * self.steep
+        return max(NOTICED * self.steep, SURE * self.stderr)
 
     @property
     def word(self) -> str:
         """ "steep", "flat" (no step as far as was looked has a cost), or empty."""
-        if self.worst >= self.steep:
+        if self.worst >= max(self.steep, self.noticed):
             return STEEP
         return "" if any(abs(each) > self.noticed for each in self.cost.values()) else FLAT
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as plain JSON data."""
         cost = {f"{step:+g}": rounded(each) for step, each in sorted(self.cost.items())}
-        return {"sensor": self.sensor, "axis": self.axis, "status": self.status, "cost": cost}
+        return {
+            "sensor": self.sensor,
+            "axis": self.axis,
+            "status": self.status,
+            "cost": cost,
+            "stderr": rounded(self.stderr),
+        }
 
 
 class StepCosts:
     """The objective of a search around its result, the `reference`; each rig is evaluated once.
     With a tolerance it is the mean (or the worst) over mounting errors and failures. Requirements
-    are left out. `helpers` returns the executor that evaluates rigs."""
+    are left out. `objectives` are it on several samples: values are their mean, and the scatter of
+    differences is their error. `helpers` returns the executor that evaluates rigs."""
 
     def __init__(
         self,
         reference: Rig,
-        objective: Objective,
+        objectives: Sequence[Objective],
         steep: float = STEEP_NATS,
         helpers: Callable[[], Executor | None] = lambda: None,
     ) -> None:
-        self.reference, self.steep = reference, steep
-        self._objective, self._helpers = objective, helpers
-        self._values: dict[tuple[object, ...], float] = {}
+        self.reference = reference
+        self.steep = steep
+        self._objectives = tuple(objectives)
+        self._helpers = helpers
+        self._values: dict[tuple[object, ...], Floats] = {}
 
     @property
     def evaluations(self) -> int:
@@ -134,15 +148,30 @@ class StepCosts:
         """Evaluate rigs side by side, as far as they are not known."""
         new = {key: rig for rig in rigs if (key := _key(rig)) not in self._values}
         if new:
-            found = evaluate_all(self._objective, list(new.values()), executor=self._helpers())
-            self._values |= zip(new, found, strict=True)
+            by_sample = [
+                evaluate_all(objective, list(new.values()), executor=self._helpers())
+                for objective in self._objectives
+            ]
+            self._values |= zip(new, np.array(by_sample).T, strict=True)
 
     def change(self, rig: Rig, base: Rig | None = None) -> float:
         """Return how much higher the value of a rig is than that of `base` (the reference)."""
+        return float(np.mean(self._changes(rig, base)))
+
+    def error(self, rigs: Sequence[Rig]) -> float:
+        """Return the standard error of the changes of similar rigs from the reference: the root
+        mean square over all of them. 0 for one sample: it has all voxels."""
+        count = len(self._objectives)
+        if count == 1 or not rigs:
+            return 0.0
+        variances = [np.var(self._changes(rig), ddof=1) / count for rig in rigs]
+        return math.sqrt(float(np.mean(variances)))
+
+    def _changes(self, rig: Rig, base: Rig | None = None) -> Floats:
+        """Return by sample how much higher the value of a rig is than that of `base`."""
         pair = rig, self.reference if base is None else base
         self.evaluate(pair)
-        value, known = (self._values[_key(each)] for each in pair)
-        return value - known
+        return self._values[_key(pair[0])] - self._values[_key(pair[1])]
 
 
 def _key(rig: Rig) -> tuple[object, ...]:
@@ -162,10 +191,11 @@ def flatness(
             for units in both
         }
         samples.evaluate([samples.reference, *moved.values()])
+        error = samples.error([moved[axis, units] for axis in AXES for units in (-NEAR, NEAR)])
         for axis in AXES:
             cost = {units: samples.change(moved[axis, units]) for units in both}
             own = status(sensor.name, axis)
-            yield AxisCost(sensor.name, axis, own, cost, samples.steep)
+            yield AxisCost(sensor.name, axis, own, cost, samples.steep, error)
 
 
 @dataclass(frozen=True, slots=True)

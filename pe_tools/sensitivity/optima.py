@@ -16,7 +16,7 @@ from pe_core.search import Parametrization
 from pe_core.search.search_space import SearchSpace
 from pe_core.study.requirement_search import is_infeasible
 
-from .flatness import NOTICED, StepCosts
+from .flatness import NOTICED, SURE, StepCosts
 
 APART_M, APART_RAD = 0.15, math.radians(6.0)
 """Placements are in one neighbourhood if no sensor is farther away or turned more than this."""
@@ -70,17 +70,19 @@ class Archive:
 
 @dataclass(frozen=True, slots=True)
 class RunnerUp:
-    """An optimum that the search did not choose, behind its result by so much [nats]. Sensors that
-    `moved` are elsewhere than in the result."""
+    """An optimum that the search did not choose, behind its result by so much [nats], with a
+    standard error. Sensors that `moved` are elsewhere than in the result."""
 
     rig: Rig
     behind: float
     moved: tuple[str, ...]
+    stderr: float = 0.0
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as plain JSON data."""
         return {
             "behind": rounded(self.behind),
+            "stderr": rounded(self.stderr),
             "moved": list(self.moved),
             "placements": {
                 s.name: {
@@ -115,14 +117,17 @@ class Basins:
     """Sorts placements into basins of attraction."""
 
     def __init__(self, samples: StepCosts, space: SearchSpace) -> None:
-        self._samples, self._space = samples, space
+        self._samples = samples
+        self._space = space
         self._coding = Parametrization(samples.reference, space)
+        self._error = 0.0
 
     def endings(self, placements: Iterator[Rig]) -> Endings:
         """Return the optima apart from the reference among placements of a search."""
         apart = self._apart(placements)
         self._samples.evaluate(apart)
         apart.sort(key=self._samples.change)
+        self._error = self._samples.error(apart)
         ways = (self._between(rig, self._samples.reference) for rig in apart)
         self._samples.evaluate(chain.from_iterable(way for way in ways if way))
         found: list[Rig] = []
@@ -135,7 +140,7 @@ class Basins:
         runners_up = []
         for rig in found:
             moved = tuple(s.name for s in rig if s.pose != self._samples.reference[s.name].pose)
-            runners_up.append(RunnerUp(rig, self._samples.change(rig), moved))
+            runners_up.append(RunnerUp(rig, self._samples.change(rig), moved, self._error))
         runners_up.sort(key=lambda each: each.behind)
         return Endings(len(apart), same, tuple(runners_up))
 
@@ -161,7 +166,7 @@ class Basins:
         if way is None:
             return True
         self._samples.evaluate(way)
-        hill = NOTICED * self._samples.steep
+        hill = max(NOTICED * self._samples.steep, SURE * self._error)
         return any(self._samples.change(rig, worse) > hill for rig in way)
 
     def _between(self, one: Rig, other: Rig) -> list[Rig] | None:

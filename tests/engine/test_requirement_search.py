@@ -22,6 +22,7 @@ from pe_core.scoring.requirements import (
 from pe_core.scoring.sight import BLIND_TO_M, Sight
 from pe_core.search import Goals, Tolerance, Wanted
 from pe_core.search.dispatch import value_below
+from pe_core.search.key_figures import KEY_FIGURES, PARTS
 from pe_core.study.requirement_search import INFEASIBLE, constraints_of, feasible_first
 from pe_core.study.suggestion import BLIND_SPOT, SAMPLES, mended, suggestions, with_blind_spot
 from pe_tools import advice
@@ -289,6 +290,8 @@ def test_after_a_violation_that_is_enough_no_further_cost_is_computed(monkeypatc
         assert value_below(objective, level, cutoff) == math.inf
     assert len(asked) == 1
     shares = {"blind_ground": 1.0 - 1e-13, "blind_sector": 0.5}  # the former rounds to no violation
-    costs = dict(limit._costs(level))
+    sight = given.sight()
+    rows = {key: KEY_FIGURES[key] for key in shares}
+    costs = {key: row.costs(PARTS[row.part](sight, level)) for key, row in rows.items()}
     limit._limits = {key: tuple(share * c for c in costs[key]) for key, share in shares.items()}
     assert limit.violation(level) == 1.5 and limit.violation(level, 0.0) == 0.5

@@ -9,6 +9,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.base.table_reader import Table
+from pe_core.scoring.sampling import CENTERED
 from pe_core.search import Tolerance
 from pe_core.study import Conditions, condition_table, study_from_dict, study_to_dict
 from pe_core.study.condition_table import study_objective
@@ -201,7 +202,7 @@ def test_a_sensor_that_a_state_moves_may_fail_in_a_search():
     study = pe.Study(rig(), car(), shapes.small_space(), samples=1024, **given)
     evaluator = pe.Evaluator(study.space, study.prior, OPEN.vehicle(car()), samples=1024)
     worths = [evaluator.entropy(pe.Rig([sensor])) for sensor in OPEN.rig(rig(), car())]
-    objective = study_objective(study, study.evaluator(), 1024)
+    objective = study_objective(study, study.evaluator(), 1024, shift=CENTERED)
     assert objective.entropy(study.rig) == pytest.approx(np.mean(worths), abs=2e-9)
     with pytest.raises(pe.InputError, match=r"move\.sensors"):
         study.with_rig(pe.Rig([study.rig["roof"]]))
@@ -223,7 +224,8 @@ def test_a_search_minimises_the_mean_or_the_worst_of_the_table(how):
         conditions=Conditions([pe.State("driving"), OPEN, pe.State("never", weight=0.0)], weathers),
         search=pe.Search(conditions=how),
     )
-    objective = pickle.loads(pickle.dumps(study_objective(study, study.evaluator(), 4096)))
+    made = study_objective(study, study.evaluator(), 4096, shift=CENTERED)
+    objective = pickle.loads(pickle.dumps(made))
     table = condition_table(study)
     expected = table.mean if how == "mean" else table.worst.entropy
     assert objective.entropy(study.rig) == expected

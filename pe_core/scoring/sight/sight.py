@@ -3,7 +3,6 @@
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 from functools import cached_property, partial
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +20,7 @@ from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
 from ...sensors import PerceptionModel
 from ..evaluator import Evaluator
-from ..sampling import VoxelSample, draw
+from ..sampling import CENTERED, Shift, VoxelSample, draw
 from ..scenarios import fused_early
 from ..score import RigEvaluator, TrafficAp
 from ..targets import OBJECTS, ObjectEvaluator, TargetRule, sample_objects
@@ -81,6 +80,8 @@ class Sight:
         Frames that `over_frames` is of; one by default.
     samples : int
         Voxels that it is evaluated on; 0: all.
+    shift : (3,) float
+        Scrambles the samples of voxels and scenes, as of `Evaluator`.
     """
 
     def __init__(
@@ -93,10 +94,14 @@ class Sight:
         targets: TargetRule | None = None,
         frames: Frames | None = None,
         samples: int = 0,
+        shift: Shift = CENTERED,
     ) -> None:
         self.space, self.prior, self.vehicle = space, prior, vehicle
-        self.frames, self._samples = frames or Frames(), samples
-        self._model, self.targets = model or PerceptionModel(), targets or TargetRule()
+        self.frames = frames or Frames()
+        self.targets = targets or TargetRule()
+        self._samples = samples
+        self._shift = shift
+        self._model = model or PerceptionModel()
         self._fusion = Fusion(self._model)
         self._densities: list[ClassDensity] = prior.densities(space)
         self._voxel_sets = VoxelSetCache(space, vehicle, self._fusion)
@@ -104,9 +109,18 @@ class Sight:
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the arguments: another process makes one of its own from them."""
-        what = self.space, self.prior, self.vehicle
-        options: Any = {"frames": self.frames, "samples": self._samples}
-        return partial(type(self), *what, model=self._model, targets=self.targets, **options), ()
+        again = partial(
+            type(self),
+            self.space,
+            self.prior,
+            self.vehicle,
+            model=self._model,
+            targets=self.targets,
+            frames=self.frames,
+            samples=self._samples,
+            shift=self._shift,
+        )
+        return again, ()
 
     def ground(
         self, rig: Rig, height: float | None = None, step: float = 1.0, within: float | None = None
@@ -225,18 +239,30 @@ class Sight:
     @cached_property
     def _scorers_over_frames(self) -> Mapping[tuple[str, ...], RigEvaluator]:
         """Evaluators over frames, by the classes that have their process noise."""
-        where = self.space, self.prior, self.vehicle
-        frames, own = self.frames, self._model.model
+        frames = self.frames
+        own = self._model.model
         if self.targets.are_objects:
             model = self._model.with_model(own, frames)
-            return {(): ObjectEvaluator(*where, targets=self.targets, model=model)}
+            return {(): self._on_objects(self.targets, model)}
         classes: dict[Frames, tuple[str, ...]] = {}
         for name in self.prior.class_names:
             classes[frames.of_class(name)] = (*classes.get(frames.of_class(name), ()), name)
         return {
-            names: Evaluator(*where, samples=self._samples, model=self._model.with_model(own, each))
+            names: Evaluator(
+                self.space,
+                self.prior,
+                self.vehicle,
+                samples=self._samples,
+                shift=self._shift,
+                model=self._model.with_model(own, each),
+            )
             for each, names in classes.items()
         }
+
+    def _on_objects(self, targets: TargetRule, model: PerceptionModel) -> ObjectEvaluator:
+        return ObjectEvaluator(
+            self.space, self.prior, self.vehicle, targets=targets, model=model, shift=self._shift[0]
+        )
 
     def _cells_round_body(self, height: float, within: float) -> GroundCells:
         area = widened(body_rectangle(self.vehicle), within)
@@ -337,7 +363,7 @@ class Sight:
             return visible_shares(measured.voxels, m, self._rises(rig, m))
 
     def _sampled(self) -> VoxelSample:
-        return draw(self._densities, self.space, SAMPLES, self._tops)
+        return draw(self._densities, self.space, SAMPLES, self._tops, self._shift)
 
     def _ap(self, rig: Rig, m: Mapping[str, NDArray], members: Collection[str]) -> Floats:
         """Return the AP of every voxel with some sensors fused: eqs. 4 to 7, and 5 inverted."""
@@ -357,8 +383,7 @@ class Sight:
     @cached_property
     def _objects_in_traffic(self) -> ObjectEvaluator:
         targets = replace(self.targets, targets=OBJECTS, traffic=True)
-        where = self.space, self.prior, self.vehicle
-        return ObjectEvaluator(*where, targets=targets, model=self._model)
+        return self._on_objects(targets, self._model)
 
     @cached_property
     def _lone(self) -> LoneObjects:

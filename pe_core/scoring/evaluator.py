@@ -3,6 +3,9 @@
 from collections.abc import Sequence
 from functools import partial
 
+import numpy as np
+
+from ..base.arrays import Floats
 from ..base.values import Number, Whole, vector
 from ..geometry.grids import PerceptionSpace
 from ..metric.fusion import Fusion
@@ -96,6 +99,20 @@ class Evaluator:
     def summary(self, rig: Rig) -> Score:
         """Return the score of a rig without the part by sensor: for one that is being moved."""
         return self._scorer.summary(rig)
+
+    def residuals(self, rigs: Sequence[Rig]) -> Floats:
+        """Return by rig what each of R batches of the sample adds to the entropy above its mean,
+        (N, R) [nats]: `scoring.score.standard_error` of differences of rows is that of differences
+        of entropies. Zeros (N, 1) for the whole grid.
+
+        Parameters
+        ----------
+        rigs : sequence of Rig
+            As of `entropies`.
+        """
+        if isinstance(self._scorer, GridScorer):
+            return np.zeros((len(rigs), 1))
+        return self._scorer.residuals(rigs)
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the perception entropy of each of several rigs [nats].

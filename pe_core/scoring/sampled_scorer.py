@@ -82,6 +82,17 @@ class SampledScorer:
             m = self._sensors.m
             return [self._entropy_of(part, m) for part in scenarios.parts]
 
+    def residuals(self, rigs: Sequence[Rig]) -> Floats:
+        """Return by rig what each run of the sequence adds to the entropy above its mean."""
+        scenarios = Scenarios(rigs)
+        with self._lock:
+            self._sensors.measure(scenarios.all)
+            rows = []
+            for part in scenarios.parts:
+                values, _ = self._entropies(part, [s.name for s in part])
+                rows.append(residuals(values, None, self._sample.run, BLOCKS))
+            return np.array(rows)
+
     def summary(self, rig: Rig) -> Score:
         """Return the score without the part by sensor."""
         with self._lock:

@@ -65,7 +65,7 @@ class Scatter(ShortRepr):
     def error(self, figure: FigureKey) -> float | None:
         """Return the standard error of a figure; None where the score has no such figure."""
         by_batch = self.residuals.get(figure)
-        return None if by_batch is None else _standard_error(by_batch)
+        return None if by_batch is None else standard_error(by_batch)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the residuals as plain JSON data."""
@@ -90,7 +90,7 @@ def paired_error(one: Scatter | None, other: Scatter | None, figure: FigureKey) 
     a, b = one.residuals.get(figure), other.residuals.get(figure)
     if a is None or b is None or len(a) != len(b):
         return None
-    return _standard_error([x - y for x, y in zip(a, b, strict=True)])
+    return standard_error([x - y for x, y in zip(a, b, strict=True)])
 
 
 def residuals(
@@ -112,7 +112,7 @@ def sample_digest(parts: Iterable[NDArray[Any]]) -> str:
     return digest.hexdigest()[:16]
 
 
-def _standard_error(batches: Iterable[float]) -> float:
+def standard_error(batches: Iterable[float]) -> float:
     """Return the standard error of a mean from its residuals in independent batches."""
     values = list(batches)
     square = math.fsum(value * value for value in values)
@@ -420,3 +420,6 @@ class RigEvaluator(Protocol):
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the entropy of each of several rigs [nats]."""
+
+    def residuals(self, rigs: Sequence[Rig]) -> Floats:
+        """Return by rig what each batch of the sample adds to the entropy above its mean (N, R)."""

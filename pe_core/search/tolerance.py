@@ -29,7 +29,7 @@ from ..base.values import Angle, Number, Whole, degrees_in_file, rounded
 from ..geometry.poses import FARTHEST_M, Pose, rotate, rotation_matrix, rpy_from_matrix
 from ..scene.rig import Rig
 from ..scoring.scenarios import mean_or_worst
-from ..scoring.score import Objective, RigEvaluator
+from ..scoring.score import Objective, RigEvaluator, standard_error
 from .domains import AXES, pose_from_values
 
 DRAWS = 8  # Draws by default
@@ -189,7 +189,8 @@ class RigRobustness:
 
     `entropy`: Without errors and failures.
     `mounted_off, mounted_worst`: Mean over the mounting errors, and the worst.
-    `stderr`: Standard error of `mounted_off`, from the scatter of the draws; an overestimate.
+    `stderr`: Standard error of the rise of `mounted_off`, from the scatter of the draws and of the
+        voxels; an overestimate.
     `failed, failed_worst`: Mean over the failures of each single sensor, and the worst; None for a
         single sensor.
     `missed`: The sensor whose failure is the worst.
@@ -257,23 +258,30 @@ def robustness(
 def _robustness_of(
     evaluator: RigEvaluator, rig: Rig, errors: Tolerance, seed: int
 ) -> RigRobustness:
-    with_errors = evaluator.entropies(mounted_off(rig, errors, seed, FRESH))
+    off = mounted_off(rig, errors, seed, FRESH)
+    with_errors = evaluator.entropies(off)
     rigs_without = without_each(rig) if len(rig) > 1 else []
     entropy, *failed = evaluator.entropies([rig, *rigs_without])
-    about_errors = (
-        rounded(float(np.mean(with_errors))),
-        max(with_errors),
-        _standard_error(with_errors, errors.draws, len(rig)),
+    own, *by_draw = evaluator.residuals([rig, *off])
+    of_draws = _error_of_draws(with_errors, errors.draws, len(rig))
+    of_voxels = standard_error(np.mean(by_draw, axis=0) - own)
+    found = RigRobustness(
+        entropy,
+        mounted_off=rounded(float(np.mean(with_errors))),
+        mounted_worst=max(with_errors),
+        stderr=rounded(math.hypot(of_draws, of_voxels)),
     )
     if not failed:
-        return RigRobustness(entropy, *about_errors)
-    missed = rig.sensors[int(np.argmax(failed))].name
-    return RigRobustness(
-        entropy, *about_errors, rounded(float(np.mean(failed))), max(failed), missed
+        return found
+    return replace(
+        found,
+        failed=rounded(float(np.mean(failed))),
+        failed_worst=max(failed),
+        missed=rig.sensors[int(np.argmax(failed))].name,
     )
 
 
-def _standard_error(entropies: Sequence[float], draws: int, sensors: int) -> float:
+def _error_of_draws(entropies: Sequence[float], draws: int, sensors: int) -> float:
     """Return the standard error from the scatter of each sensor's pairs of opposite draws."""
     half, variance = draws // 2, 0.0
     if half < 2:

@@ -18,6 +18,7 @@ from dataclasses import asdict, dataclass, replace
 from functools import partial
 from typing import Any
 
+from ..base.arrays import Floats
 from ..base.errors import InputError
 from ..base.values import rounded
 from ..scene.rig import Rig
@@ -43,6 +44,9 @@ class ExpectedApEvaluator(ObjectEvaluator):
 
     def _value(self, rig: Rig, m: MByName) -> float:
         return -self._sums.expected_ap(self._fused.entropies(rig, m)[0])
+
+    def _residuals(self, entropies: Floats) -> Sequence[float]:
+        return [-each for each in self._sums.residuals_of_ap(entropies)]
 
 
 def is_by_ap(study: Study) -> bool:

@@ -25,6 +25,7 @@ from ..base.recent_cache import RecentCache
 from ..scene.data_sheet import DataSheet
 from ..scene.rig import Rig, Sensor, SensorModel
 from ..scoring.requirements import Criterion, Requirement, RequirementChecker, Zone, checkable
+from ..scoring.sampling import SEARCHED
 from ..scoring.score import RigEvaluator, ScoreStopped
 from ..scoring.sight import Sight, shown_end
 from ..scoring.sight.blind_ground import BLIND_TO_M
@@ -239,7 +240,7 @@ class _Mender:
                 if place.reason or checker.shortfalls(rig)[0]:
                     continue
                 if self._is_met_mounted(requirement, rig):
-                    found = self._evaluator.entropy(rig), rig
+                    found = self._searching.entropy(rig), rig
                     best[name] = min(best.get(name, found), found, key=lambda pair: pair[0])
                     if (count := count + 1) == ADD_COMPARED:
                         break
@@ -269,6 +270,11 @@ class _Mender:
         breaks = tuple(each.name for each, was, off in rows if off and not was)
         effects = self._before_figures, self._effect(rig)
         return Suggestion(rig, tuple(moved), breaks, self._study.rig, *effects, added)
+
+    @cached_property
+    def _searching(self) -> RigEvaluator:
+        """What chooses among placements; the chosen one is reported on another sample."""
+        return self._study.evaluator(SAMPLES, shift=SEARCHED)
 
     @cached_property
     def _evaluator(self) -> RigEvaluator:

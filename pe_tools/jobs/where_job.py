@@ -1,6 +1,6 @@
 """The job that scores one more sensor all over a vehicle's surface, coarse to fine."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import islice
@@ -13,7 +13,8 @@ from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError, one_of, shown
 from pe_core.base.values import rounded
 from pe_core.scene.rig import Rig, Sensor
-from pe_core.scoring.score import Objective
+from pe_core.scoring.sampling import CENTERED, SEARCHED, Shift
+from pe_core.scoring.score import Objective, standard_error
 from pe_core.scoring.sight import Sight, shown_end
 from pe_core.search import MountingPlaces, SurfaceMount, SurfacePlace, evaluate_all
 from pe_core.study.condition_table import search_evaluator
@@ -42,12 +43,20 @@ class _RigValue(NamedTuple):
         return -float(sum(not off for off in self.of.shortfalls(rig)))
 
 
-def _by_ap(study: Study, samples: int) -> Objective:
+def _by_entropy(study: Study, samples: int, shift: Shift) -> Objective:
+    return study.evaluator(samples, shift=shift)
+
+
+def _by_ap(study: Study, samples: int, shift: Shift) -> Objective:
     by_ap = replace(study, search=replace(study.search, objective=EXPECTED_AP))
-    return search_evaluator(by_ap, samples)
+    return search_evaluator(by_ap, samples, shift=shift)
 
 
-def _met(study: Study, _samples: int) -> Objective:
+def _by_sector(study: Study, _samples: int, _shift: Shift) -> Objective:
+    return _RigValue(study.sight())
+
+
+def _met(study: Study, _samples: int, _shift: Shift) -> Objective:
     if study.requirements:
         return _RigValue(RequirementConstraint(study))
     raise InputError("where", "requirements", "at least one, to count verdicts", "none")
@@ -55,16 +64,16 @@ def _met(study: Study, _samples: int) -> Objective:
 
 @dataclass(frozen=True, slots=True)
 class PlaceFigure:
-    """A figure by which places are compared. `objective` returns what is minimised, of a study and
-    a number of voxels; the figure is `sign` times its value. `places` is how many are scored in
-    about 20 s. `exact` is whether it does not depend on the voxels; `shown` rounds it to the safe
-    side."""
+    """A figure by which places are compared. `objective` returns what is minimised, of a study, a
+    number of voxels and their shift; the figure is `sign` times its value. `places` is how many are
+    scored in about 20 s. `exact` is whether it does not depend on the voxels; `shown` rounds it to
+    the safe side."""
 
     key: str
     label: str
     unit: str
     decimals: int
-    objective: Callable[[Study, int], Objective]
+    objective: Callable[[Study, int, Shift], Objective]
     places: int
     sign: float = 1.0
     exact: bool = False
@@ -82,13 +91,19 @@ class PlaceFigure:
 PLACE_FIGURES = {
     row.key: row
     for row in (
-        PlaceFigure("entropy", "Entropy", "nats", 3, lambda study, n: study.evaluator(n), 2000),
-        PlaceFigure("ap", "Expected AP in traffic", "", 3, _by_ap, 600, -1.0),
+        PlaceFigure("entropy", "Entropy", "nats", 3, _by_entropy, places=2000),
+        PlaceFigure("ap", "Expected AP in traffic", "", 3, _by_ap, places=600, sign=-1.0),
         PlaceFigure(
-            *("blind", "Widest blind sector", "deg", 1, lambda study, _: _RigValue(study.sight())),
-            *(350, 1.0, True, shown_end),
+            "blind",
+            "Widest blind sector",
+            "deg",
+            1,
+            _by_sector,
+            places=350,
+            exact=True,
+            shown=shown_end,
         ),
-        PlaceFigure("verdicts", "Requirements met", "", 0, _met, 700, -1.0, True),
+        PlaceFigure("verdicts", "Requirements met", "", 0, _met, places=700, sign=-1.0, exact=True),
     )
 }  # Figures of places, by name
 
@@ -99,9 +114,9 @@ class PlaceMap:
     sensors, and the placed one: its model and its name. `figure`: A key of `PLACE_FIGURES`.
     `mount`: name of the mount that is covered; empty for the body or parts of it. `count`: how many
     places there will be. `surface` (F, 3, 3): the surface that they cover [m]. `base`: the figure
-    without the sensor, on the same sample. `error`: root mean square of the change on the sample
-    minus the exact one, at places from the best to the worst; None where it is not known yet, 0
-    where places are scored exactly."""
+    without the sensor, on the same sample. `error`: standard error of a change on that sample, of
+    places from the best to the worst: by its batches, or by what a larger sample says where that is
+    more; None where it is not known yet, 0 where places are scored exactly."""
 
     rig: Rig
     sensor: Sensor
@@ -217,7 +232,7 @@ class WhereJob(Job):
         own: Any = {"parts": self._parts, "mount": mount, "count": self.count}
         self._places = MountingPlaces(study.rig, self.sensor, *where, **own)
         self.surface = self._places.surface.triangles
-        objective = row.objective(study, SAMPLES)
+        objective = row.objective(study, SAMPLES, SEARCHED)
         self.base = rounded(row.sign * objective.entropy(study.rig))
         steps = iter(self._places)
         ahead = begun(lambda: list(islice(steps, BATCH)))
@@ -231,8 +246,8 @@ class WhereJob(Job):
                 self._waiting = Progress("placing", len(self.places) / self.count)
                 yield self._waiting
             if not self.stopped:
-                work_off = begun(self._off)
-                self.error = yield from self._awaited(work_off, lambda: self._waiting)
+                work = begun(partial(self._error, objective))
+                self.error = yield from self._awaited(work, lambda: self._waiting)
         yield Progress("done", 1.0)
 
     def _scored(
@@ -243,17 +258,27 @@ class WhereJob(Job):
         values = iter([rounded(sign * each) for each in found])
         return [each if each.reason else replace(each, value=next(values)) for each in some]
 
-    def _off(self) -> float:
-        """Return the error of the changes on the sample (`PlaceMap.error`)."""
-        row, found = self.row, self.found
-        ranked = [] if found is None else found.best(len(self.places))
+    def _error(self, sampled: Any) -> float:
+        """Return the standard error of the changes on the sample (`PlaceMap.error`), which
+        `sampled` evaluates."""
+        row = self.row
+        ranked = [] if self.found is None else self.found.best(len(self.places))
         if row.exact or not ranked:
             return 0.0
-        objective = row.objective(self.study, self.study.samples or DEFAULT_SEARCH_SAMPLES)
-        base = row.sign * objective.entropy(self.study.rig)
-        off = []
-        for k in np.unique(np.linspace(0, len(ranked) - 1, COMPARED).astype(int)).tolist():
-            rig = self._places.with_sensor(ranked[k].pose)
-            change = row.sign * objective.entropy(rig) - base
-            off.append((ranked[k].value or 0.0) - self.base - change)
-        return rounded(sqrt(float(np.mean(np.square(off)))))
+        steps = np.linspace(0, len(ranked) - 1, COMPARED).astype(int)
+        compared = [ranked[k] for k in np.unique(steps).tolist()]
+        rigs = [self._places.with_sensor(place.pose) for place in compared]
+        own, *by_place = sampled.residuals([self.study.rig, *rigs])
+        errors = [standard_error(each - own) for each in by_place]
+        samples = self.study.samples or DEFAULT_SEARCH_SAMPLES
+        larger = row.objective(self.study, samples, CENTERED)
+        base = row.sign * larger.entropy(self.study.rig)
+        off = [
+            (place.value or 0.0) - self.base - (row.sign * larger.entropy(rig) - base)
+            for place, rig in zip(compared, rigs, strict=True)
+        ]
+        return rounded(max(_root_mean_square(errors), _root_mean_square(off)))
+
+
+def _root_mean_square(values: Sequence[float]) -> float:
+    return sqrt(float(np.mean(np.square(values))))

@@ -23,7 +23,8 @@ pytestmark = pytest.mark.usefixtures("few_errors", "no_key_figures")
 
 
 def study(objectives=("entropy", "height"), points=4, **more):
-    model = shapes.small_lidar(4, 90)
+    """Two LiDARs that see more from higher up: the car's roof is in their way."""
+    model = shapes.small_lidar(16, 180)
     sensors = [
         shapes.lidar_on_roof(model, (x, 0.0, 1.8), name=n)
         for n, x in (("roof", 0.0), ("front", 1.0))
@@ -31,7 +32,7 @@ def study(objectives=("entropy", "height"), points=4, **more):
     goals = Goals(front=Front(objectives, points))
     free = {"roof": ("z", "pitch"), "front": ("z",)}
     limits = {name: {"z": (1.6, 2.6)} for name in free}
-    search = pe.Search(free, limits, samples=1024, evaluations=160, goals=goals)
+    search = pe.Search(free, limits, samples=1024, evaluations=320, goals=goals)
     given = {"search": search, "samples": 1024} | more
     return pe.Study(pe.Rig(sensors), shapes.box_car(), shapes.small_space(), **given)
 
@@ -62,7 +63,7 @@ def test_no_design_of_the_front_is_beaten_and_its_figures_are_those_of_its_rig(f
             beats = [other.figures[n] <= design.figures[n] for n in found.objectives]
             assert not all(beats) or other.figures == design.figures
     lowest = min(found.front, key=lambda d: d.figures["height"])
-    assert lowest.figures["height"] < 1.65 and "best height" in lowest.name
+    assert lowest.figures["height"] < 1.8 and "best height" in lowest.name
     best = min(found.front, key=lambda d: d.figures["entropy"])
     plain = pt.OptimizeJob(replace(study(), search=replace(study().search, evaluations=40)), 1)
     list(plain)

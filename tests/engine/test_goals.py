@@ -159,7 +159,7 @@ def test_the_curve_of_a_search_never_rises_and_ends_at_its_last_value(plain):
         assert all(after < before for before, after in pairwise(values))
         last += values[-1:]
     assert all(after <= before for before, after in pairwise(last))
-    assert last[-1] == min(end.entropy for end in several.outcome.starts)
+    assert last[-1] == several.history[-1].entropy
 
 
 def test_values_of_fewer_samples_are_shifted_to_those_of_more():

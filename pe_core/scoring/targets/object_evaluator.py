@@ -85,6 +85,15 @@ class ObjectEvaluator:
             m = self._sensors.measure(scenarios.all)
             return [self._value(part, m) for part in scenarios.parts]
 
+    def residuals(self, rigs: Sequence[Rig]) -> Floats:
+        """Return by rig what each batch of scenes adds to the object entropy above its mean."""
+        scenarios = Scenarios(rigs)
+        with self._lock:
+            self._fused.check(scenarios.all)
+            m = self._sensors.measure(scenarios.all)
+            by_rig = [self._fused.entropies(part, m)[0] for part in scenarios.parts]
+            return np.array([self._residuals(entropies) for entropies in by_rig])
+
     def summary(self, rig: Rig) -> Score:
         """Return the score of a rig without the part by sensor."""
         with self._lock:
@@ -131,6 +140,10 @@ class ObjectEvaluator:
     def _value(self, rig: Rig, m: MByName) -> float:
         """Return what `entropy` and `evaluate` return; a subclass may have another value."""
         return self._sums.part(*self._fused.entropies(rig, m)).entropy
+
+    def _residuals(self, entropies: Floats) -> Sequence[float]:
+        """Return the residuals of `_value`."""
+        return self._sums.residuals(entropies)
 
     def _sensor(self, name: str, rig: Rig, m: MByName, entropy: float) -> SensorScore:
         alone = self._sums.part(*self._fused.entropies(rig, m, [name]))

@@ -184,11 +184,25 @@ class ObjectSums:
         whole = rounded(self._mean(ap, None)), self._scatter(ap, None)
         return TrafficAp(*whole, self._drawn.scenes, rings)
 
-    def scatter(self, entropies: Floats, visible: Bools) -> Scatter:
-        """Return residuals by batch of scenes: entropy and coverage of all parts, AP of classes."""
+    @cached_property
+    def _batches(self) -> tuple[Ints, int]:
+        """The batch of scenes of each object (N,), and the number of batches."""
         scenes = self._drawn.scenes
         batches = min(BATCHES, scenes)
-        batch = self._objects.scenes * batches // scenes
+        return self._objects.scenes * batches // scenes, batches
+
+    def residuals(self, entropies: Floats) -> tuple[float, ...]:
+        """Return what each batch of scenes adds to the mean entropy, above it (`Scatter`)."""
+        batch, batches = self._batches
+        return residuals(entropies, self._weights, batch, batches)
+
+    def residuals_of_ap(self, entropies: Floats) -> tuple[float, ...]:
+        """Return what each batch of scenes adds to the expected AP, above it."""
+        return self.residuals(self._ap(entropies))
+
+    def scatter(self, entropies: Floats, visible: Bools) -> Scatter:
+        """Return residuals by batch of scenes: entropy and coverage of all parts, AP of classes."""
+        batch, batches = self._batches
         measures = {
             "entropy": entropies,
             "coverage": visible.astype(float),

@@ -9,7 +9,7 @@ from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from .engine import catalog, pe, requirements, text
+from .engine import catalog, pe, requirements, scoring, text
 
 SAMPLES = 32_768
 """Voxels that a live score evaluates: an error of 0.02 nats on the sedan, 10 ms a move of a LiDAR.
@@ -75,11 +75,13 @@ def make_evaluator(problem: Problem) -> pe.RigEvaluator:
 
 
 class Gain(NamedTuple):
-    """Entropy [nats] and coverage without (None if it is the only one) and with a sensor."""
+    """Entropy [nats] and coverage without (None if it is the only one) and with a sensor, and the
+    standard error of the change of entropy."""
 
     before: float | None
     after: float
     coverage: float
+    stderr: float = 0.0
 
     def __str__(self) -> str:
         """Return the gain as one line of text."""
@@ -87,10 +89,12 @@ class Gain(NamedTuple):
         if self.before is None:
             return f"{self.after:.3f} nats, {seen}"
         change = self.after - self.before
+        if abs(change) <= scoring.SURE * self.stderr:
+            return f"{self.after:.3f} nats, no change, {seen}"
         return f"{self.before:.3f} to {self.after:.3f} nats ({change:+.3f}), {seen}"
 
 
-_held: text.RecentCache[tuple[pe.RigEvaluator, float | None]] = text.RecentCache()
+_held: text.RecentCache[tuple[pe.RigEvaluator, pe.Score | None]] = text.RecentCache()
 
 
 def gain(number: int, study: pe.Study, name: str, pose: pe.Pose) -> Gain:
@@ -98,13 +102,16 @@ def gain(number: int, study: pe.Study, name: str, pose: pe.Pose) -> Gain:
     each `number`, which identifies the study."""
     others = [each for each in study.rig if each.name != name]
 
-    def make() -> tuple[pe.RigEvaluator, float | None]:
+    def make() -> tuple[pe.RigEvaluator, pe.Score | None]:
         evaluator = study.evaluator(samples=HELD_SAMPLES)
-        return evaluator, evaluator.entropy(pe.Rig(others)) if others else None
+        return evaluator, evaluator.summary(pe.Rig(others)) if others else None
 
     evaluator, before = _held.made(number, make)
-    score = evaluator.score(pe.Rig([*others, study.rig[name].moved(pose)]))
-    return Gain(before, score.entropy, score.coverage)
+    score = evaluator.summary(pe.Rig([*others, study.rig[name].moved(pose)]))
+    if before is None:
+        return Gain(None, score.entropy, score.coverage)
+    error = scoring.paired_error(before.scatter, score.scatter, ("rig", "", "entropy"))
+    return Gain(before.entropy, score.entropy, score.coverage, error or 0.0)
 
 
 def known_entropies(study: pe.Study) -> dict[str, float]:

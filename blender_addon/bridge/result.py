@@ -4,6 +4,7 @@ A scene keeps figures and codes; texts are made when they are asked for.
 """
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property, lru_cache
@@ -48,9 +49,22 @@ class Result:
         self.entropy, self.entropy_before = self.after["entropy"], self.before["entropy"]
         self.coverage, self.coverage_before = self.after["coverage"], self.before["coverage"]
         self.stderr: float = self.after["stderr"]
+        self.change_errors = self._change_errors()
         self.gain: str = data.get("gain", "").replace("+-", "±")
         self.cost: str = data.get("cost", "")
         self.warnings = tuple(advice.Advice(**row) for row in data["warnings"])
+
+    def _change_errors(self) -> dict[str, float]:
+        """Return the standard errors of what searches changed, by key figure. Of several searches
+        in a row the scores of both ends are of one sample, and no error of their difference is
+        kept: it is taken as of independent ones, which is too large."""
+        if BEGAN not in self.data:
+            return dict(self.data.get("change_stderr", {}))
+        errors = {search.ENTROPY: math.hypot(self.before["stderr"], self.stderr)}
+        figures = [search.KeyFigures.from_dict(each) for each in self.figures.values()]
+        if len(figures) == 2:
+            errors |= figures[1].errors_from(figures[0])
+        return errors
 
     @cached_property
     def conditions(self) -> tuple[str, ...]:

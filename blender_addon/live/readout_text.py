@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from ..engine import advice, pe, search
+from ..engine import advice, pe, scoring, search
 from .state import LiveScore, ShownScore
 
 MIN_CHANGE = 0.0005
@@ -51,19 +51,29 @@ def readout_of(score: LiveScore | None, shown: ShownScore) -> ReadoutText:
         now, before = score.summary, score.before
         what = "Coverage" if now.voxels else "Objects visible:"
         by = None if before is None else 100.0 * (now.coverage - before.coverage)
-        lines = ((TextPiece(f"{what} {advice.percent(shown.coverage, 1)}"), *change_of(by, 1)),)
+        off = 100.0 * error_of_change(now, before, "coverage")
+        lines = (
+            (TextPiece(f"{what} {advice.percent(shown.coverage, 1)}"), *change_of(by, 1, off)),
+        )
         if now.ap is not None:
             by = None if before is None or before.ap is None else now.ap - before.ap
-            lines += ((TextPiece(f"Expected AP {now.ap:.3f}"), *change_of(by, 3)),)
+            off = error_of_change(now, before, "ap")
+            lines += ((TextPiece(f"Expected AP {now.ap:.3f}"), *change_of(by, 3, off)),)
         lines += tuple(zone_lines(now, before))
         if before is not None and score.baseline is not None:
-            change, sense = entropy_change(now.entropy, before.entropy)
+            off = error_of_change(now, before, "entropy")
+            change, sense = entropy_change(now.entropy, before.entropy, off)
             against = f"compared with {shortened(score.baseline.label)}"
     if shown.before is not None:
-        change, sense = entropy_change(shown.entropy, shown.before)
+        change, sense = entropy_change(shown.entropy, shown.before, shown.change_error)
         against = f"compared with {BEFORE_SEARCH}"
     headline = f"{shown.entropy:.3f} nats"
     return ReadoutText(headline, state_of(shown), change, sense, against, lines)
+
+
+def error_of_change(now: pe.Score, before: pe.Score | None, measure: str) -> float:
+    """Return the standard error of the change of a measure of the rig; 0 without a change."""
+    return 0.0 if before is None else advice.difference_error(before, now, ("rig", "", measure))
 
 
 def state_of(shown: ShownScore) -> str:
@@ -84,10 +94,11 @@ def shortened(name: str) -> str:
     )
 
 
-def entropy_change(now: float, before: float) -> tuple[str, int]:
-    """Return how an entropy changed, and whether for the better; lower is better."""
+def entropy_change(now: float, before: float, error: float = 0.0) -> tuple[str, int]:
+    """Return how an entropy changed, and whether for the better; lower is better. `error` is the
+    standard error of the change."""
     by = now - before
-    if abs(by) < MIN_CHANGE:
+    if abs(by) < MIN_CHANGE or is_noise(by, error):
         return "no change", SAME
     return f"{abs(by):.3f} {'worse' if by > 0.0 else 'better'}", WORSE if by > 0.0 else BETTER
 
@@ -101,24 +112,37 @@ def zone_lines(now: pe.Score, before: pe.Score | None) -> list[ReadoutLine]:
     lines: list[ReadoutLine] = []
     for word, sense in (("Better", BETTER), ("Worse", WORSE)):
         name = max(common, key=lambda zone: sense * by[zone], default=None)
-        if name is not None and sense * by[name] >= MIN_ZONE_CHANGE:
+        if name is None:
+            continue
+        error = advice.difference_error(before, now, ("zone", name, "entropy"))
+        if sense * by[name] >= MIN_ZONE_CHANGE and not is_noise(by[name], error):
             where = advice.WHERE.get(name, name)
             lines.append((TextPiece(f"{word} {where} by {abs(by[name]):.2f} nats", sense),))
     return lines
 
 
-def change_text(row: search.FigureOfMerit, values: Sequence[float]) -> tuple[str, int]:
-    """Return a figure of a rig, the last of `values`, and whether it is better than the first."""
+def change_text(
+    row: search.FigureOfMerit, values: Sequence[float], error: float = 0.0
+) -> tuple[str, int]:
+    """Return a figure of a rig, the last of `values`, and whether it is better than the first.
+    `error` is the standard error of their difference."""
     texts = list(map(row.text, values)) or [NO_FIGURE]
     costs = [row.cost_of(value) for value in values]
-    sense = SAME if texts[0] == texts[-1] else WORSE if costs[-1] > costs[0] else BETTER
-    return texts[-1], sense
+    if texts[0] == texts[-1] or is_noise(values[-1] - values[0], error):
+        return texts[-1], SAME
+    return texts[-1], WORSE if costs[-1] > costs[0] else BETTER
 
 
-def change_of(by: float | None, digits: int) -> ReadoutLine:
-    """Return "(+1.2)" as a gain or a loss; nothing where the change is 0 in these digits."""
+def is_noise(by: float, error: float) -> bool:
+    """Whether a difference is within two of its standard errors: it says nothing then."""
+    return abs(by) <= scoring.SURE * error
+
+
+def change_of(by: float | None, digits: int, error: float = 0.0) -> ReadoutLine:
+    """Return "(+1.2)" as a gain or a loss; nothing where the change is 0 in these digits, or within
+    its standard error."""
     text = "" if by is None else f"{by:+.{digits}f}"
-    if by is None or not text.strip("+-0."):
+    if by is None or not text.strip("+-0.") or is_noise(by, error):
         return ()
     sense = BETTER if by >= 0.0 else WORSE
     return (TextPiece(f"({text.replace('-', MINUS)})", sense),)

@@ -11,7 +11,7 @@ import bpy
 
 from .. import bridge
 from ..choices import BEFORE_MOVE
-from ..engine import advice, pe
+from ..engine import advice, pe, search
 from ..engine_calls import Problem
 
 
@@ -126,7 +126,8 @@ class ShownScore(NamedTuple):
 
     `exact`: it is of the scene as it is now. `stored`: it is the stored result. `view_outdated`:
     beams and maps are still those of before the last move. `state` is the vehicle's; empty: as
-    drawn. `before` is the entropy before the search whose result is stored.
+    drawn. `before` is the entropy before the search whose result is stored, `change_error` the
+    standard error of the change from it [nats].
     """
 
     entropy: float
@@ -137,6 +138,7 @@ class ShownScore(NamedTuple):
     view_outdated: bool = False
     state: str = ""
     before: float | None = None
+    change_error: float = 0.0
 
 
 def shown_score(scene: bpy.types.Scene) -> ShownScore | None:
@@ -159,7 +161,13 @@ def shown_score(scene: bpy.types.Scene) -> ShownScore | None:
         stored = result.entropy, result.coverage, result.stderr
         is_search = result.kind == "optimize" and settings.live.against == BEFORE_MOVE
         before = result.entropy_before if is_search else None
-        return ShownScore(*stored, exact=True, stored=True, before=before)
+        return ShownScore(
+            *stored,
+            exact=True,
+            stored=True,
+            before=before,
+            change_error=result.change_errors.get(search.ENTROPY, 0.0),
+        )
     if score is None:
         return None
     summary = score.summary

@@ -2,7 +2,7 @@
 
 from bpy.types import Context, Scene, UILayout
 
-from ..bridge import shown_state, wanted_of
+from ..bridge import Result, shown_state, wanted_of
 from ..engine import advice, search
 from ..language import draw_label, is_simple
 from ..live import BETTER, SAME, SENSE_ICONS, WORSE, change_text, shown_score, told_figures
@@ -13,7 +13,6 @@ from .layout import columns, draw_sentence
 MET_ICONS = {True: "COLORSET_03_VEC", False: "ERROR"}
 """Blender's own green, and its orange triangle."""
 NAME_SHARE, VALUE_SHARE, SHARE_WITHOUT_UNIT = 0.39, 0.42, 0.34
-ENTROPY = "entropy"
 KEEP = {"requirements": "keep_requirements"} | {key: f"keep_{key}" for key in search.KEPT}
 """Properties of what *Optimize* keeps, by figure."""
 LOCKS = {True: "LOCKED", False: "UNLOCKED"}
@@ -50,10 +49,12 @@ def draw_dashboard(layout: UILayout, context: Context) -> None:
     )
     judged = [row.met for row in rows if row.met is not None]
     draw_label(wanted, f"{sum(judged)} of {len(judged)} met" if judged else "Wanted")
+    errors = change_errors(figures, result)
     for row in rows:
         known = [row.figure.value(each) for each in figures] if row.figure.part else [row.value]
-        known = entropies if row.figure.key == ENTROPY else known
-        draw_row(column, scene, row, [value for value in known if value is not None])
+        known = entropies if row.figure.key == search.ENTROPY else known
+        values = [value for value in known if value is not None]
+        draw_row(column, scene, row, values, errors.get(row.figure.key, 0.0))
     if not is_simple(scene):
         name, value = columns(column, NAME_SHARE)
         draw_label(name, "Coverage")
@@ -66,8 +67,19 @@ def draw_dashboard(layout: UILayout, context: Context) -> None:
         draw_sentence(layout, context, f"Shown: state {state}. Scored: as drawn", icon="INFO")
 
 
-def draw_row(layout: UILayout, scene: Scene, row: search.Reading, values: list[float]) -> None:
-    """Draw a figure: whether *Optimize* keeps it, its name, its value, and what is wanted."""
+def change_errors(figures: list[advice.KeyFigures], result: Result | None) -> dict[str, float]:
+    """Return the standard errors of the changes that are drawn, by figure: of a stored result, or
+    of the live score's figures from those of what it is compared with."""
+    if result is not None:
+        return result.change_errors
+    return figures[-1].errors_from(figures[0]) if len(figures) > 1 else {}
+
+
+def draw_row(
+    layout: UILayout, scene: Scene, row: search.Reading, values: list[float], error: float = 0.0
+) -> None:
+    """Draw a figure: whether *Optimize* keeps it, its name, its value, and what is wanted. `error`
+    is the standard error of its change."""
     settings, figure = scene.perception_entropy, row.figure
     line = layout.row(align=True)
     if (lock := KEEP.get(figure.key)) is not None:
@@ -76,9 +88,9 @@ def draw_row(layout: UILayout, scene: Scene, row: search.Reading, values: list[f
     else:
         line.label(text="", icon="BLANK1")
     name, rest = columns(line, NAME_SHARE, align=True)
-    is_score = figure.key == ENTROPY and is_simple(scene)
+    is_score = figure.key == search.ENTROPY and is_simple(scene)
     draw_label(name, "Score" if is_score else figure.label)
-    text, sense = change_text(figure, values)
+    text, sense = change_text(figure, values, error)
     text = f"{'≥ ' * row.is_cut}{text.removesuffix(' nats' if is_score else ' met')}"
     is_changed = row.wanted is None and sense != SAME
     makes_room = is_changed and " " not in text  # for what it was before

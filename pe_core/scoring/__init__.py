@@ -3,6 +3,7 @@
 from .evaluator import Evaluator
 from .sampling import VoxelSample, draw
 from .score import (
+    SURE,
     FoundClass,
     GroundMap,
     ObjectScore,
@@ -12,4 +13,5 @@ from .score import (
     Score,
     ScoreStopped,
     SensorScore,
+    paired_error,
 )

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.arrays import Floats
+from ..base.arrays import Floats, Ints
 from ..base.lazy_threads import threads
 from ..base.values import rounded
 from ..geometry.grids import PerceptionSpace
@@ -39,6 +39,39 @@ SENSORS_FUSED = 80
 """Sensors that are fused in the time in which one is measured (measured: 40 to 100)."""
 
 
+class _ZoneBins:
+    """Sums values by run of the sequence in all zones at once: zones overlap, so values are summed
+    by what zones they are in, and by run."""
+
+    def __init__(self, zones: Mapping[str, NDArray[np.bool_]], run: Ints) -> None:
+        code = np.ones(len(run), np.int64)  # a bit for the rig, and one for each zone
+        for bit, inside in enumerate(zones.values(), 1):
+            code |= inside.astype(np.int64) << bit
+        parts, part = np.unique(code, return_inverse=True)
+        bits = np.arange(1 + len(zones))[:, None]
+        self._members = (parts >> bits & 1).astype(bool)  # (1 + zones, parts)
+        self._bin = part * BLOCKS + run
+        self._keys = [("rig", ""), *(("zone", name) for name in zones)]
+        self._counts = self._by_run(None)  # (1 + zones, BLOCKS)
+
+    def _by_run(self, values: Floats | None) -> Floats:
+        parts = self._members.shape[1]
+        sums = np.bincount(self._bin, values, parts * BLOCKS).reshape(parts, BLOCKS)
+        return np.asarray((self._members[:, :, None] * sums).sum(axis=1), float)
+
+    def residuals(self, measures: Mapping[str, Floats]) -> dict[FigureKey, tuple[float, ...]]:
+        """Return the residuals (`Scatter`) of measures (V,), of the rig and of each zone."""
+        mass = self._counts.sum(axis=1, keepdims=True)
+        found = dict[FigureKey, tuple[float, ...]]()
+        for measure, values in measures.items():
+            sums = self._by_run(values)
+            mean = sums.sum(axis=1, keepdims=True) / mass
+            rows = (sums - mean * self._counts) / mass
+            for key, row in zip(self._keys, rows, strict=True):
+                found[(*key, measure)] = tuple(map(rounded, row.tolist()))
+        return found
+
+
 class SampledScorer:
     """Scores rigs on one fixed sample of voxels; unmoved sensors are not measured again. It is
     thread-safe: a lock lets one thread score at a time."""
@@ -60,6 +93,7 @@ class SampledScorer:
         x, y = self._sample.centers[:, 0], self._sample.centers[:, 1]
         masks = {name: mask for name, mask in zone_masks(x, y).items() if mask.any()}
         self._zones = {n: (np.flatnonzero(m), rounded(float(np.mean(m)))) for n, m in masks.items()}
+        self._bins = _ZoneBins(masks, self._sample.run)
         voxels = Voxels(space, self._sample.index, self._sample.centers)
         self._sensors = MeasurementCache(voxels, vehicle, fusion.saturation_count)
         self._lock = threads().RLock()
@@ -108,7 +142,10 @@ class SampledScorer:
             values = self._entropies(rig, [s.name for s in rig])
             whole = self._summary(rig, *values)
             per_sensor = {s.name: self._sensor(s, rig, whole.entropy, progress) for s in rig}
-            return replace(whole, per_sensor=per_sensor, scatter=self._scatter(*values))
+            assert whole.scatter is not None
+            by_figure = whole.scatter.residuals | self._class_residuals(*values)
+            scatter = Scatter(self._digest, by_figure)
+            return replace(whole, per_sensor=per_sensor, scatter=scatter)
 
     def _entropy_of(self, rig: Rig, measured: Mapping[str, NDArray]) -> float:
         fused = fused_early(rig, measured, [s.name for s in rig])
@@ -122,17 +159,19 @@ class SampledScorer:
 
     def _summary(self, rig: Rig, entropies: Floats, visible: NDArray[np.bool_]) -> Score:
         entropy, coverage = self._whole(entropies, visible)
+        measures = {"entropy": entropies, "coverage": visible.astype(float)}
         return Score(
             entropy,
             coverage,
             self._standard_error(entropies, len(rig.groups)),
-            self._classes(entropies, visible),
-            {
+            per_class=self._classes(entropies, visible),
+            per_zone={
                 name: PartScore(*self._whole(entropies.take(inside), visible.take(inside)), share)
                 for name, (inside, share) in self._zones.items()
             },
-            {},
-            len(self._sample.index),
+            per_sensor={},
+            voxels=len(self._sample.index),
+            scatter=Scatter(self._digest, self._bins.residuals(measures)),
         )
 
     def _whole(self, entropies: Floats, visible: NDArray[np.bool_]) -> tuple[float, float]:
@@ -149,22 +188,17 @@ class SampledScorer:
                 per_class[name] = PartScore(rounded(h), rounded(c), rounded(mass / len(likely)))
         return per_class
 
-    def _scatter(self, entropies: Floats, visible: NDArray[np.bool_]) -> Scatter:
-        """Return the residuals of entropy and coverage: of the rig, of zones and classes."""
-        by_figure: dict[FigureKey, tuple[float, ...]] = {}
-        everywhere = np.arange(len(entropies))
-        zones = {name: inside for name, (inside, _) in self._zones.items()}
+    def _class_residuals(
+        self, entropies: Floats, visible: NDArray[np.bool_]
+    ) -> dict[FigureKey, tuple[float, ...]]:
+        """Return the residuals of entropy and coverage of each class."""
         by_class = dict(zip(self._sample.names, self._sample.classes.T, strict=True))
-        for measure, values in (("entropy", entropies), ("coverage", visible.astype(float))):
-            for name, inside in {"": everywhere, **zones}.items():
-                batch = self._sample.run[inside]
-                group = "zone" if name else "rig"
-                by_figure[group, name, measure] = residuals(values[inside], None, batch, BLOCKS)
-            for name, likely in by_class.items():
-                if likely.any():
-                    by_batch = residuals(values, likely, self._sample.run, BLOCKS)
-                    by_figure["class", name, measure] = by_batch
-        return Scatter(self._digest, by_figure)
+        return {
+            ("class", name, measure): residuals(values, likely, self._sample.run, BLOCKS)
+            for measure, values in (("entropy", entropies), ("coverage", visible.astype(float)))
+            for name, likely in by_class.items()
+            if likely.any()
+        }
 
     def _sensor(
         self, sensor: Sensor, rig: Rig, entropy: float, progress: ScoreProgress

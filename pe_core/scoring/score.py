@@ -9,7 +9,7 @@ same sample are subtracted by batch (paired); on different samples, their square
 import hashlib
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
@@ -36,6 +36,8 @@ ZONES = ("front", "rear", "left", "right", "near", "mid", "far")
 """Half planes before, behind, left and right of the vehicle's centre, and rings round it: nearer
 than NEAR_M, farther than FAR_M, and between."""
 BY_DISTANCE = ZONES[4:]
+SURE = 2.0
+"""A difference up to so many of its standard errors is noise."""
 Watch = Callable[[float], bool]
 """Called repeatedly with the completed share of a score, 0 to 1; returns whether to continue."""
 
@@ -155,12 +157,24 @@ class TrafficAp:
     `scenes`: Number of scenes of the sample.
     `rings`: AP and standard error by "near", "mid" and "far" (`ZONES`); a ring without objects is
         left out.
+    `scatter`: Residuals of these by batch, for the error of a difference.
     """
 
     ap: float
     stderr: float
     scenes: int
     rings: Mapping[str, tuple[float, float]]
+    scatter: Scatter | None = field(default=None, compare=False, repr=False)
+
+    def error_from(self, other: "TrafficAp", ring: str = "") -> float:
+        """Return the standard error of the difference from another rig's AP, of a ring or of all:
+        paired where both are of the same scenes, else as of independent ones."""
+        key = ("zone", ring, "ap") if ring else ("rig", "", "ap")
+        paired = paired_error(self.scatter, other.scatter, key)
+        if paired is not None:
+            return paired
+        own = [each.rings[ring][1] if ring else each.stderr for each in (self, other)]
+        return math.hypot(*own)
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,16 @@ from .domains import (
 )
 from .goals import Front, Goals, Start, Stop
 from .journal import EvaluatedRig, Journal
-from .key_figures import KEPT, KEY_FIGURES, FigureOfMerit, KeyFigures, Reading, Wanted, dashboard
+from .key_figures import (
+    ENTROPY,
+    KEPT,
+    KEY_FIGURES,
+    FigureOfMerit,
+    KeyFigures,
+    Reading,
+    Wanted,
+    dashboard,
+)
 from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_method
 from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .optimize import Step, optimize

@@ -107,7 +107,20 @@ class KeyFigures:
         data["reach"] = {name: list(found) for name, found in self.reach.items()}
         if self.traffic is not None:
             data["traffic"]["rings"] = {n: list(ap) for n, ap in self.traffic.rings.items()}
+            del data["traffic"]["scatter"]
         return data
+
+    def errors_from(self, other: KeyFigures) -> dict[str, float]:
+        """Return the standard errors of the differences from another rig's figures, by the names of
+        `KEY_FIGURES`; figures without a scatter are left out."""
+        if self.traffic is None or other.traffic is None:
+            return {}
+        common = self.traffic.rings.keys() & other.traffic.rings.keys()
+        return {
+            key: self.traffic.error_from(other.traffic, ring)
+            for key, ring in AP_RINGS.items()
+            if not ring or ring in common
+        }
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> KeyFigures:
@@ -191,6 +204,8 @@ def _whole(found: TrafficAp | None) -> Sequence[float]:
     return [] if found is None else [found.ap]
 
 
+AP_RINGS = {"ap_near": "near", "ap_mid": "mid", "ap_far": "far", "traffic_ap": ""}
+"""Key figures that are expected AP in traffic, and their rings; empty: all distances."""
 _Ap = partial(
     FigureOfMerit, part="traffic", higher=True, cost=lambda ap: 1.0 - ap, rule=Number(0.0, cap=1.0)
 )

@@ -26,7 +26,7 @@ from ..scene.data_sheet import DataSheet
 from ..scene.rig import Rig, Sensor, SensorModel
 from ..scoring.requirements import Criterion, Requirement, RequirementChecker, Zone, checkable
 from ..scoring.sampling import SEARCHED
-from ..scoring.score import RigEvaluator, ScoreStopped
+from ..scoring.score import SURE, RigEvaluator, ScoreStopped, standard_error
 from ..scoring.sight import Sight, shown_end
 from ..scoring.sight.blind_ground import BLIND_TO_M
 from ..search import MountingPlaces, Parametrization
@@ -68,7 +68,8 @@ class Effect(NamedTuple):
 class Suggestion:
     """The nearest placement found that meets a requirement, or one more sensor that does. Sensors
     in `moved` are elsewhere, or are new if `added`; requirements in `breaks` were met and no longer
-    are. `before` and `after` are figures of both rigs, `start` is the rig before."""
+    are. `before` and `after` are figures of both rigs, `start` is the rig before. `stderr` is the
+    standard error of the change of entropy [nats]."""
 
     rig: Rig
     moved: tuple[str, ...]
@@ -77,6 +78,7 @@ class Suggestion:
     before: Effect
     after: Effect
     added: bool = False
+    stderr: float = 0.0
 
     @property
     def text(self) -> str:
@@ -100,7 +102,9 @@ class Suggestion:
         if was is not None and now is not None:
             gains.append(f"blind ground {shown_end(was):.1f} to {shown_end(now):.1f} m2")
         by = self.after.entropy - self.before.entropy
-        gains.append(f"entropy {abs(by):.3f} nats {'lower' if by < 0.0 else 'higher'}")
+        way = "lower" if by < 0.0 else "higher"
+        is_clear = abs(by) > SURE * self.stderr
+        gains.append(f"entropy {abs(by):.3f} nats {way}" if is_clear else "entropy unchanged")
         broken = f"; breaks {', '.join(self.breaks)}" if self.breaks else ""
         return f"{done}: {', '.join(gains)}{broken}"
 
@@ -129,6 +133,7 @@ class Suggestion:
             "breaks": list(self.breaks),
             "before": self.before._asdict(),
             "after": self.after._asdict(),
+            "stderr": self.stderr,
             "text": self.sentence,
         }
 
@@ -268,8 +273,17 @@ class _Mender:
         after = self._held.shortfalls(rig)
         rows = zip(self._study.requirements, self._before, after, strict=True)
         breaks = tuple(each.name for each, was, off in rows if off and not was)
-        effects = self._before_figures, self._effect(rig)
-        return Suggestion(rig, tuple(moved), breaks, self._study.rig, *effects, added)
+        was, now = self._evaluator.residuals([self._study.rig, rig])
+        return Suggestion(
+            rig,
+            tuple(moved),
+            breaks,
+            start=self._study.rig,
+            before=self._before_figures,
+            after=self._effect(rig),
+            added=added,
+            stderr=standard_error(now - was),
+        )
 
     @cached_property
     def _searching(self) -> RigEvaluator:

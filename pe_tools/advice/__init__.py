@@ -13,7 +13,7 @@ from .location import AskedPlace, SensorAtPlace, ask_place
 from .mount_checks import check_mirror_image, occluded_shares
 from .ranking import costs_nothing, disagreement, gain_sentence, ranking, search_cost
 from .score_comparison import MEASURES, OTHER_HARDWARE, TRAFFIC, ComparedRow, compare
-from .score_comparison import compare_figures, hardware_note
+from .score_comparison import compare_figures, difference_error, hardware_note
 from .summary import WHERE, Outlook, class_of, lone_reach, object_words, objects_looked_at, outlook
 from .summary import rig_words
 from .warnings import condition_warnings, curve_note, curve_warnings, hidden_sensors, hidden_words

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from pe_core.scoring.score import SURE
 from pe_core.search.key_figures import Reading
 from pe_core.study.suggestion import Suggestion
 
@@ -64,7 +65,6 @@ class Advice:
 
 FRAGILE_NATS = 0.05
 """A rise of the mean entropy up to this [nats] is within the uncertainty of voxels and mounting."""
-SURE = 2.0  # A rise of at most this many standard errors is not significant
 
 
 def fragile(

@@ -1,15 +1,24 @@
 """Several rigs in sentences: which is better, and what a search cost."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from pe_core.scene.rig import Rig
-from pe_core.scoring.score import Score
+from pe_core.scoring.score import SURE, Score
 from pe_core.search.key_figures import KEY_FIGURES, KeyFigures
 
 from ..wording import joined, metres, percent
 from .location import WAYS
-from .score_comparison import AP, COVERAGE, ENTROPY, MEASURES, SECTOR, TRAFFIC, ComparedRow
+from .score_comparison import (
+    AP,
+    COVERAGE,
+    ENTROPY,
+    MEASURES,
+    SECTOR,
+    TRAFFIC,
+    ComparedRow,
+    difference_error,
+)
 from .summary import WHERE
 
 ZONES_NAMED = 2
@@ -87,45 +96,68 @@ def moved_words(before: Rig, after: Rig) -> str:
 
 def gain_sentence(before: Rig, after: Rig, start: KeyFigures, result: KeyFigures) -> str:
     """Return the move from a rig to another, its gain and its error, in one sentence. The gain is
-    that of the expected AP in traffic by distance. The error is the largest standard error of
-    these, so that of a difference is smaller. Empty without a move or such an AP."""
+    that of the expected AP in traffic by distance. The error is the largest standard error of the
+    differences. Empty without a move or such an AP."""
     if start.traffic is None or result.traffic is None or before == after:
         return ""
     first, last = start.traffic.rings, result.traffic.rings
     rings = [f"{name} {first[name][0]:.2f} to {ap:.2f}" for name, (ap, _) in last.items()]
-    error = max(each for _, each in last.values())
+    error = max(result.traffic.error_from(start.traffic, name) for name in last)
     told = f"expected AP in traffic {', '.join(rings)} (+- {math.ceil(100.0 * error) / 100.0:.2f})"
     return f"{moved_words(before, after)}: {told}"
 
 
 def search_cost(before: Score, after: Score, start: KeyFigures, result: KeyFigures) -> str:
     """Return one sentence on what a search made worse, or that nothing is. `start` and `result` are
-    the key figures of the rigs with the scores `before` and `after`."""
-    losses = []
+    the key figures of the rigs with the scores `before` and `after`. A difference within two of its
+    standard errors is noise, and is not named."""
+    losses = [*_figure_losses(start, result), *_score_losses(before, after)]
+    losses += _zone_losses(before, after)
+    if losses:
+        return f"It cost {joined(losses)}"
+    return f"{NOTHING}: key figures, coverage and all zones are no worse beyond their errors"
+
+
+def _figure_losses(start: KeyFigures, result: KeyFigures) -> Iterator[str]:
+    errors = result.errors_from(start)
     for row in KEY_FIGURES.values():
         first, last = row.value(start), row.value(result)
-        if first is not None and last is not None and row.cost_of(last) > row.cost_of(first):
-            texts = row.text(first), row.text(last)
-            losses += [f"{row.name} ({' to '.join(texts)})"] * (texts[0] != texts[1])
-    if before.coverage - after.coverage >= MEASURES[COVERAGE].least:
-        losses.append(f"coverage ({percent(before.coverage, 1)} to {percent(after.coverage, 1)})")
+        if first is None or last is None or row.cost_of(last) <= row.cost_of(first):
+            continue
+        texts = row.text(first), row.text(last)
+        if texts[0] != texts[1] and abs(last - first) > SURE * errors.get(row.key, 0.0):
+            yield f"{row.name} ({texts[0]} to {texts[1]})"
+
+
+def _score_losses(before: Score, after: Score) -> Iterator[str]:
+    def is_worse(measure: str, by: float) -> bool:
+        error = difference_error(before, after, ("rig", "", measure))
+        return by >= MEASURES[measure].least and by > SURE * error
+
+    if is_worse(COVERAGE, before.coverage - after.coverage):
+        yield f"coverage ({percent(before.coverage, 1)} to {percent(after.coverage, 1)})"
     if before.objects is not None and after.objects is not None:
-        if before.objects.ap - after.objects.ap >= MEASURES[AP].least:
-            losses.append(f"expected AP ({before.objects.ap:.3f} to {after.objects.ap:.3f})")
-    elif after.entropy - before.entropy >= MEASURES[ENTROPY].least:
-        losses.append(f"entropy ({before.entropy:.3f} to {after.entropy:.3f} nats)")
+        if is_worse(AP, before.objects.ap - after.objects.ap):
+            yield f"expected AP ({before.objects.ap:.3f} to {after.objects.ap:.3f})"
+    elif is_worse(ENTROPY, after.entropy - before.entropy):
+        yield f"entropy ({before.entropy:.3f} to {after.entropy:.3f} nats)"
+
+
+def _zone_losses(before: Score, after: Score) -> Iterator[str]:
+    """Yield the zones whose entropy rose most."""
     rises = {
         name: after.per_zone[name].entropy - zone.entropy
         for name, zone in before.per_zone.items()
         if name in after.per_zone
     }
-    worse = [name for name, rise in rises.items() if rise >= MEASURES[ENTROPY].least]
+    worse = []
+    for name, rise in rises.items():
+        error = difference_error(before, after, ("zone", name, ENTROPY))
+        if rise >= MEASURES[ENTROPY].least and rise > SURE * error:
+            worse.append(name)
     for name in sorted(worse, key=lambda name: -rises[name])[:ZONES_NAMED]:
         first, last = before.per_zone[name].entropy, after.per_zone[name].entropy
-        losses.append(f"sight {WHERE.get(name, name)} ({first:.3f} to {last:.3f} nats)")
-    if losses:
-        return f"It cost {joined(losses)}"
-    return f"{NOTHING}: key figures, coverage and all zones are no worse"
+        yield f"entropy {WHERE.get(name, name)} ({first:.3f} to {last:.3f} nats)"
 
 
 def costs_nothing(cost: str) -> bool:

@@ -56,6 +56,11 @@ def difference_errors(scores: Sequence[Score], figure: FigureKey) -> tuple[tuple
     return tuple(map(tuple, found))
 
 
+def difference_error(one: Score, other: Score, figure: FigureKey) -> float:
+    """Return the standard error of the difference of a figure between two scores."""
+    return difference_errors([one, other], figure)[0][1]
+
+
 def _error(score: Score, figure: FigureKey) -> float:
     """Return the standard error of a figure of one score."""
     if not score.stderr or figure[2] == "reach":
@@ -236,8 +241,8 @@ def compare(scores: Mapping[str, Score]) -> tuple[ComparedRow, ...]:
 
 def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...]:
     """Compare key figures: expected AP in traffic, blind sectors, blind ground, and reach ahead.
-    Differences refer to the first. The error of a difference of AP is that of independent samples,
-    which is too large: rigs share the scenes."""
+    Differences refer to the first. The error of a difference of AP is paired where rigs share the
+    scenes, and that of independent samples where they do not."""
     columns = list(figures.values())
     if not columns:
         return ()
@@ -272,8 +277,14 @@ def _traffic_rows(found: Sequence[TrafficAp | None]) -> Iterator[ComparedRow]:
     for name, cells in {"": of_rigs, **by_ring}.items():
         if any(cell is not None for cell in cells):
             values = tuple(None if cell is None else cell[0] for cell in cells)
-            own = [0.0 if cell is None else cell[1] for cell in cells]
-            errors = tuple(tuple(math.hypot(a, b) for b in own) for a in own)
+            has_ring = [
+                None if each is None or cell is None else each
+                for each, cell in zip(found, cells, strict=True)
+            ]
+            errors = tuple(
+                tuple(0.0 if a is None or b is None else a.error_from(b, name) for b in has_ring)
+                for a in has_ring
+            )
             yield ComparedRow(TRAFFIC, name, AP, values, errors, sure_factor(len(found)))
 
 

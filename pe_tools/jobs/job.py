@@ -18,7 +18,7 @@ from pe_core.scoring.requirements import CheckStep, RequirementChecker, Verdict
 from pe_core.scoring.sampling import CENTERED, SEARCHED, Shift
 from pe_core.scoring.score import ObjectScore, Score, ScoreStopped
 from pe_core.search import EvaluatedRig, KeyFigures, Reading, Robustness, dashboard
-from pe_core.search.key_figures import REQUIREMENTS
+from pe_core.search.key_figures import ENTROPY, REQUIREMENTS
 from pe_core.study.condition_table import (
     ConditionTable,
     condition_table,
@@ -28,7 +28,7 @@ from pe_core.study.condition_table import (
 from pe_core.study.requirement_search import is_infeasible
 from pe_core.study.study import Study
 
-from ..advice import Advice, curve_warnings, gain_sentence, search_cost, warnings
+from ..advice import Advice, curve_warnings, difference_error, gain_sentence, search_cost, warnings
 from ..sensitivity import Sensitivity
 from .searched_figure import IN_NATS, SearchedFigure
 
@@ -167,6 +167,16 @@ class Outcome(Tabular):
             ]
             for row in study.rig._rows()
         ]
+
+    @property
+    def change_errors(self) -> dict[str, float]:
+        """Standard errors of what a search changed, by the names of `KEY_FIGURES`; figures that
+        have none are left out."""
+        of_entropy = difference_error(self.before, self.after, ("rig", "", ENTROPY))
+        errors = {ENTROPY: of_entropy}
+        if self.figures is not None:
+            errors |= self.figures[1].errors_from(self.figures[0])
+        return errors
 
     @property
     def gain(self) -> str:

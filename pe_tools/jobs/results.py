@@ -85,7 +85,9 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
         data["figures"] = {"before": first, "after": last}
     data["dashboard"] = [each.to_dict() for each in outcome.dashboard]
     if is_search:
-        data["gain"], data["cost"] = outcome.gain, outcome.cost
+        data["gain"] = outcome.gain
+        data["cost"] = outcome.cost
+        data["change_stderr"] = outcome.change_errors
     data["ap_model"], data["returns"] = study.model.model, study.returns
     if is_search:
         found = outcome.sensitivity

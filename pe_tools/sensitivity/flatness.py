@@ -14,6 +14,7 @@ from pe_core.base.arrays import Floats
 from pe_core.base.values import rounded
 from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig
+from pe_core.scoring.score import SURE
 from pe_core.search import (
     AXES,
     POSITION_AXES,
@@ -34,7 +35,6 @@ FLAT, STEEP = "flat", "steep"
 STEEP_NATS, STEEP_AP = 0.01, 0.001
 """From this cost of one step on, an axis is called steep [nats; expected AP]."""
 NOTICED = 0.1  # A smaller difference says nothing, in costs of a steep axis
-SURE = 2.0  # So many standard errors of a difference are more than noise
 SLACK = 1e-6  # A value this far outside of its bounds is rounding [m or rad]
 ON_SURFACE_M = 0.1 * UNIT_M  # A step along a surface ends this near to the surface at most
 CLEARANCE = "standoff of "

@@ -12,11 +12,12 @@ from typing import Any
 
 from pe_core.base.values import degrees_in_file, rounded
 from pe_core.scene.rig import Rig
+from pe_core.scoring.score import SURE
 from pe_core.search import Parametrization
 from pe_core.search.search_space import SearchSpace
 from pe_core.study.requirement_search import is_infeasible
 
-from .flatness import NOTICED, SURE, StepCosts
+from .flatness import NOTICED, StepCosts
 
 APART_M, APART_RAD = 0.15, math.radians(6.0)
 """Placements are in one neighbourhood if no sensor is farther away or turned more than this."""

@@ -165,6 +165,7 @@ def test_a_change_while_a_job_runs_leaves_its_result_stale(car, row, change):
     moving.location.x += 0.5
     moving.keyframe_insert("location", frame=20)
     car.frame_set(1)
+    car.objects["roof"].location.z = 1.5  # under what the roof hides: a search finds better ones
     finished_after(car, row, lambda: CHANGES[change](car))
     # What the search has placed stands where it put it, wherever it was meanwhile.
     assert car.perception_entropy.result_stale == (row is jobs.SCORE)

@@ -11,6 +11,7 @@ from blender_addon import engine_calls
 from blender_addon.engine import pe
 from blender_addon.operators import placement, surface_pose
 from blender_addon.sensor_kinds import mount_for
+from pe_core.scoring import paired_error
 from tests.addon import scenes
 
 
@@ -75,11 +76,12 @@ def test_its_preview_is_the_score_with_it_beside_that_without(bare):
     scenes.add_sensor("front", model="Camera 60 deg", location=(0.65, 0.0, 1.55))
     study = scenes.study()
     evaluator = study.evaluator(samples=engine_calls.HELD_SAMPLES)
-    before = evaluator.entropy(pe.Rig([study.rig["roof"]]))
+    alone = evaluator.score(pe.Rig([study.rig["roof"]]))
     after = evaluator.score(study.rig)
+    error = paired_error(alone.scatter, after.scatter, ("rig", "", "entropy"))
     gain = engine_calls.gain(1, study, "front", study.rig["front"].pose)
-    assert gain == (before, after.entropy, after.coverage)
-    assert gain.after < gain.before and f"({after.entropy - before:+.3f})" in str(gain)
+    assert gain == (alone.entropy, after.entropy, after.coverage, error)
+    assert gain.after < gain.before and f"({after.entropy - alone.entropy:+.3f})" in str(gain)
 
 
 def test_the_magnet_holds_the_centre_line_and_quarter_turns(bare):

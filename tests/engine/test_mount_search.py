@@ -28,8 +28,8 @@ position = [-0.429, 0.0, 1.534]
 mount = "roof"
 [optimize]
 method = "random"
-candidates = 3
-samples = 1024
+candidates = 12
+samples = 4096
 [[optimize.mount]]
 name = "roof"
 parts = ["roof"]
@@ -118,7 +118,7 @@ def sedan(tmp_path_factory):
     (folder / "sedan.npz").write_bytes((ROOT / "blend_assets" / "sedan.npz").read_bytes())
     (folder / "study.toml").write_text(SEDAN, "utf-8")
     out = folder / "out"
-    options = ["--no-review", "-o", str(out), "--samples", "1024", "--workers", "1"]
+    options = ["--no-review", "-o", str(out), "--samples", "4096", "--workers", "1"]
     with pytest.MonkeyPatch.context() as patch:
         draw_few(patch)
         assert main(["optimize", str(folder / "study.toml"), *options]) == 0

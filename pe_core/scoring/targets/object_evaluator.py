@@ -118,11 +118,8 @@ class ObjectEvaluator:
             progress.add(0.5)
             per_sensor = {s.name: self._sensor(s.name, rig, m, summary.entropy) for s in rig}
             progress.add(0.2)
-            objects, scatter = (
-                self._object_score(rig, m, entropies),
-                self._sums.scatter(entropies, visible),
-            )
-            return replace(summary, per_sensor=per_sensor, objects=objects, scatter=scatter)
+            objects = self._object_score(rig, m, entropies)
+            return replace(summary, per_sensor=per_sensor, objects=objects)
 
     def _summary(self, rig: Rig, entropies: Floats, visible: NDArray[np.bool_]) -> Score:
         whole = self._sums.part(entropies, visible)
@@ -135,6 +132,7 @@ class ObjectEvaluator:
             {},
             0,
             ap=self._sums.expected_ap(entropies),
+            scatter=self._sums.scatter(entropies, visible),
         )
 
     def _value(self, rig: Rig, m: MByName) -> float:

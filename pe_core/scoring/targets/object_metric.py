@@ -181,8 +181,20 @@ class ObjectSums:
             for name, mask in self._zones.items()
             if name in BY_DISTANCE
         }
-        whole = rounded(self._mean(ap, None)), self._scatter(ap, None)
-        return TrafficAp(*whole, self._drawn.scenes, rings)
+        batch, batches = self._batches
+        parts = {("rig", ""): np.ones(len(ap), bool)}
+        parts |= {("zone", name): self._zones[name] for name in rings}
+        by_figure: dict[FigureKey, tuple[float, ...]] = {
+            (*part, "ap"): residuals(ap, self._weights * mask, batch, batches)
+            for part, mask in parts.items()
+        }
+        return TrafficAp(
+            rounded(self._mean(ap, None)),
+            self._scatter(ap, None),
+            self._drawn.scenes,
+            rings,
+            Scatter(self._digest, by_figure),
+        )
 
     @cached_property
     def _batches(self) -> tuple[Ints, int]:

@@ -6,6 +6,7 @@ this session: a file keeps the figures.
 """
 
 import json
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import bpy
@@ -79,13 +80,27 @@ def run_checks() -> None:
         if name in bpy.data.scenes:
             line, warnings = found
             settings = bpy.data.scenes[name].perception_entropy
-            bridge.store_warnings(settings, (*own, *warnings))
+            found_now = (*own, *warnings)
+            kept = warnings_of_result(settings, found_now)
+            bridge.store_warnings(settings, (*found_now, *kept))
             _vehicle_lines[name] = line
             signals.view_changed.emit()
 
     given = sensors, vehicle, space
     engine_process.ask(WARNINGS, analysis_calls.warnings, given, deliver, lambda _: None)
     _explain_stored(scene, depsgraph)
+
+
+def warnings_of_result(
+    settings: bpy.types.PropertyGroup, checked: Sequence[advice.Advice]
+) -> list[advice.Advice]:
+    """Return the warnings of the stored result that no check of the scene computes, as what a
+    search could not keep: they stay as long as the result is that of the scene."""
+    if not settings.has_result or settings.result_stale:
+        return []
+    known = {(each.subject, each.code, each.part) for each in checked}
+    stored = settings.result.warnings
+    return [each for each in stored if (each.subject, each.code, each.part) not in known]
 
 
 def _explain_stored(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:

@@ -85,7 +85,7 @@ class Gain(NamedTuple):
 
     def __str__(self) -> str:
         """Return the gain as one line of text."""
-        seen = f"coverage {self.coverage:.1%}"
+        seen = f"coverage {self.coverage:.1%}, {HELD_SAMPLES:,} voxels"
         if self.before is None:
             return f"{self.after:.3f} nats, {seen}"
         change = self.after - self.before

@@ -78,13 +78,16 @@ def error_of_change(now: pe.Score, before: pe.Score | None, measure: str) -> flo
 
 def state_of(shown: ShownScore) -> str:
     """Return a score's error, and what it is of: the scene now, one that moves, a stored result."""
-    state = "as scored" if shown.stored else "exact" if shown.exact else "moving"
+    state = "as scored" if shown.stored else "at rest" if shown.exact else "moving"
     if shown.state:
         state += f", state {shown.state}"
     if shown.view_outdated:
         state += ", beams and maps follow"
     whole = shown.stored and not shown.stderr
-    return f"on all voxels, {state}" if whole else f"± {advice.error_text(shown.stderr)}  {state}"
+    if whole:
+        return f"on all voxels, {state}"
+    sample = f" on {shown.voxels:,} voxels" if shown.voxels else ""
+    return f"± {advice.error_text(shown.stderr)}{sample}, {state}"
 
 
 def shortened(name: str) -> str:

@@ -127,7 +127,7 @@ class ShownScore(NamedTuple):
     `exact`: it is of the scene as it is now. `stored`: it is the stored result. `view_outdated`:
     beams and maps are still those of before the last move. `state` is the vehicle's; empty: as
     drawn. `before` is the entropy before the search whose result is stored, `change_error` the
-    standard error of the change from it [nats].
+    standard error of the change from it [nats]. `voxels`: How many were evaluated; 0: objects.
     """
 
     entropy: float
@@ -139,6 +139,7 @@ class ShownScore(NamedTuple):
     state: str = ""
     before: float | None = None
     change_error: float = 0.0
+    voxels: int = 0
 
 
 def shown_score(scene: bpy.types.Scene) -> ShownScore | None:
@@ -167,9 +168,10 @@ def shown_score(scene: bpy.types.Scene) -> ShownScore | None:
             stored=True,
             before=before,
             change_error=result.change_errors.get(search.ENTROPY, 0.0),
+            voxels=result.after["voxels"],
         )
     if score is None:
         return None
     summary = score.summary
     figures = summary.entropy, summary.coverage, summary.stderr
-    return ShownScore(*figures, exact, stored=False, state=other)
+    return ShownScore(*figures, exact, stored=False, state=other, voxels=summary.voxels)

@@ -10,7 +10,7 @@ from typing import Any, cast
 import bpy
 
 from .. import best_so_far, engine_process, signals, viewport
-from ..engine import jobs
+from ..engine import jobs, studies
 from ..language import draw_label, shown
 
 TOPIC = "job"
@@ -71,6 +71,8 @@ class RunningJob(jobs.WatchedJob):
         if self.progress.stage == "optimizing" and (curve := getattr(self.seen, "curve", ())):
             entropy = curve[-1][1]  # as the 3D view shows it, from all starts
         sampled = self.progress.stage == "optimizing" and self.job.study.search.samples
+        if studies.requirement_search.is_infeasible(entropy):
+            return f"{stage}, limits not met yet"
         if figure.higher_is_better:
             return f"{stage}, best AP {'≈ ' if sampled else ''}{figure.to_figure(entropy):.3f}"
         return f"{stage}, best {'≈ ' if sampled else ''}{entropy:.3f}"

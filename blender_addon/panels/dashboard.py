@@ -32,7 +32,8 @@ def draw_dashboard(layout: UILayout, context: Context) -> None:
     column.active = live is not None or not settings.result_stale
     head, wanted = columns(column, 0.66)
     if live is not None:
-        draw_label(head, "Live" if live.exact else "Live: moving", "REC")
+        sample = f"Live: {live.voxels:,} voxels" if live.voxels else "Live"
+        draw_label(head, sample if live.exact else "Live: moving", "REC")
     elif result is None:
         draw_label(head, "Not scored yet", "BLANK1")
     elif settings.result_stale:

@@ -259,8 +259,8 @@ class FrontJob(Job):
         yield from self._steps(job.look(), "looking at designs", done, 0.0)
         if not job.history:
             return []
-        value, by_ap = job.history[-1].entropy, is_by_ap(study)
-        figures = {AP: -value} if by_ap else {ENTROPY: value}
+        value = job.reported_value(job.best.rig)
+        figures = {AP: -value} if is_by_ap(study) else {ENTROPY: value}
         return [self._design(picks, study.with_rig(job.best.rig), figures)]
 
     def _search_once(

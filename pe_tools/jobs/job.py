@@ -224,6 +224,9 @@ class Progress:
         Rigs evaluated so far.
     figure : SearchedFigure
         How people read that value.
+    sample : str
+        What it was evaluated on: "65,536 voxels". On another sample the same placement has another
+        value, so the best so far may rise with the sample.
     """
 
     stage: str
@@ -231,11 +234,15 @@ class Progress:
     entropy: float | None = None
     evaluations: int = 0
     figure: SearchedFigure = IN_NATS
+    sample: str = ""
 
     @property
     def value_text(self) -> str:
-        """The best so far: "entropy 1.2345"; empty before the first."""
-        return "" if self.entropy is None else self.figure.text(self.entropy)
+        """The best so far: "entropy 1.2345 on 65,536 voxels"; empty before the first."""
+        if self.entropy is None:
+            return ""
+        is_value = self.sample and not is_infeasible(self.entropy)
+        return self.figure.text(self.entropy) + (f" on {self.sample}" if is_value else "")
 
 
 ProgressSteps = Generator[Progress, None, T | None]

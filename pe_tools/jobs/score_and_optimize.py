@@ -31,7 +31,7 @@ from ..advice import Advice, condition_warnings, fragile, not_kept, unmet
 from ..sensitivity import Archive, analyse
 from .candidate_workers import ExecutorSource, candidate_workers
 from .job import HistoryRow, Job, Outcome, Progress, ProgressSteps, StartEnd, begun, best_so_far
-from .searched_figure import IN_AP, searched_figure, searched_samples
+from .searched_figure import IN_AP, level_sizes, searched_figure, searched_on, searched_samples
 from .stopping import TARGET, StopWatch, seed_scatter
 
 
@@ -153,6 +153,12 @@ class OptimizeJob(Job):
         return [study_objective(self.study, each, n, self.workers) for each, n in levels.items()]
 
     @cached_property
+    def _samples(self) -> list[str]:
+        """What each level of the search evaluates on: "65,536 voxels"."""
+        _, unit = searched_on(self.study)
+        return [f"{size} {unit}" for size in level_sizes(self.study)]
+
+    @cached_property
     def _held_out(self) -> list[Objective]:
         """What the search minimises, on samples that it does not use: two, each of half the voxels,
         so that their difference tells the error; or all voxels."""
@@ -167,7 +173,7 @@ class OptimizeJob(Job):
             for shift in HELD_OUT
         ]
 
-    def _reported(self, rig: Rig) -> float:
+    def reported_value(self, rig: Rig) -> float:
         """Return the value of a placement as it is reported: on samples that no search uses; of one
         that breaks a constraint, its violation."""
         if is_infeasible(value := self._objectives[-1].entropy(rig)):
@@ -334,7 +340,7 @@ class OptimizeJob(Job):
                 end = self.history[-1].rig
                 levels = self._objectives if self.stopped else objectives  # resumed: known first
                 ended.append((levels[-1].entropy(end), self.history))
-                self.ends.append(StartEnd(name, self._reported(end), self.evaluations))
+                self.ends.append(StartEnd(name, self.reported_value(end), self.evaluations))
                 self.history = self._ended = min(ended, key=lambda each: each[0])[1]
 
     def _candidate_workers(self) -> AbstractContextManager[ExecutorSource]:
@@ -369,9 +375,13 @@ class OptimizeJob(Job):
 
     def _note(self, step: Step) -> None:
         self.evaluations, self.round, self.descents = step.evaluations, step.round, step.ends
-        figure = searched_figure(self.study)
         self._progress = Progress(
-            "optimizing", step.fraction, step.entropy, step.evaluations, figure
+            "optimizing",
+            step.fraction,
+            step.entropy,
+            step.evaluations,
+            figure=searched_figure(self.study),
+            sample=self._samples[step.level],
         )
         if step.improved or not self.history:
             row = HistoryRow(step.evaluations, step.round, step.entropy, step.best)

@@ -57,11 +57,16 @@ def searched_samples(study: Study, samples: int) -> int:
 
 def searched_on(study: Study) -> tuple[str, str]:
     """Return on what a study's search evaluates: "16,384, then 65,536" and "voxels"."""
+    unit = "scenes of objects" if searched_study(study).targets.are_objects else "voxels"
+    return ", then ".join(dict.fromkeys(level_sizes(study))), unit
+
+
+def level_sizes(study: Study) -> list[str]:
+    """Return how many voxels or scenes each level of a study's search has: "16,384", "all"."""
     searched = searched_study(study)
     few = [searched_samples(study, samples) for samples in study.level_samples]
     looks = [searched.looks_at(samples) for samples in few]
-    levels = ", then ".join(dict.fromkeys(f"{n:,}" if n else "all" for n in looks))
-    return levels, "scenes of objects" if searched.targets.are_objects else "voxels"
+    return [f"{n:,}" if n else "all" for n in looks]
 
 
 def searched_figure(study: Study) -> SearchedFigure:

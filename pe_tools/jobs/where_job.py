@@ -66,8 +66,8 @@ def _met(study: Study, _samples: int, _shift: Shift) -> Objective:
 class PlaceFigure:
     """A figure by which places are compared. `objective` returns what is minimised, of a study, a
     number of voxels and their shift; the figure is `sign` times its value. `places` is how many are
-    scored in about 20 s. `exact` is whether it does not depend on the voxels; `shown` rounds it to
-    the safe side."""
+    scored in about 20 s. `exact` is whether it does not depend on a sample, `of_voxels` whether
+    that sample is one of voxels; `shown` rounds it to the safe side."""
 
     key: str
     label: str
@@ -77,6 +77,7 @@ class PlaceFigure:
     places: int
     sign: float = 1.0
     exact: bool = False
+    of_voxels: bool = False
     shown: Callable[[float], float] = float
 
     def text(self, value: float) -> str:
@@ -91,7 +92,7 @@ class PlaceFigure:
 PLACE_FIGURES = {
     row.key: row
     for row in (
-        PlaceFigure("entropy", "Entropy", "nats", 3, _by_entropy, places=2000),
+        PlaceFigure("entropy", "Entropy", "nats", 3, _by_entropy, places=2000, of_voxels=True),
         PlaceFigure("ap", "Expected AP in traffic", "", 3, _by_ap, places=600, sign=-1.0),
         PlaceFigure(
             "blind",
@@ -152,7 +153,8 @@ class PlaceMap:
         """Return the figure of a place, with its change and how sure that is."""
         sure = f" ± {self.row.text(self.error)}" if self.error else ""
         change = self.row.change(value - self.base)
-        return f"{self.row.label} {self.row.text(value)} ({change}{sure})"
+        sample = f", on {SAMPLES:,} voxels" if self.row.of_voxels else ""
+        return f"{self.row.label} {self.row.text(value)} ({change}{sure}{sample})"
 
     def rows(self) -> list[dict[str, Any]]:
         """Return the places as flat tables."""

@@ -143,7 +143,7 @@ class SampledScorer:
             whole = self._summary(rig, *values)
             per_sensor = {s.name: self._sensor(s, rig, whole.entropy, progress) for s in rig}
             assert whole.scatter is not None
-            by_figure = whole.scatter.residuals | self._class_residuals(*values)
+            by_figure = {**whole.scatter.residuals, **self._class_residuals(*values)}
             scatter = Scatter(self._digest, by_figure)
             return replace(whole, per_sensor=per_sensor, scatter=scatter)
 

@@ -248,8 +248,8 @@ class WhereJob(Job):
                 self._waiting = Progress("placing", len(self.places) / self.count)
                 yield self._waiting
             if not self.stopped:
-                work = begun(partial(self._error, objective))
-                self.error = yield from self._awaited(work, lambda: self._waiting)
+                last = begun(partial(self._error, objective))
+                self.error = yield from self._awaited(last, lambda: self._waiting)
         yield Progress("done", 1.0)
 
     def _scored(

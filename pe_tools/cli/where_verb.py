@@ -13,14 +13,12 @@ from pe_core.scene.rig import Sensor
 from pe_core.sensors import kind_of
 from pe_core.study import Study
 
-from ..jobs import PLACE_FIGURES, PlaceMap, WhereJob
+from ..jobs import APART_M, BEST, PLACE_FIGURES, PlaceMap, WhereJob
 from ..wording import aligned
 from .command import add_curve_option, count_up_to, with_curves
 from .interrupts import Interrupted, stop_at_first
 from .run_job import drive, output_file, print_vehicle, save_text
 from .terminal import DONE, Answer
-
-BEST, APART_M = 5, 0.5  # How many places are named, and how far apart they are [m]
 
 
 def add_where_options(parser: argparse.ArgumentParser) -> None:
@@ -77,5 +75,6 @@ def place_lines(found: PlaceMap) -> list[str]:
     head = f"{found.sensor.model.name} at {free:,} of {len(found.places):,} places"
     lines = [f"{head}; without it {name} {row.text(found.base)}", *aligned(rows)]
     lines += [f"{plural(n, 'place')} forbidden: {why}" for why, n in found.reasons().items()]
-    sure = f"changes are within +- {row.text(found.error)}" if found.error else ""
-    return [*lines, *[f"{sure} of exact ones (root mean square)"] * bool(sure)]
+    if found.error:
+        lines.append(f"standard error of a change: {row.text(found.error)}, less at these places")
+    return lines

@@ -15,4 +15,4 @@ from .stopping import scatter_text, stop_text, sureness_lines
 from .study_export import export_study, fingerprint, study_text, study_writers
 from .trade_off import Design, TradeOff, design_study
 from .watched_job import JobRun, JobStep, WatchedJob
-from .where_job import PLACE_FIGURES, PlaceFigure, PlaceMap, WhereJob
+from .where_job import APART_M, BEST, PLACE_FIGURES, PlaceFigure, PlaceMap, WhereJob

@@ -27,8 +27,12 @@ from .job import Job, Progress, begun
 
 SAMPLES = 2048  # Voxels on which places are scored
 BATCH, COMPARED = 32, 8
-"""Places that are scored between two looks at the progress; and that are scored exactly, too, from
-the best to the worst: they tell the error."""
+"""Places that are scored between two looks at the progress; and that are scored on a larger sample,
+too, from the best to the worst: they tell the error."""
+BEST, APART_M = 5, 0.5
+"""How many places are named as the best, and how far apart they are at least. They fit the sample
+that they were chosen on: their changes are reported on the larger one."""
+CONFIRMED = 40  # Places that are scored on the larger sample at most, until the best ones are
 
 
 class _RigValue(NamedTuple):
@@ -115,9 +119,10 @@ class PlaceMap:
     sensors, and the placed one: its model and its name. `figure`: A key of `PLACE_FIGURES`.
     `mount`: name of the mount that is covered; empty for the body or parts of it. `count`: how many
     places there will be. `surface` (F, 3, 3): the surface that they cover [m]. `base`: the figure
-    without the sensor, on the same sample. `error`: standard error of a change on that sample, of
+    without the sensor. `error`: standard error of a change on that sample, of
     places from the best to the worst: by its batches, or by what a larger sample says where that is
-    more; None where it is not known yet, 0 where places are scored exactly."""
+    more; None where it is not known yet, 0 where places are scored exactly. Then `base` and the
+    best places have the values of the larger sample, that of the study's scores."""
 
     rig: Rig
     sensor: Sensor
@@ -210,6 +215,7 @@ class WhereJob(Job):
         self.places: list[SurfacePlace] = []
         self.base: float = 0.0
         self.error: float | None = None
+        self._moved_by = 0.0
         self.surface = np.empty((0, 3, 3))
         self._waiting = Progress("placing", 0.0)
 
@@ -274,12 +280,36 @@ class WhereJob(Job):
         errors = [standard_error(each - own) for each in by_place]
         samples = self.study.samples or DEFAULT_SEARCH_SAMPLES
         larger = row.objective(self.study, samples, CENTERED)
-        base = row.sign * larger.entropy(self.study.rig)
+        self._move_to(rounded(row.sign * larger.entropy(self.study.rig)))
         off = [
-            (place.value or 0.0) - self.base - (row.sign * larger.entropy(rig) - base)
+            (place.value or 0.0) + self._moved_by - row.sign * larger.entropy(rig)
             for place, rig in zip(compared, rigs, strict=True)
         ]
+        self._confirm_best(larger)
         return rounded(max(_root_mean_square(errors), _root_mean_square(off)))
+
+    def _move_to(self, base: float) -> None:
+        """Have the figure without the sensor on the larger sample, and move all values along: their
+        changes stay."""
+        self._moved_by = base - self.base
+        self.base = base
+        for at, place in enumerate(self.places):
+            if place.value is not None:
+                self.places[at] = replace(place, value=rounded(place.value + self._moved_by))
+
+    def _confirm_best(self, larger: Objective) -> None:
+        """Give the best places their values on the larger sample: until those that are best have
+        them, as a place may fall behind another."""
+        done = set[tuple[float, ...]]()
+        for _ in range(CONFIRMED):
+            best = () if self.found is None else self.found.best(BEST, APART_M)
+            place = next((each for each in best if each.point not in done), None)
+            if place is None:
+                return
+            done.add(place.point)
+            value = self.row.sign * larger.entropy(self._places.with_sensor(place.pose))
+            at = self.places.index(place)
+            self.places[at] = replace(place, value=rounded(value))
 
 
 def _root_mean_square(values: Sequence[float]) -> float:

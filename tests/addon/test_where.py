@@ -7,7 +7,6 @@ import numpy as np
 
 from blender_addon import panels, where_map
 from blender_addon.engine import catalog, jobs, pe
-from pe_core.scoring.sampling import SEARCHED
 from tests.addon import scenes
 from tests.addon.command_line import pe_here, run_here
 from tests.addon.layouts import Window, drawn
@@ -50,7 +49,7 @@ def test_a_click_puts_the_sensor_there_and_the_score_is_the_promised_one(car):
     assert added == bpy.context.active_object and added.perception_entropy.model == MODEL
     study = scenes.study()
     assert study.rig[added.name].pose == best.pose
-    assert study.evaluator(2048, shift=SEARCHED).entropy(study.rig) == best.value
+    assert study.evaluator().entropy(study.rig) == best.value
 
 
 def test_the_layer_colours_the_body_and_its_legend_has_units_and_reasons(car):

@@ -107,6 +107,11 @@ class FixedEnds:
         """(B,) beams that end before the maximum range."""
         return self.ends < self.max_range
 
+    @property
+    def max_occlusion(self) -> float:
+        """No `occludable` beam ends farther away [m]."""
+        return float(self.ends.max(where=self.occludable, initial=0.0))
+
     def take(self, beams: Ints) -> Floats:
         """Return the ends (N,) of the beams with these indices (N,) [m]."""
         return self.ends[beams]
@@ -115,6 +120,8 @@ class FixedEnds:
 class LazyEnds:
     """Ends of a mounted LiDAR's beams; a beam is cast when its end is requested first. `beams` are
     those of the sensor, at its orientation; `max_range` is as of `FixedEnds`."""
+
+    max_occlusion = np.inf  # not known before casting
 
     def __init__(self, sensor: Sensor, beams: RotatedBeams, vehicle: Vehicle) -> None:
         model = lidar_of(sensor)

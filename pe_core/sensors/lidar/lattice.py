@@ -17,6 +17,7 @@ from ...base.arrays import Floats, Ints
 from ...geometry.bins import count_up
 from .bracket import Bracket, SlopeBounds
 from .model import Lidar
+from .upright import SlopeCounts
 
 WINDOW_MARGIN = 1e-7  # Windows are widened by this against rounding [rad]
 CACHED_LATTICES = 16
@@ -52,7 +53,7 @@ class Lattice:
 
     `channels` (C,) are the model's channel numbers, lowest first; `elevations` and `offsets` (C,)
     theirs [rad]. A full circle has `count` azimuth steps of `step` [rad]; `position` (count,) is a
-    step's index among the `width` beams of a channel, -1 where the step has no beam. The bounds by
+    step's index among the `width` beams of a channel, -1 where the step has no beam. The tables by
     slope are those of regular LiDARs: a full circle, without azimuth offsets. `bands` hold the
     beams of a pattern without a lattice.
     """
@@ -65,6 +66,7 @@ class Lattice:
     position: Ints
     width: int
     slope_bounds: SlopeBounds | None
+    slope_counts: SlopeCounts | None
     bands: "BeamBands | None"
 
     @classmethod
@@ -84,6 +86,7 @@ class Lattice:
             position,
             len(lidar.azimuth_steps),
             SlopeBounds.of(lidar.elevations) if regular else None,
+            SlopeCounts.of(lidar.elevations, lidar.azimuth_count) if regular else None,
             BeamBands.of(lidar.directions) if lidar.azimuth_count == 1 else None,
         )
 

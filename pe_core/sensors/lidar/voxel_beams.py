@@ -1,11 +1,12 @@
 """Beams through single voxels, counted exactly.
 
 The beams of a voxel's window (`lattice`) are tested with the arithmetic of the definition, so the
-count equals the definition's to the last beam. For regular LiDARs `bracket` decides most voxels
-without any test. Voxels are first counted as if there were no vehicle; only those whose window
-holds a beam that the vehicle may occlude are counted again.
+count equals the definition's to the last beam. For regular LiDARs `upright` or `bracket` decides
+most voxels without any test. `bracket` counts voxels as if there were no vehicle first; only those
+whose window holds a beam that the vehicle may occlude are counted again.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -18,6 +19,7 @@ from ...geometry.bins import blocks
 from ...geometry.poses import rotate
 from .bracket import Bracket, bracket
 from .lattice import windows_of
+from .upright import Upright
 
 if TYPE_CHECKING:
     from .beams import BeamEnds, RotatedBeams
@@ -30,25 +32,35 @@ CUBE_RADIUS = 2.0
 
 
 class VoxelPoints:
-    """Voxels of a grid, by index (V, 3): `centers`, in sides."""
+    """Voxels of a grid, by index (V, 3): `centers` and lower `corners`, in sides."""
 
     def __init__(self, index: Ints) -> None:
         self.centers = index + 0.5
-        self._corners = [np.ascontiguousarray(c, dtype=np.float32) for c in index.T]
+        self.corners = [np.ascontiguousarray(c, dtype=np.float32) for c in index.T]
+        self._low = self.centers.min(axis=0, initial=0.0)
+        self._high = self.centers.max(axis=0, initial=0.0)
+
+    def __len__(self) -> int:
+        return len(self.centers)
+
+    def max_distance(self, position: Floats) -> float:
+        """Return an upper bound of the distance of any voxel's centre from a position."""
+        gaps = np.maximum(np.abs(self._low - position), np.abs(self._high - position))
+        return math.hypot(*gaps.tolist())
 
     def offsets(self, position: Floats, index: Ints | slice = slice(None)) -> Floats:
         """Return the centres (N, 3) of voxels, seen from a position (3,)."""
         return self.centers[index] - position
 
-    def offsets_float32(self, position: Floats) -> list[Singles]:
-        """Return the centres seen from a position in single precision, an array (V,) an axis.
+    def offsets_float32(self, position: Floats, index: Ints | slice = slice(None)) -> list[Singles]:
+        """Return the centres seen from a position in single precision, an array (N,) an axis.
         Centres are exact in single precision. The position's whole part is subtracted first, so
         that its fraction keeps its digits."""
         whole = np.floor(position)
         fraction = (position - whole).astype(np.float32)
         return [
-            (corner - np.float32(w - 0.5)) - f
-            for corner, w, f in zip(self._corners, whole, fraction, strict=True)
+            (corner[index] - np.float32(w - 0.5)) - f
+            for corner, w, f in zip(self.corners, whole, fraction, strict=True)
         ]
 
 
@@ -75,6 +87,11 @@ class PlacedLidar:
         return self.ends.max_range / self.side
 
     @property
+    def is_upright(self) -> bool:
+        """Whether it has no roll, no pitch, and tables of its channels by slope."""
+        return self.lattice.slope_counts is not None and self.ground_from_sensor[2, 2] == 1.0
+
+    @property
     def occludable(self) -> NDArray[np.bool_]:
         """(C, A) beams that the vehicle may occlude, lowest channel first."""
         return self.ends.occludable.reshape(-1, self.lattice.width)[self.lattice.channels]
@@ -85,24 +102,58 @@ def count_voxel_beams(
 ) -> NDArray[np.signedinteger]:
     """Count the beams (V,) through voxels that the vehicle does not occlude before. A count of
     `saturation_count` or more need not be exact: any number from this up to the count may be
-    returned. Of a regular LiDAR by bounds, and beam by beam where these differ."""
-    lattice = lidar.lattice
-    if lattice.slope_bounds is None:
+    returned."""
+    if lidar.lattice.slope_bounds is None:
         offsets = voxels.offsets(lidar.position)
         return count_pairs(offsets, lidar, *lidar.candidates(offsets))
-    points = voxels.offsets_float32(lidar.position)
+    if not (lidar.is_upright and len(voxels)):
+        return _count_bracketed(voxels, lidar, saturation_count, np.arange(len(voxels)))
+    counts, unsure = _count_upright(voxels, lidar)
+    undecided = np.flatnonzero(unsure)
+    counts[undecided] = _count_bracketed(voxels, lidar, saturation_count, undecided)
+    return counts
+
+
+def _count_upright(
+    voxels: VoxelPoints, lidar: PlacedLidar
+) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
+    """Count for an upright LiDAR, and flag unsure counts (V,)."""
+    assert lidar.lattice.slope_counts is not None
+    upright = Upright.of(
+        lidar.lattice.slope_counts,
+        lidar.ground_from_sensor,
+        lidar.occludable,
+        lidar.ends.max_occlusion / lidar.side,
+    )
+    counts, unsure = upright.count(voxels.corners, lidar.position)
+    if voxels.max_distance(lidar.position) > lidar.max_range - CUBE_RADIUS:
+        unsure |= _may_exceed(voxels.offsets_float32(lidar.position), lidar.max_range)
+    return counts, unsure
+
+
+def _count_bracketed(
+    voxels: VoxelPoints, lidar: PlacedLidar, saturation_count: int | None, index: Ints
+) -> Ints:
+    """Count the beams (N,) through the voxels `index` (N,): by bounds, and beam by beam where these
+    differ."""
+    lattice = lidar.lattice
+    assert lattice.slope_bounds is not None
+    points = voxels.offsets_float32(lidar.position, index)
     bounds = bracket(points, lidar.ground_from_sensor, lattice.slope_bounds, lattice.count)
     counts = bounds.lower.astype(np.int64)
     counts[_may_exceed(points, lidar.max_range)] = 0
     limit = np.iinfo(np.int64).max if saturation_count is None else saturation_count
     undecided = np.flatnonzero((counts < bounds.upper) & (counts < limit))
-    counts[undecided] = _count_windows(voxels, lidar, bounds, undecided, without_vehicle=True)
+    offsets = voxels.offsets(lidar.position, index[undecided])
+    beams = lattice.window_beams(bounds, undecided)
+    counts[undecided] = count_pairs(offsets, lidar, *beams, without_vehicle=True)
     occludable = lidar.occludable
     rows = np.flatnonzero(occludable.any(axis=1))
     if len(rows):
         affected = np.flatnonzero((bounds.row <= rows[-1]) & (bounds.upper > 0) & (counts > 0))
         affected = affected[_any_in_window(occludable, bounds, affected)]
-        counts[affected] = _count_windows(voxels, lidar, bounds, affected)
+        offsets = voxels.offsets(lidar.position, index[affected])
+        counts[affected] = count_pairs(offsets, lidar, *lattice.window_beams(bounds, affected))
     return counts
 
 
@@ -111,18 +162,6 @@ def _may_exceed(points: Sequence[Singles], max_range: float) -> NDArray[np.bool_
     x, y, z = points
     exceeds: NDArray[np.bool_] = x * x + y * y + z * z > max(max_range - CUBE_RADIUS, 0.0) ** 2
     return exceeds
-
-
-def _count_windows(
-    voxels: VoxelPoints,
-    lidar: PlacedLidar,
-    bounds: Bracket,
-    voxel: Ints,
-    without_vehicle: bool = False,
-) -> Ints:
-    """Count by testing each beam of the windows of some voxels (N,)."""
-    offsets = voxels.offsets(lidar.position, voxel)
-    return count_pairs(offsets, lidar, *lidar.lattice.window_beams(bounds, voxel), without_vehicle)
 
 
 def _any_in_window(flags: NDArray[np.bool_], bounds: Bracket, voxels: Ints) -> NDArray[np.bool_]:

@@ -1,21 +1,20 @@
 """Tracks: when an object is confirmed, and for how long a confirmed one is lost (docs/time.md).
 
 A detector finds the object at frame k with probability p_k, and a track is confirmed when M of the
-last N frames found it. A frame is not independent of the one before: with a correlation r it finds
-the object with probability ``p_k + r (1 - p_k)`` after a frame that did, and ``p_k (1 - r)`` after
-one that did not; never where p_k is 0: nothing sees it. At a steady p it is p on average. r = 0 is
-independence; r = 1 is one chance for all frames.
+last N frames found it. Frames depend on each other by the object's hidden rank (`detector_rank`).
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..base.arrays import Floats
+from ..base.arrays import Flags, Floats
 from ..base.errors import InputError
 from ..base.setting import Panel, check_settings, setting
-from ..base.values import SHARE, Number, Whole
+from ..base.values import Number, Whole
+from .detector_rank import rank_chain
 from .scan import ap_with_latency
 
 MAX_WINDOW = 8
@@ -39,11 +38,12 @@ class Confirmation:
         "Frames among which they have to be",
         Panel("track_window", "Of the Last"),
     )
-    correlation: float = setting(
-        0.8,
-        SHARE,
-        "Correlation of neighbouring frames; 0: independent. Measured in real traffic: 0.7 to 0.8",
-        Panel("track_correlation", "Correlation"),
+    correlation_time_s: float = setting(
+        2.5,
+        Number(0.0, 1000.0, unit="s"),
+        "Correlation time of how hard a body is to find; 0: frames are independent. Measured in "
+        "real traffic: 2.4 s (docs/validity/tracks)",
+        Panel("track_correlation_time_s", "Correlation Time (s)", soft_max=10.0),
     )
     box_latency_s: float = setting(
         0.0,
@@ -75,46 +75,48 @@ class Confirmation:
             return ap
         return ap_with_latency(ap, speed, self.box_latency_s, self.box_spread_s, self.box_scatter_m)
 
-    def confirmed(self, found: ArrayLike) -> Floats:
-        """Return the probability (..., K) that the track is confirmed by each frame. `found` (...,
-        K) is the probability that each frame finds the object. Exact."""
-        return self._reached(np.asarray(found, dtype=float), for_good=True)
+    def confirmed(self, found: ArrayLike, frame_s: float) -> Floats:
+        """Return the probability (..., K) that the track is confirmed by each frame.
 
-    def kept(self, found: ArrayLike) -> Floats:
+        `found` (..., K) is the probability that each frame finds the object, `frame_s` the time
+        between two frames [s].
+        """
+        return self._reached(np.asarray(found, dtype=float), frame_s, for_good=True)
+
+    def kept(self, found: ArrayLike, frame_s: float) -> Floats:
         """Return the probability (..., K) that M of the last N frames find it, frame by frame."""
-        return self._reached(np.asarray(found, dtype=float), for_good=False)
+        return self._reached(np.asarray(found, dtype=float), frame_s, for_good=False)
 
-    def _reached(self, found: Floats, for_good: bool) -> Floats:
+    def _reached(self, found: Floats, frame_s: float, for_good: bool) -> Floats:
         """Return the probability (..., K) of M of N, now or (for good) by now. The state is the
-        outcome of the last N frames, a bit each, the last one lowest."""
+        outcome of the last N frames, a bit each, the last one lowest, and the bin of the rank."""
+        chain = rank_chain()
+        time_s = self.correlation_time_s
+        step = chain.step(frame_s / time_s if time_s else math.inf)
         masks = np.arange(1 << self.window)
         enough = np.array([mask.bit_count() >= self.needed for mask in masks.tolist()])
         after = (masks << 1) & (len(masks) - 1)
-        state = np.zeros((*found.shape[:-1], len(masks)))
-        state[..., 0] = 1.0
+        half = len(masks) // 2  # two states, with and without the oldest bit, lead to each
+        state = np.zeros((*found.shape[:-1], len(masks), len(chain.shares)))
+        state[..., 0, :] = chain.shares
         reached, done = np.zeros(found.shape), np.zeros(found.shape[:-1])
         for k in range(found.shape[-1]):
-            p = found[..., k, None]
-            r = self.correlation * (p > 0.0) if k else 0.0
-            hit = state * np.where(masks & 1, p + r * (1.0 - p), p * (1.0 - r))
+            hit = state * chain.found(found[..., k])[..., None, :]
             moved = np.zeros_like(state)
-            half = len(masks) // 2  # two states, with and without the oldest bit, lead to each
             for outcome, share in ((0, state - hit), (1, hit)):
-                moved[..., after[:half] | outcome] = share[..., :half] + share[..., half:]
-            reached[..., k] = done + moved[..., enough].sum(axis=-1)
+                moved[..., after[:half] | outcome, :] = share[..., :half, :] + share[..., half:, :]
+            reached[..., k] = done + moved[..., enough, :].sum(axis=(-2, -1))
             if for_good:
                 done = reached[..., k]
-                moved[..., enough] = 0.0
-            state = moved
-        return reached
+                moved[..., enough, :] = 0.0
+            state = moved @ step
+        return np.minimum(reached, 1.0)
 
-    def longest_loss(self, found: Floats, first: int) -> int:
-        """Return the longest run of frames after `first` at which the track is lost."""
-        longest = run = 0
-        for lost in (self.kept(found)[first:] < KEPT).tolist():
-            run = run + 1 if lost else 0
-            longest = max(longest, run)
-        return longest
+
+def longest_run(flags: Flags) -> int:
+    """Return the length of the longest run of flags (K,) that are set."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
+    return int((edges[1::2] - edges[::2]).max(initial=0))
 
 
 def first_frame(confirmed: Floats, chance: float) -> int | None:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from pe_core.base import dump_json
+from pe_core.motion import Confirmation
 from pe_tools import prepare_folder
 from pe_tools.cli import DONE, Answer
 
@@ -16,8 +17,9 @@ from ..pages import check_page, render, write_study
 from ..results_file import RESULTS, Json, made_by, print_progress, read_json
 from ..road.__main__ import FOLDER as ROAD
 from ..road.__main__ import predicted
-from ..road.logs import CLASSES, read_lidars, read_logs
+from ..road.logs import CLASSES, Log, read_lidars, read_logs
 from ..road.models import SOLID, Fitted
+from .memory import HEAD, memory, memory_statements, table_rows
 from .moments import BOOTSTRAP, NEAR_S, POINTS, by_class_and_ring, pairs_of, persistence, verdict
 from .order import TABLE, expected, statements
 
@@ -48,6 +50,10 @@ def held_against_tracks(args: argparse.Namespace, folder: Path) -> Answer:
 def page_of(found: Json) -> str:
     """Return the page of all figures, with the published ones."""
     values = {"found": found, "goals": GOALS, "points": POINTS, "verdict": verdict}
+    seen = found["memory"]["5"]
+    values |= {"memory_head": HEAD, "memory_rows": table_rows(seen)}
+    values |= {"remembered": memory_statements(seen)}
+    values |= {"default_s": Confirmation().correlation_time_s}
     values |= {"order": statements(), "expected": expected(), "published": read_json(TABLE)}
     return render(Path(__file__).with_name("page.md.j2"), values)
 
@@ -56,7 +62,8 @@ def measured(args: argparse.Namespace) -> Json:
     """Return all figures as JSON data; the model `road` has what was fitted to the other logs."""
     logs, rig = read_logs(Path(args.logs)), read_lidars(Path(args.logs))
     road = read_json(Path(ROAD) / RESULTS)
-    found: Json = {"logs": {}, "persistence": {}, "counts": {}}
+    found: Json = {"logs": {}, "persistence": {}, "counts": {}, "memory": {}}
+    by_road: list[tuple[Log, np.ndarray]] = []
     for log in logs:
         print_progress(log.name)
         values = road["values"].get(log.name, road["values"]["all logs"])
@@ -69,7 +76,11 @@ def measured(args: argparse.Namespace) -> Json:
             for model, m in zip(("default", "road"), both, strict=True)
         }
         found["persistence"][log.name] = {str(n): persistence(log, both[1], n) for n in POINTS}
+        by_road.append((log, both[1]))
         found["counts"][log.name] = len(np.unique(log.tracks))
+    for n in POINTS:
+        print_progress(f"memory, {n} points")
+        found["memory"][str(n)] = memory(by_road, n)
     found["made"] = made_by(BOOTSTRAP)
     return found
 

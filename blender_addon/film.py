@@ -207,7 +207,7 @@ def _body(
     alpha = HIDES_ALPHA if body.seen is None else 1.0
     name, middle = body.actor.name, body.height
     box = stage.box(name, graphics.UNSEEN)
-    box.scale, box.display.show_shadows = body.actor.body.box, True
+    box.scale, box.display.show_shadows = body.actor.box, True
     centers = [Vector((float(x), float(y), middle)) for x, y in body.positions]
     stage.keys(box, "location", centers)
     stage.keys(box, "rotation_euler", [(0.0, 0.0, float(turn)) for turn in body.headings])

@@ -6,23 +6,19 @@ to 8 and counts as the probability that a detector finds the body at the frame.
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
-from itertools import combinations
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
 from ..base.arrays import Floats
 from ..base.values import rounded
-from ..metric.entropy import H_BLIND, ap_of_entropy
-from ..scene.objects import Objects
-from ..scene.rig import Rig, Sensor
+from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
-from ..scoring.targets.object_metric import FusedObjects
-from ..sensors import ObjectMeasurementCache, PerceptionModel
-from .scan import exposed, factor_of, seam
+from ..sensors import PerceptionModel
 from .story import Story, outline
-from .tracks import Confirmation, first_frame
+from .story_sight import Pair, StorySight
+from .tracks import KEPT, Confirmation, first_frame, longest_run
 
 CHANCES = (0.9, 0.99)
 
@@ -39,7 +35,8 @@ class Moment:
 class SeenBody:
     """What a rig sees of a watched body.
 
-    `ap, confirmed` (K,): AP at each frame, and the probability that its track is confirmed by then.
+    `ap, confirmed` (K,): AP of each sensor's last frame at each frame, and the probability that its
+        track is confirmed by then.
     `by_sensor`: AP of each sensor alone.
     `positions` (K, 2): In the ground frame [m].
     `moments`: When it is confirmed, by probability; None: never in the story.
@@ -138,94 +135,71 @@ def drive_by(
 ) -> DriveBy:
     """Return a story as a rig sees it.
 
-    `rates` are those of scans and exposures by kind [Hz]; a kind without one has the story's.
+    `rates` are those of scans and exposures by kind [Hz]; a kind without one has the story's. A
+    sensor of a lower rate than the story's has fewer frames that confirm a track (`clock`).
 
     `InputError` when a sensor has an AP curve of its own, or a class has none.
     """
     confirmation = confirmation or Confirmation()
-    where, headings = story.positions(vehicle)
-    objects, count = story.objects(where, headings), len(story.times)
-    watched = np.repeat([float(actor.watched) for actor in story.actors], count)
-    fused = FusedObjects(objects, watched, model or PerceptionModel())
-    fused.check(rig)
-    scans = _measured(rig, objects, vehicle, count)
-    hz = {s.name: (rates or {}).get(s.kind, story.rate_hz) for s in rig}
-    bearings, speeds = {s.name: _bearings(s, where) for s in rig}, story.speeds
-    measured = {
-        s.name: scans[s.name]
-        * factor_of(s, bearings[s.name], 1.0 / story.rate_hz, hz[s.name]).ravel()
-        for s in rig
-    }
-
-    def ap(members: list[str] | None) -> Floats:
-        entropies, visible = fused.entropies(rig, measured, members)
-        found = np.where(visible & (entropies < H_BLIND), ap_of_entropy(entropies), 0.0)
-        return confirmation.in_time(found.reshape(len(story.actors), count), speeds)
-
-    whole, alone = ap(None), {sensor.name: ap([sensor.name]) for sensor in rig}
-    seams = {
-        (one.name, other.name): apart * ((alone[one.name] > 0.0) & (alone[other.name] > 0.0))
-        for one, other in combinations(rig, 2)
-        if (apart := seam((one, other), bearings, hz, speeds)) is not None
-    }
+    sight = StorySight(story, rig, vehicle, model or PerceptionModel(), rates or {})
+    whole = sight.ap(None, confirmation)
+    alone = {sensor.name: sight.ap([sensor.name], confirmation) for sensor in rig}
+    track, seams = sight.track(confirmation), sight.seams(alone)
+    away = _distance(sight.positions, vehicle)
     bodies = []
-    for k, actor in enumerate(story.actors):
-        if actor.watched:
-            by_sensor = {name: found[k] for name, found in alone.items()}
-            body = _seen(story, actor.name, whole[k], by_sensor, where[k], vehicle, confirmation)
-            if seams:
-                pair = max(seams, key=lambda each: seams[each][k].max())
-                widest = rounded(float(seams[pair][k].max()))
-                body = replace(body, seam_m=widest, seam_of=pair)
-            bodies.append(body)
+    for k, actor in enumerate(actor for actor in story.actors if actor.watched):
+        moments = _moments(story, track.confirmed[k], away[k])
+        margin_s, lost_s = _margin_and_loss(story, track.confirmed[k], track.kept[k])
+        seam_m, seam_of = _widest({pair: float(apart[k].max()) for pair, apart in seams.items()})
+        bodies.append(
+            SeenBody(
+                name=actor.name,
+                ap=whole[k],
+                confirmed=track.confirmed[k],
+                by_sensor={name: found[k] for name, found in alone.items()},
+                positions=sight.positions[k],
+                moments=moments,
+                lost_s=lost_s,
+                margin_s=margin_s,
+                seam_m=seam_m,
+                seam_of=seam_of,
+            )
+        )
     return DriveBy(story, tuple(bodies))
 
 
-def _measured(rig: Rig, objects: Objects, vehicle: Vehicle | None, count: int) -> dict[str, Floats]:
-    """Return m of objects, actor by actor with a number of frames each, by sensor. A pattern that
-    takes several frames has an exposure a frame (`scan.exposed`)."""
-    rows, cache = np.arange(len(objects)), ObjectMeasurementCache(objects, vehicle, True)
-    most = max(sensor.scan.exposures for sensor in rig)
-    by_exposure = [cache.measure(Rig([exposed(s, k) for s in rig])) for k in range(most)]
-    return {
-        s.name: np.stack([m[s.name] for m in by_exposure])[rows % count % s.scan.exposures, rows]
-        for s in rig
-    }
-
-
-def _bearings(sensor: Sensor, where: Floats) -> Floats:
-    """Return the bearings (A, K) of positions from a sensor in the ground frame [rad]."""
-    away = where - np.array(sensor.pose.position[:2])
-    return np.unwrap(np.arctan2(away[..., 1], away[..., 0]), axis=1)
-
-
-def _seen(
-    story: Story,
-    name: str,
-    ap: Floats,
-    by_sensor: Mapping[str, Floats],
-    positions: Floats,
-    vehicle: Vehicle | None,
-    confirmation: Confirmation,
-) -> SeenBody:
-    confirmed, away = confirmation.confirmed(ap), _distance(positions, vehicle)
+def _moments(story: Story, confirmed: Floats, away: Floats) -> dict[float, Moment | None]:
+    """Return when a track is confirmed by each probability; `away` (K,) is its distance [m]."""
     moments: dict[float, Moment | None] = {}
-    first, margin, lost = first_frame(confirmed, story.chance), None, 0.0
     for chance in sorted({*CHANCES, story.chance}):
         k = first_frame(confirmed, chance)
         at = None if k is None else Moment(float(story.times[k]), rounded(float(away[k])))
         moments[chance] = at
-    if first is not None:
-        margin = rounded(story.brake_s - story.before_s - float(story.times[first]))
-        lost = rounded(confirmation.longest_loss(ap, first) / story.rate_hz)
-    return SeenBody(name, ap, confirmed, by_sensor, positions, moments, lost, margin)
+    return moments
+
+
+def _margin_and_loss(story: Story, confirmed: Floats, kept: Floats) -> tuple[float | None, float]:
+    """Return a track's margin (None: never confirmed), and for how long it is lost [s]."""
+    first = first_frame(confirmed, story.chance)
+    if first is None:
+        return None, 0.0
+    margin_s = story.brake_s - story.before_s - float(story.times[first])
+    return rounded(margin_s), rounded(longest_run(kept[first:] < KEPT) / story.rate_hz)
+
+
+def _widest(seams: Mapping[Pair, float]) -> tuple[float | None, tuple[str, ...]]:
+    """Return the widest seam [m], and of which two sensors it is; None without any."""
+    if not seams:
+        return None, ()
+    pair = max(seams, key=lambda each: seams[each])
+    return rounded(seams[pair]), pair
 
 
 def _distance(positions: Floats, vehicle: Vehicle | None) -> Floats:
-    """Return distances (K,) of points from the vehicle's rectangle on the ground [m]."""
+    """Return distances (..., K) of points from the vehicle's rectangle on the ground [m]."""
     low, high = outline(vehicle)
     outside = np.maximum(np.maximum(low - positions, positions - high), 0.0)
-    return np.asarray(np.hypot(*outside.T))
+    return np.asarray(np.hypot(outside[..., 0], outside[..., 1]))
 
 
 def shown_margin(margin_s: float | None) -> float | None:

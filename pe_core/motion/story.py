@@ -20,7 +20,6 @@ from ..base.files import decode_text, read_bytes
 from ..base.setting import FLAG, OneOf, Panel, check_settings, read_settings, setting
 from ..base.table_reader import Table, load_toml
 from ..base.values import A_NAME, Number, listed, vector
-from ..scene.objects import Objects
 from ..scene.vehicle import Vehicle
 from ..scoring.requirements.bodies import BODIES, Body
 from ..scoring.targets.scene_layout import CAR_SIZE_M
@@ -61,6 +60,12 @@ class Actor:
         if self.watched and self.body.class_name is None:
             raise InputError(who, "body", "one of a class of objects", self.body.name)
 
+    @property
+    def box(self) -> tuple[float, float, float]:
+        """Length, width and height [m] as it counts: what has to be seen is small, what only
+        occludes is large."""
+        return self.body.box if self.watched else self.body.hiding
+
     def at(self, times: Floats) -> tuple[Floats, Floats]:
         """Return positions (K, 2) [m] and headings (K,) [rad] at some times."""
         t, x, y, *turn = np.array(self.path).T
@@ -93,9 +98,9 @@ class Story:
     )
     deceleration: float = setting(
         6.0,
-        Number(0.0, 15.0, above=True, unit="m/s^2"),
+        Number(0.1, 15.0, unit="m/s^2"),
         "Deceleration of a full braking [m/s^2]",
-        Panel("deceleration", "Braking (m/s²)", min=0.1),
+        Panel("deceleration", "Braking (m/s²)"),
     )
     latency_s: float = setting(
         0.5,
@@ -168,26 +173,6 @@ class Story:
         step = 1.0 / self.rate_hz
         steps = [own + np.gradient(a.at(self.times)[0], step, axis=0) for a in self.actors]
         return np.asarray(np.hypot(*np.moveaxis(np.array(steps), -1, 0)))
-
-    def objects(self, where: Floats, headings: Floats) -> Objects:
-        """Return the actors at `positions` as objects, actor by actor, a scene for each frame."""
-        names = sorted({actor.body.class_name or OTHER for actor in self.actors})
-        sizes = np.array([actor.body.box for actor in self.actors])
-        frames = len(self.times)
-        lift = np.array([actor.body.low for actor in self.actors]) + sizes[:, 2] / 2.0
-        z = np.broadcast_to(lift[:, None, None], (*where.shape[:2], 1))
-        labels = [names.index(actor.body.class_name or OTHER) for actor in self.actors]
-        return Objects(
-            np.concatenate([where, z], axis=2).reshape(-1, 3),
-            np.repeat(sizes, frames, axis=0),
-            headings.ravel(),
-            np.repeat(labels, frames),
-            names,
-            np.tile(np.arange(frames), len(self.actors)),
-        )
-
-
-OTHER = "other"  # Class of bodies that only occlude
 
 
 def outline(vehicle: Vehicle | None) -> tuple[Floats, Floats]:

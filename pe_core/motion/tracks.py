@@ -59,9 +59,9 @@ class Confirmation:
     )
     box_scatter_m: float = setting(
         0.5,
-        Number(0.0, 10.0, above=True, unit="m"),
+        Number(0.01, 10.0, unit="m"),
         "Standard deviation of a box's place without latency",
-        Panel("box_scatter_m", "Scatter of Boxes", min=0.01),
+        Panel("box_scatter_m", "Scatter of Boxes"),
     )
 
     def __post_init__(self) -> None:

@@ -77,11 +77,11 @@ class MovingBody:
     @property
     def height(self) -> float:
         """Of its middle above the ground [m]."""
-        return self.actor.body.low + self.actor.body.box[2] / 2.0
+        return self.actor.body.low + self.actor.box[2] / 2.0
 
     def corners(self, k: int) -> Floats:
         """Return its corners (8, 3) at a frame."""
-        x, y, z = (CORNERS * self.actor.body.box).T
+        x, y, z = (CORNERS * self.actor.box).T
         c, s = np.cos(self.headings[k]), np.sin(self.headings[k])
         turned = np.column_stack([c * x - s * y, s * x + c * y, z])
         return np.asarray(turned + np.array((*self.positions[k], self.height)))

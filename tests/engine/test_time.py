@@ -11,12 +11,18 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
+from pe_core.base.setting import settings_of
+from pe_core.base.values import Number
 from pe_core.metric.entropy import BLIND_PRECISION, ap_of_entropy
 from pe_core.metric.frames import Frames, predicted, updated
 from pe_core.motion import Actor, Confirmation, Story, drive_by, stories
+from pe_core.motion.clock import FrameClock
+from pe_core.motion.detector_rank import rank_chain
 from pe_core.motion.scan import ap_with_latency, exposed, factor_of, scan_factor, seam
+from pe_core.motion.tracks import first_frame
+from pe_core.prior import ROAD_CLASSES
 from pe_core.scene.objects import Objects
-from pe_core.scoring.requirements.bodies import BODIES
+from pe_core.scoring.requirements.bodies import BODIES, Body
 from pe_core.scoring.targets.object_metric import FusedObjects
 from pe_core.sensors import ObjectMeasurementCache
 from pe_core.study import study_from_dict, study_to_dict
@@ -102,24 +108,84 @@ def test_a_class_has_its_own_noise():
     assert study(frames=Frames(5, 9.0, noises=same)).sight().over_frames(rig()) == whole
 
 
-@pytest.mark.parametrize("correlation", [0.0, 0.4, 1.0])
+TIMES_S = (0.0, 0.3, 2.5, 1000.0)
+TENTH = 0.1
+"""Time between two frames [s]."""
+
+
+@pytest.mark.parametrize("time_s", TIMES_S)
 @pytest.mark.parametrize(("needed", "window"), [(3, 5), (1, 1), (2, 3)])
-def test_tracks_are_those_of_all_outcomes(correlation, needed, window):
-    rule = Confirmation(needed, window, correlation)
+def test_tracks_are_those_of_all_outcomes(time_s, needed, window):
+    rule, chain = Confirmation(needed, window, time_s), rank_chain()
+    step = chain.step(TENTH / time_s if time_s else math.inf)
     found = np.random.default_rng(7).random((2, 8))
     found[1, [2, 5]] = 0.0  # hidden: not found, whatever was before
     confirmed, kept = np.zeros((2, 8)), np.zeros((2, 8))
     for row, outcome in itertools.product((0, 1), itertools.product((0, 1), repeat=8)):
-        chance = 1.0
+        state = chain.shares  # how likely each rank is, with this outcome
         for k, hit in enumerate(outcome):
-            p, r = found[row, k], correlation if k and found[row, k] else 0.0
-            p = p + r * (1.0 - p) if k and outcome[k - 1] else p * (1.0 - r)
-            chance *= p if hit else 1.0 - p
+            state = state @ step if k else state
+            p = chain.found(found[row, k])
+            state = state * (p if hit else 1.0 - p)
         enough = [sum(outcome[max(0, k + 1 - window) : k + 1]) >= needed for k in range(8)]
-        kept[row] += chance * np.array(enough)
-        confirmed[row] += chance * np.maximum.accumulate(enough)
-    assert np.abs(rule.confirmed(found) - confirmed).max() < 1e-14
-    assert np.abs(rule.kept(found) - kept).max() < 1e-14
+        kept[row] += state.sum() * np.array(enough)
+        confirmed[row] += state.sum() * np.maximum.accumulate(enough)
+    assert np.abs(rule.confirmed(found, TENTH) - confirmed).max() < 1e-12
+    assert np.abs(rule.kept(found, TENTH) - kept).max() < 1e-12
+
+
+@pytest.mark.parametrize("time_s", TIMES_S)
+def test_each_frame_finds_a_body_with_its_ap_whatever_was_before(time_s):
+    found = np.random.default_rng(3).random((4, 60))
+    found[1, 20:40] = 0.0  # nothing sees it
+    found[2] = np.where(np.arange(60) < 30, 0.9, 0.05)
+    found[3] = np.where(np.arange(60) < 30, 0.0, 0.999)
+    assert np.abs(Confirmation(1, 1, time_s).kept(found, TENTH) - found).max() < 1e-12
+
+
+def test_two_and_three_frames_are_those_of_a_gaussian_process():
+    # P(all below the median) = 1/4 + asin(r) / 2 pi, and 1/8 + (sum of asin) / 4 pi
+    time_s = 2.5
+    arcs = [math.asin(math.exp(-k * TENTH / time_s)) for k in range(8)]
+    two = Confirmation(2, 2, time_s).kept([0.5, 0.5], TENTH)[-1]
+    assert two == pytest.approx(0.25 + arcs[1] / (2.0 * math.pi), abs=1e-3)
+    three = Confirmation(3, 3, time_s).kept([0.5] * 3, TENTH)[-1]
+    assert three == pytest.approx(0.125 + (2.0 * arcs[1] + arcs[2]) / (4.0 * math.pi), abs=1.5e-3)
+    # frames in which nothing sees it say nothing: two that are seven apart
+    apart = Confirmation(2, 8, time_s).kept([0.5, *[0.0] * 6, 0.5], TENTH)[-1]
+    assert apart == pytest.approx(0.25 + arcs[7] / (2.0 * math.pi), abs=1e-3)
+
+
+@pytest.mark.parametrize("ap", [0.05, 0.5, 0.9])
+def test_tracks_are_those_of_a_simulated_process(ap):
+    time_s, many = 2.5, 40_000
+    rng, kept = np.random.default_rng(11), math.exp(-TENTH / time_s)
+    z, limit = rng.standard_normal(many), NormalDist().inv_cdf(ap)
+    hits, done, simulated = [], np.zeros(many, bool), []
+    for _ in range(60):
+        hits.append(z < limit)
+        done |= np.sum(hits[-5:], axis=0) >= 3
+        simulated.append(done.mean())
+        z = kept * z + math.sqrt(1.0 - kept * kept) * rng.standard_normal(many)
+    expected = Confirmation(3, 5, time_s).confirmed([ap] * 60, TENTH)
+    assert np.abs(expected - simulated).max() < 5.0 * 0.5 / math.sqrt(many)
+
+
+def test_real_memory_confirms_later_than_one_frame_does():
+    # A chain that remembers one frame, r = 0.8, has 90 % of AP 0.5 after 2.4 s and 99 % after 5.2 s
+    moments = [
+        first_frame(Confirmation(3, 5, time_s).confirmed([0.5] * 150, TENTH), chance)
+        for time_s in (2.0, 2.5)
+        for chance in (0.9, 0.99)
+    ]
+    assert moments[:2] == [48, 115] and moments[2] > 48 and moments[3] > 115
+
+
+def test_the_correlation_of_ranks_is_the_same_over_one_long_step_or_several():
+    chain = rank_chain()
+    assert np.abs(chain.step(0.3) - chain.step(0.1) @ chain.step(0.2)).max() < 1e-12
+    assert np.abs(chain.shares @ chain.step(0.3) - chain.shares).max() < 1e-14
+    assert np.abs(chain.step(math.inf) - chain.shares).max() < 1e-12
 
 
 def test_latency_changes_nothing_at_rest():
@@ -194,7 +260,7 @@ STANDING = Story(
 def test_a_story_at_rest_is_the_ap_of_objects_in_traffic():
     car = shapes.box_car()
     front = float(car.bounds[1][0])
-    boxes = np.array([BODIES[name].box for name in ("adult", "car")])
+    boxes = np.array([BODIES["adult"].box, BODIES["car"].hiding])
     centers = [(front + 8.0, 1.0, boxes[0, 2] / 2), (front + 4.0, 0.6, boxes[1, 2] / 2)]
     names = ("pedestrian", "car")
     objects = Objects(centers, boxes, [0.0, 0.0], [0, 1], names, [0, 0])
@@ -205,6 +271,128 @@ def test_a_story_at_rest_is_the_ap_of_objects_in_traffic():
     assert np.abs(seen.bodies[0].ap - ap_of_entropy(entropies)[0]).max() < 1e-12
     alone = replace(STANDING, actors=STANDING.actors[:1])
     assert drive_by(alone, rig(), car).bodies[0].ap[0] > seen.bodies[0].ap[0]
+
+
+def test_what_hides_is_at_least_the_prior_s_and_what_is_seen_is_small():
+    sizes = {each.name: each.size for each in ROAD_CLASSES}
+    for body in BODIES.values():
+        least = np.array(sizes.get(body.class_name, body.size))
+        assert (np.array(body.hiding) >= np.maximum(least, body.size)).all(), body.name
+        assert (np.array(body.hiding) >= body.box).all()
+    own = Body("own", (3.0, 1.5, 1.2), class_name="car")
+    assert own.hiding == own.size  # it is as large as it is said to be
+    adult, wall = STANDING.actors
+    car = shapes.box_car()
+    seen_wall = replace(STANDING, actors=(adult, replace(wall, watched=True)))
+    hidden, both = (drive_by(story, rig(), car).bodies for story in (STANDING, seen_wall))
+    assert both[0].ap.tolist() == hidden[0].ap.tolist()  # what has to be seen hides as well
+    alone = drive_by(replace(STANDING, actors=(replace(wall, watched=True),)), rig(), car)
+    assert both[1].ap.tolist() != [] and both[1].ap.max() <= alone.bodies[0].ap.max()
+
+
+@pytest.mark.parametrize("name", ["crossing_child", "cut_in"])
+def test_no_verdict_gets_better_with_a_larger_body_that_hides(name):
+    car, story = shapes.box_car(), stories()[name]
+    watched = [actor for actor in story.actors if actor.watched]
+    base = np.array(BODIES["car"].hiding)
+    before = None
+    for scale in (0.5, 1.0, 1.05, 1.5):
+        size = tuple((base * scale).tolist())
+        beside = Actor("beside", Body("own", size), ((0.0, -3.5, -2.6),), watched=False)
+        ahead = Actor("ahead", Body("own", size), ((-6.0, 20.0, 3.5), (0.0, 9.0, 3.5)), False)
+        driven = drive_by(replace(story, actors=(*watched, beside, ahead)), rig(), car)
+        now = driven.bodies[0]
+        if before is not None:
+            assert (now.ap <= before.ap + 1e-12).all()
+            assert (now.confirmed <= before.confirmed + 1e-12).all()
+            margins = [-math.inf if b.margin_s is None else b.margin_s for b in (now, before)]
+            assert margins[0] <= margins[1]
+        before = now
+
+
+def test_a_story_of_very_many_bodies_is_refused():
+    crowd = tuple(
+        Actor(f"car {k}", BODIES["car"], ((0.0, 5.0 + 0.1 * k, 0.0),)) for k in range(300)
+    )
+    with pytest.raises(pe.InputError, match="300 bodies, 11 frames"):
+        drive_by(replace(STANDING, actors=crowd), rig(), None)
+
+
+def near_body(start_s=-3.0, **changed):
+    """A story of a large body that stands near: each frame finds it with 0.999."""
+    large = Body("large", (3.0, 5.0, 4.0), class_name="car")
+    actor = Actor("large", large, ((0.0, 5.0, 0.0),))
+    return Story("near", speed_kmh=0.0, start_s=start_s, actors=(actor,), **changed)
+
+
+def confirmed_at(rates, of=None, **changed):
+    seen = drive_by(near_body(**changed), of or pe.Rig([rig()["roof"]]), None, rates=rates)
+    moment = seen.bodies[0].moments[0.9]
+    return None if moment is None else moment.time_s
+
+
+def test_a_slow_sensor_confirms_late():
+    assert confirmed_at({}) == -2.8  # the third of ten frames a second
+    assert confirmed_at({"lidar": 10.0}) == confirmed_at({"lidar": 40.0}) == -2.8
+    assert confirmed_at({"lidar": 1.0}) == -1.0  # frames at -3, -2 and -1 s
+    assert confirmed_at({"lidar": 0.5}, start_s=-6.0) == -2.0
+    assert confirmed_at({"lidar": 0.5}) is None  # two frames
+    assert confirmed_at({"lidar": 3.0}) == -2.3  # at -3, -2.6 and -2.3 s
+    assert confirmed_at({"camera": 1.0}) == -2.8
+
+
+def test_no_further_sensor_and_no_higher_rate_confirms_later():
+    roof, front = rig().sensors
+    both, slow = pe.Rig([roof, front]), {"lidar": 1.0}
+    lidar, camera = (
+        drive_by(near_body(), pe.Rig([s]), None, rates=slow).bodies[0] for s in (roof, front)
+    )
+    together = drive_by(near_body(), both, None, rates=slow).bodies[0]
+    assert (together.confirmed >= np.maximum(lidar.confirmed, camera.confirmed) - 1e-12).all()
+    moments = [confirmed_at({"lidar": hz, "camera": hz}, both) for hz in (1.0, 2.0, 5.0, 10.0)]
+    assert moments == sorted(moments, reverse=True) and moments[0] > moments[-1]
+
+
+def test_ap_is_that_of_the_last_frame():
+    moving = Actor("adult", BODIES["adult"], ((-3.0, 60.0, 0.0), (0.0, 3.0, 0.0)))
+    story, roof = replace(near_body(), actors=(moving,)), pe.Rig([rig()["roof"]])
+    whole, slow = (
+        drive_by(story, roof, None, rates=rates).bodies[0].ap for rates in ({}, {"lidar": 2.0})
+    )
+    assert slow[:15].tolist() == np.repeat(whole[[0, 5, 10]], 5).tolist()
+    clock = FrameClock.of(11, 10.0, 4.0)  # at 0, 0.25, 0.5, 0.75 and 1 s: at the next frame
+    assert clock.frames.tolist() == [0, 3, 5, 8, 10]
+    assert clock.last.tolist() == [0, 0, 0, 1, 1, 2, 2, 2, 3, 3, 4]
+
+
+def extremes(cls):
+    """Return changes of a class of settings, one at a time: to its ends, and beside them."""
+    for name, declared in settings_of(cls).items():
+        rule = declared.rule
+        if isinstance(rule, Number):
+            ends = [rule.minimum, rule.maximum, rule.minimum + 5e-324, 1e-320, -1e-320, 1e308]
+            yield from ({name: float(end)} for end in ends if math.isfinite(end))
+
+
+@pytest.mark.parametrize("change", [*extremes(Story)], ids=str)
+def test_a_story_at_the_ends_of_its_numbers_has_an_answer_or_one_line(change):
+    try:
+        story = replace(near_body(end_s=0.1), **change)
+        assert math.isfinite(story.brake_s) and math.isfinite(story.stop_m)
+        json.dumps(drive_by(story, pe.Rig([rig()["front"]])).to_dict(), allow_nan=False)
+    except pe.InputError as error:
+        assert next(iter(change)) in str(error) or "frames" in str(error)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("change", [*extremes(Confirmation)], ids=str)
+def test_a_track_at_the_ends_of_its_numbers_has_an_answer_or_one_line(change):
+    late = {"box_latency_s": 0.1, "box_spread_s": 0.1} | change
+    try:
+        driven = drive_by(stories()["roundabout"], rig(), None, None, Confirmation(**late))
+        json.dumps(driven.to_dict(), allow_nan=False)
+    except pe.InputError as error:
+        assert next(iter(change)) in str(error)
 
 
 def test_the_scan_and_latency_change_no_bit_of_what_stands():
@@ -274,7 +462,7 @@ def test_a_study_keeps_its_frames_tracks_and_stories(tmp_path):
     noted = study(
         pe.Rig([replace(s, scan=pe.ScanTiming("right", 0.25)) for s in rig()]),
         frames=Frames(5, 2.0, noises={"car": 1.5}, rates={"camera": 30.0}),
-        confirmation=Confirmation(2, 4, 0.5, 0.2, 0.1, 0.3),
+        confirmation=Confirmation(2, 4, 1.5, 0.2, 0.1, 0.3),
         stories=(own, changed, stories()["roundabout"]),
     )
     data = study_to_dict(replace(noted, vehicle=None))

@@ -16,6 +16,7 @@ import numpy as np
 from ...base.arrays import Flags, Floats, Ints
 from ...base.errors import InputError, shown
 from ...base.values import A_NAME, Angle, Number
+from ...prior.classes import ROAD_CLASSES
 
 LENGTH = Number(1e-3, 100.0, unit="m", noun="length")
 HEADING = Angle(-360.0, 360.0)
@@ -75,6 +76,19 @@ class Body:
         length, width, height = self.size
         inside = math.sqrt(0.5) if self.is_round else 1.0
         return length * inside, width * inside, height
+
+    @property
+    def hiding(self) -> tuple[float, float, float]:
+        """Length, width and height [m] of the box that hides what is behind the body.
+
+        It is the extent of the body; of one of `BODIES` at least the mean box of its class in the
+        road prior: those of `BODIES` are small, which is safe only for what has to be seen.
+        """
+        sizes = [self.size]
+        if BODIES.get(self.name) == self:
+            sizes += [each.size for each in ROAD_CLASSES if each.name == self.class_name]
+        length, width, height = np.max(sizes, axis=0).tolist()
+        return length, width, height
 
     @property
     def largest(self) -> float:

@@ -1,0 +1,119 @@
+"""What a rig measures of the watched bodies of a story: AP, tracks, seams, frame by frame."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from ..base.arrays import Floats
+from ..metric.entropy import H_BLIND, ap_of_entropy
+from ..scene.rig import Rig, Sensor
+from ..scene.vehicle import Vehicle
+from ..scoring.targets.object_metric import FusedObjects
+from ..sensors import ObjectMeasurementCache, PerceptionModel
+from .clock import FrameClock, frame_rate, streams
+from .scan import exposed, factor_of, seam
+from .scenes import StoryScenes, story_scenes
+from .story import Story
+from .tracks import Confirmation
+
+Pair = tuple[str, str]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Track:
+    """The probability (W, K) that tracks are confirmed by each frame of a story, and that M of the
+    last N frames find the bodies."""
+
+    confirmed: Floats
+    kept: Floats
+
+
+class StorySight:
+    """Measures the W watched bodies of a story at its K frames.
+
+    `rates`: Frames in a second by kind of sensor [Hz]; a kind without one has the story's.
+    `positions` (W, K, 2): Of the bodies in the ground frame [m].
+    """
+
+    def __init__(
+        self,
+        story: Story,
+        rig: Rig,
+        vehicle: Vehicle | None,
+        model: PerceptionModel,
+        rates: Mapping[str, float],
+    ) -> None:
+        where, headings = story.positions(vehicle)
+        watched = [k for k, actor in enumerate(story.actors) if actor.watched]
+        scenes = story_scenes(story, where, headings, rig)
+        self._story, self._rig = story, rig
+        self.positions = where[watched]
+        self._speeds = story.speeds[watched]
+        self._bearings = {s.name: _bearings(s, self.positions) for s in rig}
+        self._turns_hz = {s.name: rates.get(s.kind, story.rate_hz) for s in rig}
+        self._frames_hz = {s.name: frame_rate(s, rates, story.rate_hz) for s in rig}
+        self._fused = FusedObjects(scenes.watched, np.ones(scenes.rows.size), model)
+        self._fused.check(rig)
+        self._measured = {
+            name: self._at_last_frame(rig[name], m)
+            for name, m in _measured(rig, scenes, vehicle).items()
+        }
+
+    def ap(self, members: list[str] | None, confirmation: Confirmation) -> Floats:
+        """Return AP (W, K) of the last frames of some sensors, all by default, when boxes are as
+        late as `confirmation` says; 0 where nothing sees the body."""
+        entropies, visible = self._fused.entropies(self._rig, self._measured, members)
+        found = np.where(visible & (entropies < H_BLIND), ap_of_entropy(entropies), 0.0)
+        return confirmation.in_time(found.reshape(self._speeds.shape), self._speeds)
+
+    def track(self, confirmation: Confirmation) -> Track:
+        """Return the tracks, by the best stream at each frame (`clock`)."""
+        confirmed, kept = [], []
+        for rate, names in streams(self._rig, self._frames_hz).items():
+            clock = self._clock(rate)
+            found = self.ap(names, confirmation)[:, clock.frames]
+            confirmed.append(clock.held(confirmation.confirmed(found, clock.frame_s)))
+            kept.append(clock.held(confirmation.kept(found, clock.frame_s)))
+        return Track(np.max(confirmed, axis=0), np.max(kept, axis=0))
+
+    def seams(self, alone: Mapping[str, Floats]) -> dict[Pair, Floats]:
+        """Return how far apart two sensors see the bodies (W, K) [m], eq. T4, where both see them;
+        of pairs of which it is known. `alone`: AP (W, K) of each sensor alone."""
+        found = {}
+        for one, other in combinations(self._rig, 2):
+            apart = seam((one, other), self._bearings, self._turns_hz, self._speeds)
+            if apart is not None:
+                both = (alone[one.name] > 0.0) & (alone[other.name] > 0.0)
+                found[one.name, other.name] = apart * both
+        return found
+
+    def _clock(self, rate_hz: float) -> FrameClock:
+        return FrameClock.of(len(self._story.times), self._story.rate_hz, rate_hz)
+
+    def _at_last_frame(self, sensor: Sensor, by_exposure: Floats) -> Floats:
+        """Return m (W * K) of a sensor's last frame, with the factor of its scan, from that of each
+        exposure (E, W, K)."""
+        clock, story_hz = self._clock(self._frames_hz[sensor.name]), self._story.rate_hz
+        turns = sensor, self._bearings[sensor.name], 1.0 / story_hz, self._turns_hz[sensor.name]
+        m = by_exposure * factor_of(*turns)
+        exposures = np.arange(len(clock.frames)) % sensor.scan.exposures
+        at_frames = m[exposures, :, clock.frames].T
+        return np.asarray(clock.held(at_frames).ravel())
+
+
+def _measured(rig: Rig, scenes: StoryScenes, vehicle: Vehicle | None) -> dict[str, Floats]:
+    """Return m (E, W, K) of the watched bodies by sensor, for each exposure of its pattern."""
+    cache = ObjectMeasurementCache(scenes.objects, vehicle, True)
+    most = max(sensor.scan.exposures for sensor in rig)
+    by_exposure = [cache.measure(Rig([exposed(s, k) for s in rig])) for k in range(most)]
+    return {
+        sensor.name: np.stack([m[sensor.name][scenes.rows] for m in by_exposure]) for sensor in rig
+    }
+
+
+def _bearings(sensor: Sensor, where: Floats) -> Floats:
+    """Return the bearings (W, K) of positions from a sensor in the ground frame [rad]."""
+    away = where - np.array(sensor.pose.position[:2])
+    return np.unwrap(np.arctan2(away[..., 1], away[..., 0]), axis=1)

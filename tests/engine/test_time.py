@@ -16,7 +16,7 @@ from pe_core.base.values import Number
 from pe_core.metric.entropy import BLIND_PRECISION, ap_of_entropy
 from pe_core.metric.frames import Frames, predicted, updated
 from pe_core.motion import Actor, Confirmation, Story, drive_by, stories
-from pe_core.motion.clock import FrameClock
+from pe_core.motion.clock import FrameClock, frame_rate
 from pe_core.motion.detector_rank import rank_chain
 from pe_core.motion.scan import ap_with_latency, exposed, factor_of, scan_factor, seam
 from pe_core.motion.tracks import first_frame
@@ -363,6 +363,20 @@ def test_ap_is_that_of_the_last_frame():
     clock = FrameClock.of(11, 10.0, 4.0)  # at 0, 0.25, 0.5, 0.75 and 1 s: at the next frame
     assert clock.frames.tolist() == [0, 3, 5, 8, 10]
     assert clock.last.tolist() == [0, 0, 0, 1, 1, 2, 2, 2, 3, 3, 4]
+
+
+def test_a_pattern_of_several_frames_takes_them_at_its_own_rate():
+    rosette = replace(rig()["roof"], scan=pe.ScanTiming(exposures=5))
+    for whole_hz, frames_s in ((2.0, 0.1), (1.0, 0.2), (10.0, 0.1)):  # 5 exposures: 10, 5, 50 Hz
+        clock = FrameClock.of(31, 10.0, frame_rate(rosette, {"lidar": whole_hz}, 10.0))
+        assert clock.frame_s == pytest.approx(frames_s)
+    seen = drive_by(near_body(), pe.Rig([rosette]), None, rates={"lidar": 1.0}).bodies[0]
+    apart = [
+        drive_by(near_body(), pe.Rig([replace(exposed(rosette, k), scan=pe.ScanTiming())]), None)
+        for k in range(5)
+    ]
+    expected = np.repeat([one.bodies[0].ap[0] for one in apart], 2)
+    assert seen.ap[:10].tolist() == expected.tolist()
 
 
 def extremes(cls):

@@ -7,12 +7,15 @@ import numpy as np
 import pytest
 
 from pe_core.metric.entropy import BLIND_PRECISION
+from pe_core.motion import Confirmation
 from pe_core.scene.objects import Objects
 from studies.pages import PAGE
 from studies.road.logs import CLASSES, Log
 from studies.road.statistics import HOLDS, OPEN, REFUTED
 from studies.tracks import __main__ as study
 from studies.tracks import order
+from studies.tracks.memory import LAGS, NEAR, fitted, memory_statements, pairs_of_class
+from studies.tracks.memory import measured as correlation_of
 from studies.tracks.moments import Moments, compared, pairs_of, persistence, tracks_of, verdict
 
 FOLDER = Path(__file__).parents[2] / "docs/validity/tracks"
@@ -102,10 +105,43 @@ def test_published_order_follows_from_the_equations():
 def test_the_page_is_that_of_the_saved_figures():
     found = json.loads((FOLDER / "results.json").read_text())
     assert (FOLDER / PAGE).read_text() == study.page_of(found)
-    linked = [
-        own["correlation"]
-        for by_n in found["persistence"].values()
-        for name, own in by_n["5"].items()
-        if name in ("car", "pedestrian")
-    ]
-    assert min(linked) > 0.65 and max(linked) < 0.85  # the default of [time] correlation
+    whole = found["memory"]["5"]["thirds"]["all"]
+    default = Confirmation().correlation_time_s
+    assert default == round(2.0 * whole["time_s"]) / 2.0  # the plan's rule
+    for lag, (_, low, high) in zip(LAGS, whole["correlation"], strict=True):
+        both = Confirmation(2, 2, default).kept([0.5, 0.5], lag * 0.1)[-1]
+        assert low - NEAR < (both - 0.25) / 0.25 < high + NEAR
+
+
+def test_a_correlation_time_is_found_again():
+    rng, time_s, rows = np.random.default_rng(5), 1.5, []
+    kept = np.exp(-0.1 / time_s)
+    for track in range(60):
+        z = rng.standard_normal()
+        for k in range(120):
+            z = kept * z + np.sqrt(1.0 - kept * kept) * rng.standard_normal()
+            rows.append((k, track, 40.0, 9 * (z < 0.2)))
+    log = log_of(rows)
+    cells = {lag: [pairs_of_class(log, np.ones(len(rows)), 5, 0, lag, 3)] for lag in LAGS}
+    assert fitted(cells)["time_s"] == pytest.approx(time_s, abs=0.4)
+
+
+def test_pairs_of_frames_by_hand():
+    # one track: seen, seen, not, seen; two frames apart: (1, 0), (1, 1)
+    log = log_of([(k, 0, 40.0, n) for k, n in enumerate((9, 9, 0, 9))])
+    pairs = pairs_of_class(log, np.ones(4), 5, 0, 2, 1)
+    counts = [float(t.sum()) for t in (pairs.all, pairs.first, pairs.then, pairs.both)]
+    assert counts == [2.0, 2.0, 1.0, 1.0]
+    assert pairs_of_class(log, np.ones(4), 5, 0, 4, 1).total == 0.0  # no pair so far apart
+    assert correlation_of([pairs]) == 0.0  # P(seen | seen) = P(seen) = 1/2
+
+
+def test_what_the_plan_says_of_the_memory():
+    def found(values, model):
+        return {"thirds": {"all": {"correlation": [[v, v, v] for v in values], "model": model}}}
+
+    slow, chain = [0.8, 0.7, 0.65, 0.55, 0.4, 0.3], [0.8, 0.64, 0.51, 0.33, 0.11, 0.01]
+    said = [row[-1] for row in memory_statements(found(slow, slow))]
+    assert said == ["holds", "holds"]
+    said = [row[-1] for row in memory_statements(found(chain, slow))]
+    assert said == ["does not hold", "does not hold"]

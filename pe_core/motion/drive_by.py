@@ -144,7 +144,8 @@ def drive_by(
     sight = StorySight(story, rig, vehicle, model or PerceptionModel(), rates or {})
     whole = sight.ap(None, confirmation)
     alone = {sensor.name: sight.ap([sensor.name], confirmation) for sensor in rig}
-    track, seams = sight.track(confirmation), sight.seams(alone)
+    track = sight.track(confirmation)
+    seams = sight.seams(alone)
     away = _distance(sight.positions, vehicle)
     bodies = []
     for k, actor in enumerate(actor for actor in story.actors if actor.watched):

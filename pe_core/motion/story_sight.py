@@ -48,7 +48,8 @@ class StorySight:
         where, headings = story.positions(vehicle)
         watched = [k for k, actor in enumerate(story.actors) if actor.watched]
         scenes = story_scenes(story, where, headings, rig)
-        self._story, self._rig = story, rig
+        self._story = story
+        self._rig = rig
         self.positions = where[watched]
         self._speeds = story.speeds[watched]
         self._bearings = {s.name: _bearings(s, self.positions) for s in rig}
@@ -95,9 +96,10 @@ class StorySight:
     def _at_last_frame(self, sensor: Sensor, by_exposure: Floats) -> Floats:
         """Return m (W * K) of a sensor's last frame, with the factor of its scan, from that of each
         exposure (E, W, K)."""
-        clock, story_hz = self._clock(self._frames_hz[sensor.name]), self._story.rate_hz
-        turns = sensor, self._bearings[sensor.name], 1.0 / story_hz, self._turns_hz[sensor.name]
-        m = by_exposure * factor_of(*turns)
+        clock = self._clock(self._frames_hz[sensor.name])
+        bearings = self._bearings[sensor.name]
+        frame_s = 1.0 / self._story.rate_hz
+        m = by_exposure * factor_of(sensor, bearings, frame_s, self._turns_hz[sensor.name])
         exposures = np.arange(len(clock.frames)) % sensor.scan.exposures
         at_frames = m[exposures, :, clock.frames].T
         return np.asarray(clock.held(at_frames).ravel())

@@ -87,8 +87,10 @@ class Linked:
         return np.asarray((both / self.first - self.then) / (1.0 - self.then))
 
 
-def pairs_of_class(log: Log, m: Floats, n: int, label: int, lag: int, groups: int) -> Pairs:
-    """Return the pairs of boxes of a class that are `lag` frames apart, grouped by predicted m."""
+def pairs_of_class(log: Log, m: Floats, name: str, lag: int, n: int, groups: int) -> Pairs:
+    """Return the pairs of boxes of a class that are `lag` frames apart, grouped by predicted m. A
+    box is seen from n points on."""
+    label = CLASSES.index(name)
     tracks = [t for t in tracks_of(log) if log.objects.labels[t[0]] == label and len(t) > lag]
     if not tracks:
         none = np.zeros((1, groups))
@@ -101,10 +103,11 @@ def pairs_of_class(log: Log, m: Floats, n: int, label: int, lag: int, groups: in
     for k, part in enumerate(np.array_split(order, groups)):
         group[part] = k
     seen = log.points >= n
-    cell, shape = track * groups + group, (len(tracks), groups)
+    cell = track * groups + group
+    shape = len(tracks), groups
 
     def counted(flags: Flags) -> Floats:
-        return np.bincount(cell, flags, math.prod(shape)).reshape(shape)
+        return np.bincount(cell, flags.astype(float), math.prod(shape)).reshape(shape)
 
     every = np.ones(len(cell), bool)
     return Pairs(
@@ -197,8 +200,7 @@ def memory(logs: Sequence[tuple[Log, Floats]], n: int) -> Json:
         whole: Cells = {lag: [] for lag in LAGS}
         for log, m in logs:
             for name in OF_CLASSES:
-                what = log, m, n, CLASSES.index(name)
-                cells = {lag: [pairs_of_class(*what, lag, groups)] for lag in LAGS}
+                cells = {lag: [pairs_of_class(log, m, name, lag, n, groups)] for lag in LAGS}
                 if min(cells[lag][0].total for lag in JUDGED) >= MIN_PAIRS:
                     rows[f"{log.name}, {name}"] = row(cells)
                     for lag in LAGS:
@@ -236,11 +238,12 @@ def memory_statements(found: Json) -> list[list[str]]:
         values = np.array([own[0] for own in whole["correlation"]])[: len(JUDGED)]
         off = np.abs(np.array(whole["model"])[: len(JUDGED)] - values)
         chain = np.abs(values[0] ** np.array(JUDGED) - values)
-        describes, fails = off.max() <= NEAR, chain[JUDGED.index(5) :].max() > NEAR
+        describes = bool(off.max() <= NEAR)
         said = f"at most {off.max():.2f} off"
-        rows.append([f"10. One correlation time, {grouping}", said, _verdict(bool(describes))])
+        rows.append([f"10. One correlation time, {grouping}", said, _verdict(describes)])
+        too_short = bool(chain[JUDGED.index(5) :].max() > NEAR)
         said = f"up to {chain.max():.2f} off"
-        rows.append([f"11. One frame is too short, {grouping}", said, _verdict(bool(fails))])
+        rows.append([f"11. One frame is too short, {grouping}", said, _verdict(too_short)])
     return rows
 
 

@@ -122,17 +122,17 @@ def test_a_correlation_time_is_found_again():
             z = kept * z + np.sqrt(1.0 - kept * kept) * rng.standard_normal()
             rows.append((k, track, 40.0, 9 * (z < 0.2)))
     log = log_of(rows)
-    cells = {lag: [pairs_of_class(log, np.ones(len(rows)), 5, 0, lag, 3)] for lag in LAGS}
+    cells = {lag: [pairs_of_class(log, np.ones(len(rows)), "car", lag, 5, 3)] for lag in LAGS}
     assert fitted(cells)["time_s"] == pytest.approx(time_s, abs=0.4)
 
 
 def test_pairs_of_frames_by_hand():
     # one track: seen, seen, not, seen; two frames apart: (1, 0), (1, 1)
     log = log_of([(k, 0, 40.0, n) for k, n in enumerate((9, 9, 0, 9))])
-    pairs = pairs_of_class(log, np.ones(4), 5, 0, 2, 1)
+    pairs = pairs_of_class(log, np.ones(4), "car", 2, 5, 1)
     counts = [float(t.sum()) for t in (pairs.all, pairs.first, pairs.then, pairs.both)]
     assert counts == [2.0, 2.0, 1.0, 1.0]
-    assert pairs_of_class(log, np.ones(4), 5, 0, 4, 1).total == 0.0  # no pair so far apart
+    assert pairs_of_class(log, np.ones(4), "car", 4, 5, 1).total == 0.0  # no pair so far apart
     assert correlation_of([pairs]) == 0.0  # P(seen | seen) = P(seen) = 1/2
 
 

@@ -107,7 +107,8 @@ def pairs_of_class(log: Log, m: Floats, name: str, lag: int, n: int, groups: int
     shape = len(tracks), groups
 
     def counted(flags: Flags) -> Floats:
-        return np.bincount(cell, flags.astype(float), math.prod(shape)).reshape(shape)
+        table = np.bincount(cell[flags], minlength=math.prod(shape)).reshape(shape)
+        return table.astype(float)
 
     every = np.ones(len(cell), bool)
     return Pairs(

@@ -1,5 +1,5 @@
-"""Channel angles of a LiDAR in columns: a plain table, or Hesai's angle correction file. Here is
-also what all layouts share: a channel, and the checks of its values."""
+"""Channel angles of a LiDAR from a file: columns of a plain table or of Hesai's angle correction
+file, or a document of a driver (`driver_angles`)."""
 
 import re
 from collections.abc import Sequence
@@ -16,11 +16,9 @@ from pe_core.base.files import (
     read_bytes,
 )
 
-MAX_ELEVATION_DEG = 90.0
-MAX_OFFSET_DEG = 180.0
-DECIMALS = 9
-"""Degrees are rounded as a saved study stores them, so that its copy has the same beams."""
-INTEGER = re.compile(r"\d{1,9}", re.ASCII)
+from .channels import Channel, checked_channel, parse_id, sorted_by_id
+from .driver_angles import driver_channels
+
 NAMES = {
     "elevation": {"elevation", "elevations", "elev", "vertical", "vert"},
     "azimuth": {
@@ -36,59 +34,10 @@ ANGLE_PREFIXES = ("az", "elev", "hor", "vert")
 PREAMBLE = "eeff"
 CHECKSUM = re.compile(r"[0-9a-fA-F]{64}")
 """Hesai's files may begin with ``EEFF,1,1`` and end with the SHA-256 of the rest."""
-LAYOUTS = "a column named elevation, or Hesai or Velodyne channel angles"
-
-
-@dataclass(frozen=True, slots=True)
-class Channel:
-    """A channel's angles [deg]: above the horizon, and counter-clockwise seen from above. `where`
-    is its location in the file, for messages; `number` its id, if the file has ids."""
-
-    where: str
-    number: int | None
-    elevation_deg: float
-    azimuth_offset_deg: float
-
-
-def checked_channel(
-    source: str, where: str, number: int | None, elevation_deg: float, offset_deg: float
-) -> Channel:
-    """Return a channel with rounded angles, or raise `InputError` if one is out of range."""
-    for what, angle, limit in (
-        ("an elevation", elevation_deg, MAX_ELEVATION_DEG),
-        ("an azimuth offset", offset_deg, MAX_OFFSET_DEG),
-    ):
-        if not abs(angle) <= limit:
-            raise InputError(source, where, f"{what} within +-{limit:g} degrees", f"{angle:g}")
-    # + 0.0: no negative zero, which would be written out
-    return Channel(
-        where, number, round(elevation_deg, DECIMALS) + 0.0, round(offset_deg, DECIMALS) + 0.0
-    )
-
-
-def parse_id(source: str, where: str, text: str) -> int:
-    """Return a channel's id, an integer >= 0."""
-    if not INTEGER.fullmatch(text):
-        raise InputError(source, where, "a whole number for the channel's id", quoted(text))
-    return int(text)
-
-
-def sorted_by_id(source: str, channels: Sequence[Channel], first: int) -> list[Channel]:
-    """Return the channels sorted by id; ids must run from `first` up without a gap."""
-    channel_by_id: dict[int | None, Channel] = {}
-    for channel in channels:
-        if channel.number is None or channel.number < first:
-            raise InputError(source, channel.where, f"a channel id >= {first}", channel.number)
-        if channel.number in channel_by_id:
-            again = f"{channel.number} again, after {channel_by_id[channel.number].where}"
-            raise InputError(source, channel.where, "a channel id used once", again)
-        channel_by_id[channel.number] = channel
-    ids = range(first, first + len(channel_by_id))
-    for number in ids:
-        if number not in channel_by_id:
-            expected = f"angles for it, as ids run without a gap from {first}"
-            raise InputError(source, f"channel {number}", expected, "none")
-    return [channel_by_id[number] for number in ids]
+LAYOUTS = (
+    "a column named elevation, Hesai's angle correction, Ouster's metadata (JSON), or Velodyne's "
+    "calibration (YAML)"
+)
 
 
 Line = tuple[str, tuple[str, ...]]  # A line's location, for messages, and its cells
@@ -212,11 +161,13 @@ def _channel(source: str, layout: Layout, row: Line) -> Channel:
 
 def read_angles(path: str | Path) -> list[Channel]:
     """Read the channels of a LiDAR from a file; its content decides the layout, not its name.
-    Layouts: plain columns (counter-clockwise offsets), Hesai's angle correction (clockwise).
+    Layouts: plain columns (counter-clockwise offsets), Hesai's angle correction (clockwise),
+    Ouster's metadata (JSON, clockwise), Velodyne's calibration of the ROS driver (YAML, radians).
     Channels are sorted by id if the file has ids, else in the file's order. A file of none of these
     layouts, or with a wrong value, raises `InputError`."""
     path = Path(path)
     source, text = str(path), decode_text(read_bytes(path))
     if not text.strip():
         raise InputError(source, "file", "channel angles", "an empty file")
-    return read_columns(source, text)
+    channels = driver_channels(source, text)
+    return read_columns(source, text) if channels is None else channels

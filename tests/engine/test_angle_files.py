@@ -4,6 +4,9 @@ Directions are checked as a hand would: at azimuth step 0 a counter-clockwise of
 positive y.
 """
 
+import json
+import math
+
 import numpy as np
 import pytest
 
@@ -73,6 +76,65 @@ def test_hesai_and_the_catalogue_agree_on_the_sign(write):
     assert np.degrees(ours.azimuth_offsets[:2]) == pytest.approx([a for _, a in read])
 
 
+MAKERS = {
+    "Hesai Pandar64": (14.882, 1.042),
+    "Ouster OS0-128 nominal": (46.2, -11.15),
+    "RoboSense RS-LiDAR-32": (15.0167, 6.9439),
+    "Velodyne HDL-64E (UTexas unit)": (2.021, 2.0),
+}
+"""Angles [deg] of one channel of a preset, counter-clockwise, by the formula of its driver.
+Hesai, pandarGeneral_internal.cc: offset -1.042, x = d sin(azimuth), y = d cos(azimuth), clockwise.
+Ouster, xyzlut.cpp: beam_azimuth_angles 11.15, encoder (counter-clockwise) - beam azimuth.
+RoboSense, rawdata.cc: horizontal angle -6.9439 is added, y = -d sin(azimuth), clockwise.
+Velodyne, rawdata.cc: rot_correction 0.0349066 rad is subtracted from a clockwise azimuth."""
+
+
+def test_each_maker_s_azimuths_have_the_sign_of_its_driver():
+    for name, (elevation, offset) in MAKERS.items():
+        lidar = catalog.load(name)
+        row = np.argmin(np.abs(np.degrees(lidar.elevations) - elevation))
+        assert np.degrees(lidar.elevations[row]) == pytest.approx(elevation, abs=1e-6), name
+        assert np.degrees(lidar.azimuth_offsets[row]) == pytest.approx(offset, abs=1e-6), name
+    makers = {catalog.entries()[name].maker for name in MAKERS}
+    with_offsets = {
+        entry.maker for entry in catalog.entries().values() if "azimuth_offsets_deg" in entry.table
+    }
+    assert with_offsets == makers
+
+
+ANGLES = {
+    "beam_altitude_angles": [46.2, 45.12, 44.36],
+    "beam_azimuth_angles": [11.15, 3.677, -3.639],
+}
+OUSTER = json.dumps({"lidar_mode": "1024x10", **ANGLES})
+OUSTER_2 = json.dumps({"beam_intrinsics": ANGLES, "sensor_info": {"prod_line": "OS-0-128"}})
+VELODYNE = """\
+lasers:
+- {dist_correction: 0.1, laser_id: 1, rot_correction: -0.0698131695389748, vert_correction: -0.1249}
+- dist_correction: 0.28
+  laser_id: 0
+  rot_correction: 0.0349065847694874
+  vert_correction: 0.0352698266506195
+num_lasers: 2
+"""
+
+
+def test_ouster_s_metadata_has_the_beams_of_the_preset(write):
+    ours = catalog.load("Ouster OS0-128 nominal")
+    for text in (OUSTER, OUSTER_2):
+        read = degrees(write(text))
+        assert np.degrees(ours.elevations[:3]) == pytest.approx([e for e, _ in read])
+        assert np.degrees(ours.azimuth_offsets[:3]) == pytest.approx([a for _, a in read])
+
+
+def test_velodyne_s_calibration_has_the_beams_of_the_preset(write):
+    """Laser 0 is laser 29 of the driver's 64e_utexas.yaml, the first of the preset."""
+    ours, read = catalog.load("Velodyne HDL-64E (UTexas unit)"), degrees(write(VELODYNE))
+    first = np.degrees([ours.elevations[0], ours.azimuth_offsets[0]])
+    assert read[0] == pytest.approx(first, abs=1e-3)
+    assert read[1] == pytest.approx((math.degrees(-0.1249), -4.0), abs=1e-5)
+
+
 def study(angles, **more):
     model = MODEL | {"azimuth_step_deg": 0.2, "angles": angles} | more
     return {"sensor": [{"name": "own", "model": model, "position": [0, 0, 1.8]}]}
@@ -115,6 +177,17 @@ BAD = [
     ("line 3", HESAI.replace("13.283", "91")),
     ("line 4", HESAI.replace("\n3,", "\nbeef,")),
     ("file", "Laser id,Elevation,Azimuth\n" + "a" * 64),
+    ("file", "{"),
+    ("beam_altitude_angles", "{}"),
+    ("beam_azimuth_angles", OUSTER.replace(", -3.639", "")),
+    ("beam_azimuth_angles", OUSTER.replace("-3.639", '"x"')),
+    ("beam_altitude_angles[2]", OUSTER.replace("44.36", "91")),
+    ("beam_intrinsics.beam_altitude_angles", OUSTER_2.replace("[46.2, 45.12, 44.36]", "[]")),
+    ("lasers", "lasers: []\n"),
+    ("lasers[0].laser_id", VELODYNE.replace("laser_id: 1", "laser_id: -1")),
+    ("lasers[1].vert_correction", VELODYNE.replace("vert_correction: 0.03", "vert: 0.03")),
+    ("lasers[1]", VELODYNE.replace("laser_id: 0", "laser_id: 1")),
+    ("channel 0", VELODYNE.replace("laser_id: 0", "laser_id: 2")),
 ]
 
 

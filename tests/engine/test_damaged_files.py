@@ -27,7 +27,7 @@ from tests.engine.mesh_files import (
     stl_binary,
 )
 from tests.engine.refusals import wrongly_refused
-from tests.engine.test_angle_files import HESAI
+from tests.engine.test_angle_files import HESAI, OUSTER, VELODYNE
 from tests.engine.test_box_files import CSV, KITTI, nuscenes_box
 from tests.thorough import tries
 
@@ -51,6 +51,8 @@ GOOD = {
     "kitti": (pt.read_boxes, "a", KITTI.encode()),
     "nuscenes": (pt.read_boxes, "a", json.dumps([nuscenes_box(), nuscenes_box()]).encode()),
     "hesai": (read_angles, "a", HESAI.encode()),
+    "ouster": (read_angles, "a", OUSTER.encode()),
+    "velodyne": (read_angles, "a", VELODYNE.encode()),
     "columns": (read_angles, "a", b"elevation,azimuth_offset\n5,1\n-3,-1\n"),
     "table": (read_ap_table, "a", b"m,ap,n\n1,0.2,9\n10,0.5,8\n100,0.8,7\n"),
 }

@@ -5,6 +5,7 @@ anybody's file. Such a text gets an apostrophe in front (OWASP, "CSV injection")
 take it off again.
 """
 
+import codecs
 import csv
 import io
 import math
@@ -24,6 +25,8 @@ MESH_BYTES = 2 << 30
 LABEL_BYTES = 2 << 30
 """Maximum size of a mesh file and of a file of labelled boxes."""
 TEXT_BYTES = 16 << 20  # Maximum size of a study, a file of channel angles or a table
+UTF_16_MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+"""First bytes of a text in UTF-16: spreadsheets save "Unicode text" so."""
 MAX_NAME_BYTES = 255
 """Most bytes of a name of a file or folder on the usual file systems."""
 CHUNK = 1 << 20
@@ -248,10 +251,17 @@ def _writing(path: Path) -> Iterator[None]:
         ) from error
 
 
+def is_binary(data: bytes) -> bool:
+    """Whether bytes are no text: one of them is 0, and they do not begin as UTF-16."""
+    return b"\0" in data and not data.startswith(UTF_16_MARKS)
+
+
 def decode_text(data: bytes) -> str:
-    """Decode UTF-8, or else Latin-1, with every line ending turned into a newline."""
+    """Decode UTF-16 with its mark, UTF-8, or else Latin-1, with every line ending turned into a
+    newline."""
+    encoding = "utf-16" if data.startswith(UTF_16_MARKS) else "utf-8-sig"
     try:
-        text = data.decode("utf-8-sig")
+        text = data.decode(encoding)
     except UnicodeDecodeError:
         text = data.decode("latin-1")
     return text.replace("\r\n", "\n").replace("\r", "\n")

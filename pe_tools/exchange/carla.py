@@ -21,6 +21,25 @@ from .portable_kinds import CAMERA, LIDAR, RADAR
 
 FILE = "objects.json"
 TYPES = {CAMERA: "camera.rgb", LIDAR: "lidar.ray_cast", RADAR: "other.radar"}
+KINDS = {type_name: kind for kind, type_name in TYPES.items()}
+"""Kinds by type, without the prefix `sensor.`: the types that model a real sensor of these kinds.
+Other cameras and LiDARs are left out: their figures do not describe what a detector sees."""
+GROUND_TRUTH = "ground truth"
+TRUTH_TYPES = frozenset(
+    {
+        "camera.cosmos_visualization",
+        "camera.depth",
+        "camera.instance_segmentation",
+        "camera.normals",
+        "camera.optical_flow",
+        "camera.semantic_segmentation",
+        "lidar.ray_cast_semantic",
+    }
+)
+"""Types that show the simulated world without error (CARLA's sensors reference)."""
+SPECTATOR = "spectator"
+SPECTATOR_NAMES = ("rgb_view", "spectator")
+"""Cameras behind the vehicle that show it to a person: carla_manual_control shows `rgb_view`."""
 FRAMES_A_SECOND = 10
 TINY_DEG = 1e-6
 SCAN_KEYS = (
@@ -123,8 +142,7 @@ def _sensor(path: Path, row: Table) -> PortableSensor:
     spawn = row.table(SPAWN)
     position, angles = values.named_numbers(spawn, XYZ), [spawn.number(key, 0.0) for key in RPY]
     pose = values.pose_from(path, row.field(SPAWN), position, angles, degrees=True)
-    kind = next((kind for kind in (CAMERA, LIDAR) if f".{kind}." in type_name), None)
-    kind = kind or type_name.removeprefix("sensor.").removeprefix("other.")
+    kind = _kind(type_name.removeprefix("sensor."), row.text("id"))
     sensor = PortableSensor(row.text("id"), pose, kind, entry=json_entry(row.data))
     if kind == CAMERA and all(key in row for key in ("image_size_x", "image_size_y", "fov")):
         size = row.whole("image_size_x", rule=PIXELS), row.whole("image_size_y", rule=PIXELS)
@@ -140,6 +158,14 @@ def _sensor(path: Path, row: Table) -> PortableSensor:
         reach = row.number("range", RADAR_RANGE_M, rule=RANGE)
         return replace(sensor, field=FieldOfView((-across, across), (-up, up), reach))
     return sensor
+
+
+def _kind(type_name: str, name: str) -> str:
+    """Return the kind of a sensor by its type, without the prefix `sensor.`, and by its name."""
+    if type_name in TRUTH_TYPES:
+        return GROUND_TRUTH
+    kind = KINDS.get(type_name) or type_name.removeprefix("other.")
+    return SPECTATOR if kind == CAMERA and name in SPECTATOR_NAMES else kind
 
 
 def _scan(row: Table) -> Scan:

@@ -2,17 +2,19 @@
 
 import csv
 import math
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pe_core.base.errors import InputError
+from pe_core.base.errors import InputError, shown
 from pe_core.base.files import csv_text, unmarked
 from pe_core.base.values import FINITE, Number, choice
 from pe_core.sensors.camera.kind import FOV_DEG
 from pe_core.sensors.camera.lens import LENSES
 from pe_core.study.passthrough import json_entry
+from pe_tools.formats.csv_rows import SEPARATORS, separated
 
 from . import foreign_values as values
 from .foreign_values import Export, FileTexts, plain_number
@@ -29,6 +31,10 @@ RANGES = {"min_range_m": values.MIN_RANGE, "max_range_m": values.FARTHEST}
 COLUMNS = ("name", "kind", "model", *POSITION_KEYS, *ROTATION_KEYS, "fusion", *LENS, *RANGES)
 PARAMETERS = "parameters"
 """Column of a rig with sensors whose models have neither lens nor beams: tables as JSON."""
+COMMENTS = ("#", '"#')
+DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+", re.ASCII)
+"""A number of a spreadsheet in another language; with three decimals it could be one of thousands,
+so it is not read."""
 HEAD = """\
 # Origin on the ground under the vehicle's centre; x forward, y left, z up; metres, degrees.
 # R = Rz(yaw) Ry(pitch) Rx(roll); positive pitch is nose down; a camera looks along its x axis.
@@ -74,11 +80,11 @@ def _row(sensor: PortableSensor) -> dict[str, str]:
 
 def read(path: Path) -> PortableRig:
     """Read a table of sensors. Only the columns of name, position and angles are required."""
-    lines = [
-        line for line in values.text_of(path).splitlines() if line and not line.startswith("#")
-    ]
-    values.require_at_most(path, "file", len(lines), values.MAX_FRAMES, "rows")
-    rows = csv.DictReader(lines)
+    text = values.text_of(path)
+    numbered = [(n, line) for n, line in enumerate(text.splitlines(), 1) if not _is_empty(line)]
+    values.require_at_most(path, "file", len(numbered), values.MAX_FRAMES, "rows")
+    separator, lines = separated(numbered)
+    rows = csv.DictReader((line for _, line in lines), delimiter=separator)
     try:
         for key in ("name", *POSITION_KEYS, *ROTATION_KEYS):
             if key not in (rows.fieldnames or ()):
@@ -89,13 +95,22 @@ def read(path: Path) -> PortableRig:
         raise InputError(path, "file", "a table (CSV)", error) from None
 
 
+def _is_empty(line: str) -> bool:
+    """Whether a line is a comment or has no cell that is filled. A spreadsheet puts a comment in
+    quotes, and separators in rows without cells."""
+    return line.startswith(COMMENTS) or not line.strip(f'{SEPARATORS}" ')
+
+
 def _sensor(path: Path, place: str, row: Mapping[str, Any]) -> PortableSensor:
     """Return the sensor of a row, `place`; one of unknown kind has its cells as entry."""
     # Cells that a row lacks or has too many are no texts.
     cells = {k: unmarked(c) if isinstance(c, str) else c for k, c in row.items()}
 
     def number(key: str, rule: Number = FINITE) -> float:
-        return values.figure(path, f"{place}, {key}", cells[key], rule)
+        cell = cells[key]
+        if isinstance(cell, str) and DECIMAL_COMMA.fullmatch(cell.strip()):
+            raise InputError(path, f"{place}, {key}", "a decimal point", shown(cell))
+        return values.figure(path, f"{place}, {key}", cell, rule)
 
     numbers = [number(key) for key in (*POSITION_KEYS, *ROTATION_KEYS)]
     pose = values.pose_from(path, place, numbers[:3], numbers[3:], degrees=True)

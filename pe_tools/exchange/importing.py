@@ -76,6 +76,7 @@ def import_rig(
     if not path.exists():
         raise InputError(path, "", "", "no such file or folder")
     row = detect_format(path) if name is None else rig_format(name)
+    path = row.path_to_read(path)
     origin = origin_in_ground(row.origin, reference, row.title, path)
     try:
         with report_memory_errors(path):
@@ -99,6 +100,11 @@ def _imported(
         A_NAME.checked(path, f"name of sensor {number}", sensor.name)
     names = named_apart([sensor.name for sensor in sensors])
     named = [replace(s, name=name) for s, name in zip(sensors, names, strict=True)]
+    renamed = [
+        f"{name}: in the file {sensor.name}, as another sensor is"
+        for sensor, name in zip(sensors, names, strict=True)
+        if name != sensor.name
+    ]
     included, left_out = parted(named, models)
     left_out_names = listed_kinds((sensor.kind or "", sensor.name) for sensor in left_out)
     if not included:
@@ -124,7 +130,7 @@ def _imported(
     hint = f"; an export to {row.title} has them again" if row.passes_through else ""
     left_out_lines = [f"left out: {left_out_names}{hint}"] if left_out else []
     notes = merged_lines(((m.sensor.name, m.sensor.told) for m in modelled), len(modelled))
-    lines = (*left_out_lines, *notes, *(m.line for m in modelled if m.line))
+    lines = (*left_out_lines, *renamed, *notes, *(m.line for m in modelled if m.line))
     to_choose = tuple(m.sensor.name for m in modelled if m.stands_in)
     return ImportedRig(Rig(rig), to_choose, lines, passthrough if passthrough.holds else None)
 

@@ -59,6 +59,11 @@ class RigFormat:
     beside: bool = False
     passes_through: bool = True
 
+    def path_to_read(self, path: Path) -> Path:
+        """Return the path that `code` reads: of a folder the file in it, where a rig of the format
+        is one file."""
+        return path / self.files[0] if len(self.files) == 1 and path.is_dir() else path
+
 
 _TABLE = frozenset({MODEL, PARAMETERS, FUSION, MIN_RANGE, MAX_RANGE})
 _BEAMS = frozenset({BEAMS})

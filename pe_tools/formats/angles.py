@@ -17,6 +17,7 @@ from pe_core.base.files import (
 )
 
 from .channels import Channel, checked_channel, parse_id, sorted_by_id
+from .csv_rows import separated
 from .driver_angles import driver_channels
 
 NAMES = {
@@ -62,13 +63,16 @@ class Layout:
 def read_columns(source: str, text: str) -> list[Channel]:
     """Read channels from columns separated by commas, semicolons, tabs or spaces. No column of
     elevations, or a row that is invalid, raises `InputError`."""
-    lines = numbered_lines(text)
+    lines: Sequence[tuple[int, str]] = numbered_lines(text)
     while lines and lines[0][1].strip().lower().startswith(PREAMBLE):
         lines = lines[1:]
     if not lines:
         raise InputError(source, "file", "channel angles", "only comments")
-    separator = next((s for s in ";,\t" if s in lines[0][1]), None)  # of all lines
-    rows = [(f"line {n}", _cells(line, separator)) for n, line in lines]
+    separator, lines = separated(lines)
+    if not lines:
+        raise InputError(source, "file", "channel angles", "a separator alone")
+    by = separator if separator in lines[0][1] else None  # else blanks, in all lines
+    rows = [(f"line {n}", _cells(line, by)) for n, line in lines]
     if any(map(_is_number, rows[0][1])):
         layout = _without_header(source, rows)
     else:

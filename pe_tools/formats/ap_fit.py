@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError, require_name
-from pe_core.base.files import decode_text, numbered_lines, parse_number, read_bytes
+from pe_core.base.files import decode_text, is_binary, numbered_lines, parse_number, read_bytes
 from pe_core.geometry.poses import Pose
 from pe_core.metric.entropy import AP_MAX, AP_MIN, ApCurve
 from pe_core.scene import Objects
@@ -19,7 +19,7 @@ from pe_core.scene.rig import Sensor, SensorModel
 from pe_core.sensors import measure_objects
 from pe_core.sensors.kind import PAPER_VOXEL_M, SIZES
 
-from .csv_rows import csv_rows
+from .csv_rows import csv_rows, separated
 
 HEADINGS = 24  # Headings of an object whose m is averaged
 FIRST_RAD = 0.01  # The first heading: no side of an object is exactly along a ray
@@ -142,14 +142,16 @@ def read_ap_table(
     table has a column range_m [m] in place of m, and the function returns m (N,) of ranges (N,)."""
     source = str(path)
     data = read_bytes(Path(path))
-    if b"\0" in data:
+    if is_binary(data):
         raise InputError(source, "file", "a table in text (CSV)", "binary data")
     rows = numbered_lines(decode_text(data))
     columns = COLUMNS if m_at_ranges is None else (RANGE_COLUMN, *COLUMNS[1:])
     if not rows:
         expected = f"a table with the columns {columns[0]} and ap"
         raise InputError(source, "file", expected, "nothing")
-    values = [_values(source, *row, columns) for row in csv_rows(source, rows, columns[:2])]
+    separator, rows = separated(rows)
+    cells = csv_rows(source, rows, columns[:2], separator)
+    values = [_values(source, *row, columns) for row in cells]
     m, ap, n = np.array(values, dtype=float).reshape(-1, 3).T
     return ApTable(m if m_at_ranges is None else m_at_ranges(m), ap, n, source)
 

@@ -48,6 +48,7 @@ COLUMNS = [
     "# a comment\r\n\r\n-15, 1.5  # lowest\r\n   \r0,0\n2.25,-3.\r",
     "\ufeffelevation,azimuth\n-15,1.5\n0,-0.0\n2.25,-3\n",
     "ring elevation azimuth_deg\n1 -15 1.5\n3 2.25 -3\n2 0 0\n",
+    "sep=;\nelevation;azimuth_offset\n-15;1.5\n0;0\n2.25;-3\n".encode("utf-16"),
 ]
 
 
@@ -155,6 +156,7 @@ def test_a_saved_study_stands_alone_with_the_same_beams_to_the_bit(write, tmp_pa
 BAD = [
     ("file", ""),
     ("file", "elevation,azimuth\n"),
+    ("file", "sep=;\n"),
     ("line 1", "hello\n"),
     ("line 1", "azimuth\n1\n"),
     ("line 1", "elevation,vertical\n1,2\n"),

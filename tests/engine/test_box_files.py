@@ -75,7 +75,8 @@ AS_MET = [
 def test_csv_as_it_is_met(write):
     """Mixed line ends, a byte order mark, other separators, comments, units, columns anywhere."""
     plain = pt.read_boxes(write(CSV, "plain"))
-    assert [text for text in AS_MET if pt.read_boxes(write(text)) != plain] == []
+    texts = [*AS_MET, *(f"sep={s}\n{CSV.replace(',', s)}" for s in ";\t,"), CSV.encode("utf-16")]
+    assert [text for text in texts if pt.read_boxes(write(text)) != plain] == []
 
 
 def test_kitti_is_turned_from_the_camera_to_the_ground(write):

@@ -83,6 +83,91 @@ def test_carla_brings_back_even_channels_and_says_what_it_cannot(tmp_path):
     assert puck.beam_count == model.beam_count and puck.max_range == model.max_range
 
 
+def spawned(kind, name, **more):
+    """A row of objects.json."""
+    spawn = dict.fromkeys(("x", "y", "roll", "pitch", "yaw"), 0.0) | {"z": 2.0}
+    return {"type": f"sensor.{kind}", "id": name, "spawn_point": spawn, **more}
+
+
+def test_carla_s_ground_truth_and_spectator_are_no_sensors(tmp_path):
+    """What shows the simulated world without error, or the vehicle to a person, sees nothing."""
+    picture = {"image_size_x": 800, "image_size_y": 600, "fov": 90.0}
+    beams = {"channels": 4, "upper_fov": 2.0, "lower_fov": -20.0, "range": 50.0}
+    beams |= {"points_per_second": 14400, "rotation_frequency": 10}
+    truths = ("depth", "semantic_segmentation", "instance_segmentation", "optical_flow", "normals")
+    rows = [
+        spawned("camera.rgb", "front", **picture),
+        spawned("lidar.ray_cast", "top", **beams),
+        *(spawned(f"camera.{kind}", kind, **picture) for kind in truths),
+        spawned("lidar.ray_cast_semantic", "semantic", **beams),
+        spawned("camera.rgb", "rgb_view", **picture),
+        spawned("camera.dvs", "events", **picture),
+    ]
+    objects = [{"type": "vehicle.a.b", "id": "ego_vehicle", "sensors": rows}]
+    (tmp_path / "objects.json").write_text(json.dumps({"objects": objects}))
+    found = pt.import_rig(tmp_path)
+    assert [(s.name, s.kind) for s in found.rig] == [("front", "camera"), ("top", "lidar")]
+    (line,) = (line for line in found.lines if line.startswith("left out"))
+    assert f"6 ground truth sensors ({', '.join(truths)}, semantic)" in line
+    assert "1 spectator sensor (rgb_view)" in line and "1 camera.dvs sensor (events)" in line
+    back, _ = rig_files(found.rig, "carla", passthrough=found.passthrough)
+    again = json.loads(back["objects.json"])["objects"][0]["sensors"]
+    assert [row["type"] for row in again] == [row["type"] for row in rows]
+
+
+@pytest.mark.parametrize("name", [n for n, row in RIG_FORMATS.items() if n != "argoverse2"])
+def test_a_folder_with_the_file_of_a_format_is_read(name, tmp_path):
+    rig = RIGS[name]
+    pt.export_rig(rig, name, tmp_path, AXLE)
+    placed = rig["velodyne"].pose if name == "kitti" else None
+    assert len(pt.import_rig(tmp_path, None, AXLE, CHOSEN.get(name), placed).rig) == len(rig)
+    again = pt.import_rig(tmp_path, name, AXLE, CHOSEN.get(name), placed)
+    assert len(again.rig) == len(rig)
+
+
+TABLE = """\
+# a comment; with a semicolon, and a comma
+name,kind,model,x_m,y_m,z_m,roll_deg,pitch_deg,yaw_deg
+roof,lidar,Pandar64,-0.43,0,1.8,0,0,0
+"front, left",camera,Camera 60 deg,1.5,0,1.2,0,5,0
+"""
+
+
+def saved_by_a_spreadsheet(separator):
+    """A table with a separator, a comment in quotes and a row without cells at its end."""
+    comment, *rows = TABLE.replace('"front, left"', "front left").splitlines()
+    rows = [row.replace(",", separator) for row in rows]
+    return "\n".join([f'"{comment}"{separator * 8}', *rows, separator * 8, ""])
+
+
+def test_a_table_is_read_as_spreadsheets_save_it(tmp_path):
+    path = tmp_path / "rig.csv"
+    by_hand = [
+        ("roof", "Pandar64", (-0.43, 0, 1.8), (0, 0, 0)),
+        ("front left", "Camera 60 deg", (1.5, 0, 1.2), (0, 5, 0)),
+    ]
+    texts = [saved_by_a_spreadsheet(separator) for separator in ";\t,"]
+    texts += [f"sep={text[-2]}\n{text}" for text in texts]
+    for text in texts:
+        for encoding in ("utf-8", "utf-8-sig", "utf-16"):
+            path.write_bytes(text.replace("\n", "\r\n").encode(encoding))
+            found = [
+                (s.name, s.model.name, s.pose.position, s.pose.rotation_deg)
+                for s in pt.import_rig(path).rig
+            ]
+            assert found == by_hand, (text[:12], encoding)
+    path.write_text(TABLE)
+    assert [s.name for s in pt.import_rig(path).rig] == ["roof", "front, left"]
+
+
+def test_sensors_of_one_name_are_renamed_in_one_line_each(tmp_path):
+    path = tmp_path / "rig.csv"
+    path.write_text(TABLE.replace('"front, left"', "roof").replace("# a comment", "# roof"))
+    found = pt.import_rig(path)
+    assert [s.name for s in found.rig] == ["roof", "roof_2"]
+    assert [line for line in found.lines if line.startswith("roof_2: ")] != []
+
+
 def test_nuscenes_own_front_camera(tmp_path):
     """As published; its pose in our axes by hand: nose down 0.32 deg, and as far to the left."""
     (tmp_path / "sensor.json").write_text(
@@ -177,6 +262,7 @@ BAD = [
     ("file", ("rig.urdf", "<sdf/>")),
     ("y_m", ("rig.csv", "name,x_m\na,1\n")),
     ("row 1, z_m", ("rig.csv", "name,x_m,y_m,z_m,roll_deg,pitch_deg,yaw_deg\na,1,2,x,0,0,0\n")),
+    ("row 1, z_m", ("rig.csv", "name;x_m;y_m;z_m;roll_deg;pitch_deg;yaw_deg\na;1;2;1,8;0;0;0\n")),
     ("objects", ("objects.json", '{"objects": []}')),
     ("file", ("objects.json", '{"objects": [')),
     ("rig.sensors", ("rig.json", '{"rig": {"sensors": [{"name": "can"}]}}')),

@@ -91,9 +91,11 @@ def test_the_snippet_is_part_of_a_study(tmp_path):
 
 def test_a_table_is_read_with_comments_columns_in_any_order_and_any_line_ends(tmp_path):
     text = "# AP of a detector\r\nclass, AP ,m\rcar,0.5,1\n\ncar,0.25,0.5\r\n"
-    read = read_ap_table(written(tmp_path, text))
-    assert read.m.tolist() == [1.0, 0.5] and read.ap.tolist() == [0.5, 0.25]
-    assert read.n.tolist() == [1.0, 1.0]
+    spreadsheet = f"sep=;\n{text.replace(',', ';')}".encode("utf-16")
+    for each in (text, spreadsheet):
+        read = read_ap_table(written(tmp_path, each))
+        assert read.m.tolist() == [1.0, 0.5] and read.ap.tolist() == [0.5, 0.25]
+        assert read.n.tolist() == [1.0, 1.0]
 
 
 BAD = [

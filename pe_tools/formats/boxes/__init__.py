@@ -5,13 +5,14 @@ from dataclasses import replace
 from pathlib import Path
 
 from pe_core.base.errors import InputError, report_memory_errors, require_memory, size_text
-from pe_core.base.files import LABEL_BYTES, decode_text, quoted, read_bytes, write_bytes
+from pe_core.base.files import LABEL_BYTES, decode_text, is_binary, quoted, read_bytes, write_bytes
 from pe_core.prior.boxes import Boxes
 
+from ..csv_rows import SEPARATORS
 from .kitti import looks_like_kitti, read_kitti
 from .labels import Labels, joined
 from .nuscenes import read_nuscenes
-from .plain import SEPARATORS, csv_bytes, read_csv
+from .plain import csv_bytes, read_csv
 
 __all__ = ["read_boxes", "write_boxes"]
 
@@ -65,7 +66,7 @@ def _read_folder(path: Path) -> list[Labels]:
 def _read_file(path: Path, may_be_empty: bool = False) -> Labels:
     """Read one file. In a folder an empty one is a frame without objects."""
     source, data = str(path), read_bytes(path, LABEL_BYTES)
-    if b"\0" in data:
+    if is_binary(data):
         raise InputError(source, "file", LAYOUTS, "binary data")
     text = decode_text(data)
     if not text.strip():

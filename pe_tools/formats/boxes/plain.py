@@ -8,19 +8,18 @@ from functools import lru_cache
 from pe_core.base.files import MAX_QUOTE, csv_text, parse_number, unmarked
 from pe_core.prior.boxes import COLUMNS, Boxes, degrees_of
 
-from ..csv_rows import csv_rows
+from ..csv_rows import csv_rows, separated
 from .labels import Labels
 
 CLASS = "class"
-SEPARATORS = ",;\t"
 UNIT = re.compile(r"[ _]*[(\[]?(deg|degrees|m)[)\]]?$")
 
 
 def read_csv(source: str, lines: Sequence[tuple[int, str]]) -> Labels:
     """Read boxes from numbered lines; columns are in any order, other columns are ignored."""
-    separator = next(s for s in ";\t," if s in lines[0][1])
+    separator, rows = separated(lines)
     labels = Labels(source)
-    for where, cells in csv_rows(source, lines, (CLASS, *COLUMNS), separator, _column):
+    for where, cells in csv_rows(source, rows, (CLASS, *COLUMNS), separator, _column):
         x, y, z, length, width, height, yaw = (
             parse_number(source, where, column, cells[column]) for column in COLUMNS
         )

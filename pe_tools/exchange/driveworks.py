@@ -11,11 +11,11 @@ from pe_core.base.errors import InputError, shown
 from pe_core.base.table_reader import Table, dump_json, parse_json
 from pe_core.base.values import FINITE, Number, vector
 from pe_core.geometry.poses import METRES, Pose
-from pe_core.sensors.camera import FTheta, Pinhole
+from pe_core.sensors.camera import BrownConrady, FTheta, Pinhole
 from pe_core.study.passthrough import json_entry
 
 from . import foreign_values as values
-from .foreign_values import Export, FileTexts, json_of, json_rows, plain_number, pose_from
+from .foreign_values import Export, Figures, FileTexts, json_of, json_rows, plain_number, pose_from
 from .frames import composed, shifted
 from .lens_pictures import Picture
 from .passthrough import entry_row
@@ -112,6 +112,7 @@ def _sensor(path: Path, row: Table) -> PortableSensor:
 
 PINHOLE, F_THETA = "pinhole", "ftheta"
 FOCAL_KEYS, MIDDLE, SIZE = ("fx", "fy"), ("cx", "cy"), ("width", "height")
+DISTORTION, RADIAL = "distortion", ("k1", "k2", "k3")
 POLYNOMIALS = ("polynomial", "bw-poly")
 FORWARD, BACKWARD = "angle-to-pixeldistance", "pixeldistance-to-angle"
 MAX_POWER = 6  # Maximum number of coefficients of a polynomial, the constant included
@@ -132,7 +133,10 @@ def write_properties(picture: Picture) -> dict[str, str]:
     lens = picture.lens
     if not isinstance(lens, FTheta):
         focal = {"fx": plain_number(picture.fx), "fy": plain_number(picture.fy)}
-        return {"Model": PINHOLE, **common, **focal}
+        bent = {}
+        if isinstance(lens, BrownConrady):
+            bent = {DISTORTION: values.spaced([getattr(lens, key) for key in RADIAL])}
+        return {"Model": PINHOLE, **common, **focal, **bent}
     polynomial = [0.0, *(lens.fx * getattr(lens, key) for key in lens.coefficients)]
     linear_terms = {"linear-c": "1.0", "linear-d": "0.0", "linear-e": "0.0"}
     polynomial_texts = {
@@ -175,7 +179,21 @@ def read_properties(properties: Table) -> tuple[Picture | None, str]:
     if not all(key in properties for key in FOCAL_KEYS):
         return None, ""
     fx, fy = (number(name, values.FOCAL) for name in FOCAL_KEYS)
-    return Picture(Pinhole(fx, fy, cx, cy), (width, height)), ""
+    k1, k2, k3 = _distortion(properties)
+    if not any((k1, k2, k3)):
+        return Picture(Pinhole(fx, fy, cx, cy), (width, height)), ""
+    lens = BrownConrady(fx, fy, cx, cy, None, k1=k1, k2=k2, k3=k3)
+    return Picture(lens, (width, height)), ""
+
+
+def _distortion(properties: Table) -> list[float]:
+    """Return k1, k2, k3 of a pinhole; zeros if the file has none. They map undistorted to distorted
+    coordinates by 1 + k1 r^2 + k2 r^4 + k3 r^6 (DriveWorks, dwPinholeCameraConfig)."""
+    if DISTORTION in properties:
+        field, text = properties.field(DISTORTION), properties.raw(DISTORTION)
+        return values.figures(properties.source, field, text, 3, values.COEFFICIENT)
+    figures = Figures(properties.source, lambda key: properties.raw(key, None), properties.field)
+    return [figures.number(key, values.COEFFICIENT) or 0.0 for key in RADIAL]
 
 
 def _rising(properties: Table, key: str) -> list[float]:

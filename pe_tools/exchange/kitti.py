@@ -16,7 +16,7 @@ from pe_core.sensors.camera import Pinhole
 
 from .foreign_values import Export, FileTexts, figures, spaced, text_of
 from .frames import BODY_FROM_OPTICAL, checked_rotation, pose_of, product, turned
-from .lens_pictures import Picture
+from .lens_pictures import Picture, pinhole_of
 from .portable import PortableRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 
@@ -88,15 +88,15 @@ def read(path: Path) -> PortableRig:
     sensors = [PortableSensor("velodyne", Pose((0.0, 0.0, 0.0)), LIDAR)]
     for key in sorted(key for key in rows if key[:1] == "P" and key[1:].isdigit()):
         p = _matrix(path, rows, (key,), (3, 4))
-        fx, fy, cx, cy = (float(p[k]) for k in ((0, 0), (1, 1), (0, 2), (1, 2)))
-        if fx <= 0.0 or fy <= 0.0:
-            raise InputError(path, key, "focal lengths above 0", f"{fx:g}, {fy:g}")
+        lens, note = pinhole_of(path, key, p[:, :3])
         z = -float(p[2, 3])
-        position = (-(float(p[0, 3]) + cx * z) / fx, -(float(p[1, 3]) + cy * z) / fy, z)
+        y = -(float(p[1, 3]) + lens.cy * z) / lens.fy
+        x = -(float(p[0, 3]) + float(p[0, 1]) * y + lens.cx * z) / lens.fx
+        position = x, y, z
         offset = [a - b for a, b in zip(position, shift, strict=True)]
         pose = pose_of(product(rotation.T, BODY_FROM_OPTICAL.T), turned(rotation.T, offset))
-        picture = Picture(Pinhole(fx, fy, cx, cy))
-        sensors.append(PortableSensor(f"camera_{key[1:]}", pose, CAMERA, None, picture))
+        name = f"camera_{key[1:]}"
+        sensors.append(PortableSensor(name, pose, CAMERA, None, Picture(lens), told=note))
     return tuple(sensors)
 
 

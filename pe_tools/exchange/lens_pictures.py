@@ -6,9 +6,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pe_core.base.arrays import Floats
+from pe_core.base.errors import InputError, shown
 from pe_core.sensors.camera import BrownConrady, FTheta, KannalaBrandt, Lens, Pinhole
 
 Size = tuple[int, int]
+SKEW_PX = 1e-3  # Skew of K that is told: it moves a pixel by as much at 45 degrees down
 ALIKE_PX = 1e-6  # Tolerance below which two lens parameters are equal [px]
 
 
@@ -50,6 +53,17 @@ class Picture:
     @property
     def _on_axis(self) -> float:
         return float(self.lens.slope(np.zeros(1))[0])
+
+
+def pinhole_of(source: object, field: str, matrix: Floats) -> tuple[Pinhole, str]:
+    """Return the pinhole of a matrix K (3, 3), and a note on its skew, which no lens here has. A
+    matrix of another form raises `InputError`."""
+    (fx, skew, cx), (zero, fy, cy), last = matrix.tolist()
+    if zero != 0.0 or last != [0.0, 0.0, 1.0] or not (fx > 0.0 and fy > 0.0):
+        expected = "rows fx, skew, cx; 0, fy, cy; 0, 0, 1 with focal lengths above 0"
+        raise InputError(source, field, expected, shown(matrix.tolist()))
+    note = f"its skew, {skew:.3g} px, is left out" if abs(skew) > SKEW_PX else ""
+    return Pinhole(fx, fy, cx, cy), note
 
 
 KeptPicture = Callable[[Picture], Picture]
@@ -98,10 +112,12 @@ def opencv_of_five(p: Picture) -> Picture:
     return straight(p)
 
 
-def f_theta_of_five(p: Picture) -> Picture:
-    """Return an f-theta lens of square pixels and degree 5 at most, its focal length multiplied in.
-    Others become a pinhole."""
+def of_driveworks(p: Picture) -> Picture:
+    """Return a lens of DriveWorks: Brown-Conrady with k1, k2, k3 alone, or f-theta of square pixels
+    and degree 5 at most, its focal length multiplied in. Others become a pinhole."""
     lens = p.lens
+    if isinstance(lens, BrownConrady) and not (lens.p1 or lens.p2):
+        return opencv_of_five(p)
     if not isinstance(lens, FTheta) or lens.fx != lens.fy or lens.k6:
         return straight(p)
     scaled = [lens.fx * getattr(lens, key) for key in lens.coefficients]

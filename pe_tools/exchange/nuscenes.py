@@ -4,6 +4,9 @@ to the right and y forward. The distortion is that of nuImages, camera_distortio
 k3, and k4 for fisheyes."""
 
 import hashlib
+import math
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,13 +14,13 @@ from pe_core.base.errors import InputError, shown
 from pe_core.base.table_reader import Table, dump_json
 from pe_core.base.values import numbers, vector
 from pe_core.geometry.poses import METRES
-from pe_core.sensors.camera import BrownConrady, Pinhole
+from pe_core.sensors.camera import BrownConrady
 from pe_core.study.passthrough import json_entry
 
 from . import frames
 from .foreign_values import Export, FileTexts, json_of, json_rows
-from .lens_pictures import Picture
-from .passthrough import entry_row
+from .lens_pictures import Picture, pinhole_of
+from .passthrough import entry_row, is_same_pose
 from .portable import PortableRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 
@@ -71,18 +74,31 @@ def _token(table: str, name: str) -> str:
 
 def read(path: Path) -> PortableRig:
     """Read the sensors from calibrated_sensor.json, or its folder, and the sensor.json beside it.
-    The last calibration of a sensor is used."""
+    The last calibration of a sensor is used; a note says so if another one differs from it."""
     path = path / CALIBRATED if path.is_dir() else path
     beside = path.with_name(SENSORS)
     names = {row.text("token"): row for row in json_rows(beside, json_of(beside))}
-    sensors = {}
+    calibrations: dict[str, list[PortableSensor]] = {}
     for row in json_rows(path, json_of(path)):
         token = row.text("sensor_token")
         if token not in names:
             raise InputError(path, row.field("sensor_token"), f"one in {SENSORS}", shown(token))
         sensor = _sensor(path, row, names[token])
-        sensors[sensor.name] = sensor
-    return tuple(sensors.values())
+        calibrations.setdefault(sensor.name, []).append(sensor)
+    return tuple(map(_last, calibrations.values()))
+
+
+def _last(calibrations: Sequence[PortableSensor]) -> PortableSensor:
+    """Return the last calibration of a sensor, with a note if they are not all the same."""
+    last = calibrations[-1]
+    same = [
+        is_same_pose(each.pose, last.pose) and each.picture == last.picture for each in calibrations
+    ]
+    if all(same):
+        return last
+    apart = max(math.dist(each.pose.position, last.pose.position) for each in calibrations)
+    note = f"the file has {len(calibrations)} calibrations, up to {apart:.3f} m from the last"
+    return replace(last, told="; ".join(filter(None, (f"{note}, which is used", last.told))))
 
 
 def _sensor(path: Path, row: Table, sensor_row: Table) -> PortableSensor:
@@ -97,10 +113,11 @@ def _sensor(path: Path, row: Table, sensor_row: Table) -> PortableSensor:
         matrix = numbers(value)
         if matrix is None or matrix.shape != (3, 3):
             raise row.error("camera_intrinsic", "a 3 x 3 matrix, or []", shown(value))
-        fx, fy, cx, cy = (float(matrix[k]) for k in ((0, 0), (1, 1), (0, 2), (1, 2)))
-        picture = Picture(Pinhole(fx, fy, cx, cy))
+        lens, skew_note = pinhole_of(path, row.field("camera_intrinsic"), matrix)
+        picture = Picture(lens)
         if row.raw("camera_distortion", []):
             picture, note = _bent(row, picture)
+        note = "; ".join(filter(None, (skew_note, note)))
     entry = json_entry({CALIBRATED: row.data, SENSORS: sensor_row.data})
     pose = frames.pose_of(rotation, position)
     return PortableSensor(name, pose, kind, None, picture, told=note, entry=entry)

@@ -51,8 +51,7 @@ def restored(
                 sensor = replace(sensor, picture=None, scan=None, field=None, parameters="")
                 sensor = replace(sensor, min_range=None, max_range=None)
                 sensor = replace(sensor, is_stand_in=source.is_stand_in)
-            is_there_still = all(map(is_there, source.pose.position, sensor.pose.position))
-            unmoved = is_there_still and is_turned_so(source.pose, sensor.pose)
+            unmoved = is_same_pose(source.pose, sensor.pose)
             result.append(replace(sensor, entry=source.entry, is_unmoved=unmoved))
     return (*result, *by_name.values())
 
@@ -66,6 +65,11 @@ def is_turned_so(a: Pose, b: Pose) -> bool:
     """Whether two poses have the same rotation within rounding."""
     difference = np.abs(a.ground_from_sensor - b.ground_from_sensor)
     return bool(difference.max() <= UNTURNED)
+
+
+def is_same_pose(a: Pose, b: Pose) -> bool:
+    """Whether two poses are the same, but for rounding."""
+    return all(map(is_there, a.position, b.position)) and is_turned_so(a, b)
 
 
 def model_text(model: SensorModel) -> str:

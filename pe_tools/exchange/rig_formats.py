@@ -115,7 +115,7 @@ _ROWS = (
     RigFormat(
         *("driveworks", "DriveWorks rig.json", REAR_AXLE_GROUND, (driveworks.FILE,), driveworks),
         holds=frozenset({MODEL}),
-        keeps=lenses.f_theta_of_five,
+        keeps=lenses.of_driveworks,
         source=driveworks.source,
     ),
 )

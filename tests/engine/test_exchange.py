@@ -455,6 +455,46 @@ def nuimages(folder, distortion):
     return pt.import_rig(folder, None, pe.Reference(-1.4, 0.3))
 
 
+def test_the_skew_of_a_matrix_is_told_and_another_form_is_refused(tmp_path):
+    """KITTI's camera with a skew: P = K [I | -t] gives the same t, computed by NumPy."""
+    (tmp_path / "calib.txt").write_text(LAYOUTS["calib.txt"].replace("718.856 0 ", "718.856 2 "))
+    found = pt.import_rig(tmp_path / "calib.txt")
+    assert found.lines[0].startswith("camera_0, camera_2: ") and "skew, 2 px" in found.lines[0]
+    p = np.array(P2.split(), float).reshape(3, 4)
+    p[0, 1] = 2.0
+    place = np.linalg.solve(p[:, :3], -p[:, 3])
+    to_first = np.array(TR.split(), dtype=float).reshape(3, 4)
+    in_lidar = to_first[:, :3].T @ (place - to_first[:, 3])
+    assert found.rig["camera_2"].pose.position == pytest.approx(tuple(in_lidar), abs=1e-5)
+    nuimages(tmp_path, [])
+    path = tmp_path / "calibrated_sensor.json"
+    rows = json.loads(path.read_text())
+    for place, value, error in (((0, 1), 1.5, False), ((1, 0), 1.5, True), ((2, 2), 2.0, True)):
+        matrix = [[800.0, 0, 800.0], [0, 800.0, 450.0], [0, 0, 1]]
+        matrix[place[0]][place[1]] = value
+        path.write_text(json.dumps([rows[0] | {"camera_intrinsic": matrix}]))
+        if error:
+            with pytest.raises(pe.InputError, match="camera_intrinsic"):
+                pt.import_rig(tmp_path, reference=AXLE)
+        else:
+            lines = pt.import_rig(tmp_path, reference=AXLE).lines
+            assert any("skew, 1.5 px" in line for line in lines)
+
+
+def test_several_calibrations_of_a_channel_are_told(tmp_path):
+    """The last is used, 0.9 m ahead of the first; twice the same is no news."""
+    nuimages(tmp_path, [])
+    path = tmp_path / "calibrated_sensor.json"
+    (row,) = json.loads(path.read_text())
+    for shift, told in ((0.9, True), (0.0, False)):
+        path.write_text(json.dumps([row, row | {"translation": [shift, 0.0, 1.5]}]))
+        found = pt.import_rig(tmp_path, reference=pe.Reference(-1.4, 0.3))
+        (camera,) = found.rig
+        assert camera.pose.position == pytest.approx((shift - 1.4, 0.0, 1.5))
+        lines = [line for line in found.lines if "2 calibrations" in line]
+        assert len(lines) == told and all("0.900 m" in line for line in lines)
+
+
 def test_of_six_numbers_of_nuimages_the_last_is_left_out_and_a_seventh_is_too_many(tmp_path):
     for sixth in (0.00048, 0.0):
         found = nuimages(tmp_path, [-0.23, 0.061, 4e-4, -3e-4, -0.0085, sixth])

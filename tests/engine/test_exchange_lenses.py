@@ -19,16 +19,17 @@ BROWN = BrownConrady(*PLACE, None, -0.165, 0.0099, -0.00075, 5.37e-05, 0.01)
 RATIONAL = BrownConrady(*PLACE, None, 0.3, 0.02, 1e-4, -2e-4, 1e-3, 0.5, 0.04, 2e-3)
 FISHEYE = KannalaBrandt(500.0, 501.0, 960.5, 540.5, None, 0.02, -0.003, 1e-4, -1e-5)
 BY_ANGLE = FTheta(1.0, 1.0, 960.5, 540.5, None, 560.0, -30.0, 40.0, -7.0)
-LENSES = {"pinhole": PINHOLE, "brown": BROWN, "rational": RATIONAL, "fisheye": FISHEYE,
-          "by_angle": BY_ANGLE}  # fmt: skip
+RADIAL = BrownConrady(*PLACE, None, -0.29, 0.08, k3=-0.001)
+LENSES = {"pinhole": PINHOLE, "radial": RADIAL, "brown": BROWN, "rational": RATIONAL,
+          "fisheye": FISHEYE, "by_angle": BY_ANGLE}  # fmt: skip
 KEEPS = {
     "csv": set(LENSES),
-    "urdf": {"pinhole", "brown"},
-    "ros": {"pinhole", "brown", "rational", "fisheye"},
-    "autoware": {"pinhole", "brown", "rational", "fisheye"},
-    "nuscenes": {"pinhole", "brown"},
+    "urdf": {"pinhole", "radial", "brown"},
+    "ros": {"pinhole", "radial", "brown", "rational", "fisheye"},
+    "autoware": {"pinhole", "radial", "brown", "rational", "fisheye"},
+    "nuscenes": {"pinhole", "radial", "brown"},
     "argoverse2": {"pinhole"},
-    "driveworks": {"pinhole", "by_angle"},
+    "driveworks": {"pinhole", "radial", "by_angle"},
     "carla": set(),
     "osi": set(),
 }
@@ -167,6 +168,22 @@ def test_driveworks_polynomial_of_pixels_is_turned_round(tmp_path):
         (eye,) = pt.import_rig(rig_json(tmp_path, **properties), reference=AXLE).rig
         x, y = eye.model.projection.project(*ahead)
         assert (x[0], y[0]) == (pytest.approx(960.0), pytest.approx(1104.0, abs=0.02))
+
+
+def test_driveworks_pinhole_is_bent_as_its_file_says(tmp_path):
+    """A ray at (0.3, 0.4) of depth 1: r2 = 0.25, and 1 - 0.29 r2 + 0.08 r2^2 - 0.001 r2^3."""
+    scale = 1.0 - 0.29 * 0.25 + 0.08 * 0.0625 - 0.001 * 0.015625
+    ray = np.array([1.0]), np.array([-0.3]), np.array([-0.4])
+    for bent in (
+        {"distortion": "-0.29 0.08 -0.001"},
+        {"k1": "-0.29", "k2": "0.08", "k3": "-0.001"},
+    ):
+        path = rig_json(tmp_path, fx="1000", fy="1000", Model="pinhole", **bent)
+        (eye,) = pt.import_rig(path, reference=AXLE).rig
+        x, y = eye.model.projection.project(*ray)
+        middle = eye.model.projection.cx, eye.model.projection.cy
+        assert x[0] - middle[0] == pytest.approx(300.0 * scale)
+        assert y[0] - middle[1] == pytest.approx(400.0 * scale)
 
 
 def test_driveworks_corrections_are_applied(tmp_path):

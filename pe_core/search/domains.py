@@ -21,6 +21,7 @@ from .mounts import AnyMount, SlotMount, SurfaceMount
 
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 POSITION_AXES = AXES[:3]
+TURNS = AXES[3:]
 POSITION_DECIMALS = 5
 ANGLE_DECIMALS_DEG = 4
 """Placements are rounded to 0.01 mm and 0.0001 deg, so that a file, or Blender's single precision,
@@ -48,8 +49,24 @@ def pose_values(pose: Pose) -> dict[str, float]:
 def pose_from_values(values: Mapping[str, float]) -> Pose:
     """Return the pose with coordinates by axis [m, rad], rounded as placements are."""
     position = [round(values[a], POSITION_DECIMALS) + 0.0 for a in POSITION_AXES]
-    degrees = [round(math.degrees(values[a]), ANGLE_DECIMALS_DEG) + 0.0 for a in AXES[3:]]
+    degrees = [round(math.degrees(values[a]), ANGLE_DECIMALS_DEG) + 0.0 for a in TURNS]
     return Pose.from_degrees(position, degrees)
+
+
+def within_turns(angle: float, bounds: Bounds) -> float:
+    """Return an angle with the whole turns added that bring it into bounds, or near them [rad]."""
+    low, high = bounds
+    if low - ROUNDING_RAD <= angle <= high + ROUNDING_RAD:
+        return angle
+    return angle + math.tau * round(((low + high) / 2.0 - angle) / math.tau)
+
+
+def start_values(values: Mapping[str, float], bounds: Mapping[str, Bounds]) -> dict[str, float]:
+    """Return coordinates by axis, the angles as their bounds count them: modulo a turn."""
+    return {
+        axis: within_turns(value, bounds[axis]) if axis in bounds and axis in TURNS else value
+        for axis, value in values.items()
+    }
 
 
 def rounded(pose: Pose) -> Pose:
@@ -164,7 +181,7 @@ class BoxDomain:
     """Free coordinates of a sensor, each in its bounds."""
 
     def __init__(self, pose: Pose, bounds: Mapping[str, Bounds]) -> None:
-        values, self._pose = pose_values(pose), pose
+        values, self._pose = start_values(pose_values(pose), bounds), pose
         self.axes = tuple(axis for axis in AXES if axis in bounds)
         self.variables = tuple(variable_of(axis, bounds[axis]) for axis in self.axes)
         self.start = tuple(values[axis] for axis in self.axes)
@@ -219,7 +236,7 @@ class SurfaceDomain:
     ) -> None:
         self.mount, self.surface = mount, surface
         self._standoff_point = standoff_point(mount, housing)
-        self._angle_axes = tuple(axis for axis in AXES[3:] if axis in bounds)
+        self._angle_axes = tuple(axis for axis in TURNS if axis in bounds)
         self.axes = *POSITION_AXES, *self._angle_axes
         sides = zip(*(corner.tolist() for corner in surface.bounds), strict=True)
         variables = [variable_of(axis, side) for axis, side in zip("xyz", sides, strict=True)]
@@ -231,7 +248,7 @@ class SurfaceDomain:
         if mount.orientation != "upright":
             frame = frame_of(mount.orientation, normal)
             rpy = rpy_from_matrix(rotate(frame.T, pose.ground_from_sensor.T).T)
-        self._angles = dict(zip(AXES[3:], rpy, strict=True))
+        self._angles = start_values(dict(zip(TURNS, rpy, strict=True)), bounds)
         self.start = (*foot.tolist(), *(self._angles[axis] for axis in self._angle_axes))
         if not anywhere:
             self._check_start(who, pose, bounds, foot, normal)
@@ -245,7 +262,7 @@ class SurfaceDomain:
         foot, face = self.surface.closest(np.array(values[:3]))
         normal = self.surface.outward(face)
         angles = {**self._angles, **dict(zip(self._angle_axes, values[3:], strict=True))}
-        rpy = [angles[axis] for axis in AXES[3:]]
+        rpy = [angles[axis] for axis in TURNS]
         pose = pose_on(self.mount, foot, normal, rpy, self._standoff_point)
         return pose, (*foot.tolist(), *values[3:])
 

@@ -29,6 +29,7 @@ from .domains import (
     Domain,
     SurfaceDomain,
     pose_values,
+    start_values,
 )
 from .mounts import Mounting, NoGo, SlotMount, SurfaceMount
 
@@ -125,7 +126,7 @@ class SearchSpace(ShortRepr):
             require_name("search space", "sensor", name, sensors)
             if self.mounting.mount_of(name) is not None:
                 continue  # its angles are relative to its mount, whose domain checks them
-            start = pose_values(sensors[name].pose)
+            start = start_values(pose_values(sensors[name].pose), axes)
             for axis, bounds in axes.items():
                 low, high = checked_bounds(name, axis, bounds)
                 rounding = ROUNDING_M if axis in POSITION_AXES else ROUNDING_RAD

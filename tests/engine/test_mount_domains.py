@@ -38,6 +38,29 @@ def test_a_box_s_unknowns_are_its_free_coordinates_in_the_order_of_axes():
     assert coding.candidate([1.234567, 0.1]).vector[0] == 1.23457
 
 
+@pytest.mark.parametrize(
+    ("name", "mount"), [("roll", None), ("yaw", None), ("yaw", {"roof": roof()})]
+)
+@pytest.mark.parametrize("turns", [-360.0, 0.0, 360.0])
+@pytest.mark.parametrize("middle", [-180.0, 0.0, 95.0, 180.0])
+def test_bounds_of_angles_hold_modulo_a_turn(name, mount, turns, middle):
+    """A rear camera at -180 degrees is within [160, 200]: the same start, and the same range."""
+    axis = ("roll", "pitch", "yaw").index(name)
+    rotation = [middle if axis == k else 0.0 for k in range(3)]
+    sensor, bounds = can(rotation=rotation), np.radians([middle - 20.0, middle + 20.0])
+    limits = {"roof": {name: bounds + math.radians(turns)}}
+    coding = coded(sensor, mount=mount, free=(name,), limits=limits)
+    start = coding.candidate(coding.start.vector).rig["roof"].pose
+    turned = start.ground_from_sensor - sensor.pose.ground_from_sensor
+    assert np.abs(turned).max() < 1e-6
+    last = (*coding.start.vector[:-1], coding.variables[-1].high)
+    end = coding.candidate(last).rig["roof"].pose.rpy[axis]
+    assert math.cos(end - bounds[1]) == pytest.approx(1.0, abs=1e-9)
+    beside = {"roof": {name: bounds + math.radians(turns + 21.0)}}
+    with pytest.raises(pe.InputError, match=f"bounds of {name}"):
+        coded(sensor, mount=mount, free=(name,), limits=beside)
+
+
 def test_a_sensor_on_the_roof_stands_at_its_stand_off_wherever_it_goes_and_reaches_all_of_it():
     rigs = drawn(coded(can(), mount={"roof": roof()}, free=LEVEL))
     x, y, z = np.array([rig["roof"].pose.position for rig in rigs]).T

@@ -33,6 +33,8 @@ FEW_RUNS = 1000  # Below this number of runs, a loop over them is faster
 SMALLEST_M, LARGEST_M, WIDEST_M = 0.1, 60.0, 25.0
 """Minimum and maximum length of a vehicle's longest side; maximum of its second longest."""
 CAR_M = 4.5  # Length of a typical car, for comparison
+ACROSS_M = 2.1
+"""Usual root of width times height: 1.4 m of a sports car, 3.1 m of a lorry."""
 MAX_UNITS = 2  # Maximum number of possible units in a message
 USUAL_M = (0.4, 30.0)
 USUAL_SECOND_M = 10.0
@@ -249,12 +251,16 @@ def require_vehicle_size(source: str, body: Any) -> None:
         raise InputError(source, "size", f"{expected}{width_text}", found or size_words(size))
 
 
-def fitting_units(longest: float, second: float) -> list[tuple[str, float]]:
-    """Return the units in which a body with these two longest sides has a vehicle's usual size.
-    Pairs of name and length in metres; first the unit that makes it most similar to a car."""
+def fitting_units(longest: float, second: float, third: float) -> list[tuple[str, float]]:
+    """Return the units in which a body with these sides, the longest first, has a vehicle's usual
+    size. Pairs of name and length in metres; first the unit that makes it most similar to a
+    vehicle. Cars, vans and lorries differ in length by more than the units do; their cross-sections
+    differ by less. A body without height is compared by its length."""
     units = SMALLER_UNITS if longest > USUAL_M[0] else LARGER_UNITS
     fitting = [(n, f) for n, f in units.items() if is_usual(f * longest, f * second)]
-    return sorted(fitting, key=lambda unit: abs(math.log(unit[1] * longest / CAR_M)))
+    across = math.sqrt(second * third)
+    length, usual = (across, ACROSS_M) if across > 0.0 else (longest, CAR_M)
+    return sorted(fitting, key=lambda unit: abs(math.log(unit[1] * length / usual)))
 
 
 def is_usual(longest: float, second: float) -> bool:
@@ -280,10 +286,10 @@ def _is_possible(size: tuple[float, ...]) -> bool:
 
 
 def _hint(size: tuple[float, ...], max_units: int) -> str:
-    _, second, longest = sorted(size)
+    third, second, longest = sorted(size)
     if longest == 0.0:
         return "all of it is one point"
-    units = fitting_units(longest, second)[:max_units]
+    units = fitting_units(longest, second, third)[:max_units]
     if not units:
         return f"scale = {car_factor(longest):g} makes it as long as a car"
     hints = (f"{factor:g} if {name} ({factor * longest:.2f} m)" for name, factor in units)

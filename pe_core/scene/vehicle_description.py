@@ -35,6 +35,11 @@ BINS, QUARTER = 40, 10
 """Number of slices along a body, and how many of them are one end."""
 LOWER = 0.15
 """Minimum height difference of the two ends, as a share of the body's height."""
+LOW_END = 0.85
+"""Maximum height of a hood, a bed or a boot, as a share of the body's height."""
+UPRIGHT, SLOPED = 1, 3
+"""Maximum number of slices in which a bed's end rises to the cabin, behind its upright rear window;
+minimum number of slices of a windshield."""
 TRIANGLES, POINTS = 20_000, 1_000_000
 """Maximum number of sampled triangles, and approximate number of sample points in total."""
 MIN_STEPS, MAX_STEPS = 8, 128
@@ -144,8 +149,9 @@ def _up_by_ground(shape: BodyShape) -> int | None:
 
 def hood_end(shape: BodyShape, axis: int, up: int) -> float | None:
     """Return the end of a car, along an axis, that has the hood: 1.0 or -1.0; None if unclear. Seen
-    from the side, a car is lower at its hood than at its rear. A body that is taller than wide is
-    not evaluated: the load of a lorry may be lower than its cab."""
+    from the side, a car is lower at its hood than at its rear; a pickup may be lower at its bed,
+    which ends at an upright window. A body that is taller than wide is not evaluated: the load of a
+    lorry may be lower than its cab."""
     other = 3 - axis - up
     size = shape.size
     if not size[up] < size[other] <= size[axis] or not size[up] > 0.0:
@@ -157,7 +163,26 @@ def hood_end(shape: BodyShape, axis: int, up: int) -> float | None:
     difference = float(ends[0].mean() - ends[1].mean())
     if abs(difference) <= LOWER:
         return None
-    return 1.0 if difference > 0.0 else -1.0
+    lower, higher = (outline[::-1], outline) if difference > 0.0 else (outline, outline[::-1])
+    is_hood = not _is_bed(lower, higher)
+    return 1.0 if (difference > 0.0) == is_hood else -1.0
+
+
+def _is_bed(lower: Floats, higher: Floats) -> bool:
+    """Whether the lower end of a body is a pickup's bed. `lower` and `higher` are its outline
+    (BINS,), each from one end."""
+    is_low = float(np.median(higher[1 : QUARTER // 2])) < LOW_END
+    return is_low and _slope(lower) <= UPRIGHT and _slope(higher) >= SLOPED
+
+
+def _slope(outline: Floats) -> int:
+    """Return in how many slices the outline rises from its end to the cabin: by the middle half of
+    the difference."""
+    level, top = float(np.median(outline[1 : QUARTER // 2])), float(outline.max())
+    start, stop = (
+        int(np.argmax(outline > level + share * (top - level))) for share in (0.25, 0.75)
+    )
+    return stop - start
 
 
 def _outline(shape: BodyShape, axis: int, up: int) -> Floats:

@@ -69,12 +69,12 @@ def odd_vehicle(body: Bodywork) -> Iterator[Advice]:
 
 
 def _size(body: Bodywork) -> Iterator[Advice]:
-    longest, second, _ = sorted(body.shape.size, reverse=True)
+    longest, second, third = sorted(body.shape.size, reverse=True)
     if is_usual(longest, second):
         return
     x, y, z = body.shape.size
     unit, factor = None, car_factor(longest) if longest else 1.0
-    if longest and (fitting := fitting_units(longest, second)):
+    if longest and (fitting := fitting_units(longest, second, third)):
         unit, factor = fitting[0]
     has_floor = min(x, y) > USUAL_SECOND_M and z < FLOOR_M
     values = {"size": [x, y, z], "factor": factor, "unit": unit, "has_floor": has_floor}

@@ -99,8 +99,9 @@ def read_in_metres(
     try:
         require_vehicle_size(str(path), mesh)
     except InputError:
-        sides = sorted(BodyShape(mesh.triangles, mesh.parts, mesh.part_names).size)
-        units = fitting_units(sides[2], sides[1]) if scale is None and sides[2] > 0.0 else []
+        third, second, longest = sorted(BodyShape(mesh.triangles, mesh.parts, mesh.part_names).size)
+        is_found = scale is None and longest > 0.0
+        units = fitting_units(longest, second, third) if is_found else []
         if not units:
             raise
         (unit, factor), *others = units

@@ -210,3 +210,29 @@ def outline_car(heights, width):
 def test_a_car_s_hood_tells_its_front_and_a_lorry_s_load_does_not(tmp_path, heights, width, told):
     mesh = read(tmp_path, "car.obj", outline_car(heights, width))
     assert told in mesh.axes
+
+
+PROFILES = {
+    # Length and height of the corners of a side view from the front on [m].
+    "pickup": [(0.0, 1.15), (1.3, 1.2), (2.2, 1.9), (3.5, 1.9), (3.55, 0.85), (5.6, 0.85)],
+    "sedan": [(0.0, 0.75), (1.2, 0.9), (2.0, 1.4), (3.2, 1.42), (4.0, 1.05), (4.7, 1.0)],
+    "hatchback": [(0.0, 0.8), (1.0, 0.95), (1.7, 1.45), (3.7, 1.45), (3.9, 0.9)],
+    "rear engine": [(0.0, 0.65), (1.2, 0.85), (1.9, 1.3), (2.3, 1.3), (4.2, 1.0), (4.4, 0.9)],
+}
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize("kind", PROFILES)
+def test_a_pickup_s_bed_is_not_its_hood(kind, way, tmp_path):
+    """Its bed is lower than its hood, but ends at an upright window; z is up, it faces +y or -y."""
+    ends = [*PROFILES[kind], (PROFILES[kind][-1][0], 0.0), (0.0, 0.0)]
+    middle = PROFILES[kind][-1][0] / 2.0
+    side = [(way * (middle - x), z) for x, z in ends]
+    points = [(half, y, z) for half in (-1.0, 1.0) for y, z in side]
+    count, lines = len(side), [f"v {x} {y} {z}" for x, y, z in points]
+    for k in range(count):
+        after = (k + 1) % count
+        corners = (k, after, after + count, k + count)
+        lines.append("f " + " ".join(str(corner + 1) for corner in corners))
+    mesh = read(tmp_path, "car.obj", "\n".join(lines).encode())
+    assert f"faces {'+' if way > 0 else '-'}y (shape)" in mesh.axes

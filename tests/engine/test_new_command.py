@@ -8,6 +8,7 @@ import pytest
 import pe_core as pe
 from pe_core import catalog
 from pe_core.scene import cuts_body
+from pe_core.scene.mesh import LARGEST_M, SMALLER_UNITS, fitting_units
 from pe_tools.cli.roof import find_roof
 from pe_tools.cli.verbs import main
 from tests.engine.mesh_files import glb_file, gltf, obj_bytes, ply_binary, stl_binary
@@ -88,6 +89,26 @@ def test_axes_and_units_of_every_format_are_found_and_written(tmp_path, capsys):
         found = capsys.readouterr().err
         assert ("taken as millimetres" in found) == (study.axes.scale == 0.001)
     assert "scale = 0.001" in (tmp_path / "millimetres.stl.toml").read_text()
+
+
+VEHICLES_M = {
+    "car": (4.5, 1.8, 1.45),
+    "sports car": (4.4, 1.9, 1.1),
+    "van": (4.3, 1.7, 1.8),
+    "ambulance": (7.5, 2.2, 2.7),
+    "city bus": (12.0, 2.55, 3.1),
+    "lorry": (16.5, 2.6, 4.0),
+}
+"""Length, width and height."""
+
+
+@pytest.mark.parametrize("unit", SMALLER_UNITS)
+def test_the_unit_is_that_in_which_the_cross_section_is_a_vehicle_s(unit):
+    factor = SMALLER_UNITS[unit]
+    for kind, size in VEHICLES_M.items():
+        sides = sorted((side / factor for side in size), reverse=True)
+        if max(sides) > LARGEST_M:  # else the file is read as metres
+            assert fitting_units(*sides)[0] == (unit, factor), kind
 
 
 def test_most_keys_have_a_comment_and_those_that_are_off_work(tmp_path):

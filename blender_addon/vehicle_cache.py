@@ -101,8 +101,10 @@ def counted_members(
     collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph
 ) -> tuple[tuple[str, bool, float], ...]:
     """Return the names of the vehicle's counted objects, if cameras see through, covers' losses."""
-    members = bridge.visible_members(collection, depsgraph.view_layer)
-    counted = (each for each in members if not bridge.mounted_on_sensor(each))
+    visible = bridge.visible_members(collection, depsgraph.view_layer)
+    counted = {each for each in visible if not bridge.mounted_on_sensor(each)}
+    instanced = {bridge.instanced_by(each) for each in counted} - {None}
+    counted = counted.union(*map(bridge.instanced_members, instanced))
     own = ((each.name_full, each.perception_entropy) for each in counted)
     return tuple(sorted((name, each.see_through, each.cover_loss_db) for name, each in own))
 

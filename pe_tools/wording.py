@@ -198,6 +198,10 @@ WARNINGS: Mapping[str, Callable[..., str]] = {
         if is_whole
         else f"the vehicle's collection {collection} is {how}: it is not scored"
     ),
+    "instanced_sensors": lambda _, names, collection: (
+        f"{', '.join(names)}: in the instanced collection {collection}, so not scored; make the "
+        "instance real (Object > Apply)"
+    ),
     "refused": lambda _, field, found, expected: f"its {field} is {found}; expected {expected}",
 }  # How warnings are said, by code: of the part of the vehicle and the warning's values
 

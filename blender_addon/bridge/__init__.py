@@ -135,6 +135,8 @@ from .variants import (
 from .vehicle import (
     SURROUNDINGS,
     in_surroundings,
+    instanced_by,
+    instanced_members,
     layers_of,
     vehicle_from_collection,
     visible_members,

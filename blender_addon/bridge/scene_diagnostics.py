@@ -4,20 +4,27 @@
 its sensors.
 """
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from typing import Any
 
 import bpy
-from bpy.types import ID, LayerCollection, Object, Scene
+from bpy.types import ID, Collection, LayerCollection, Object, Scene
 
 from ..engine import advice, pe
 from .mounting import followers_of
 from .rig import sensor_from_object, sensor_objects, view_layer_of
 from .transform_constraints import AXIS_LABELS, free_axes, holders, locked_axes
-from .vehicle import hidden_how, layers_of
+from .vehicle import (
+    IN_RENDERS,
+    hidden_how,
+    instanced_by,
+    instanced_members,
+    layers_of,
+    visible_members,
+)
 
 MISSING, DRIVER, UNITS, REFUSED = "missing", "driver", "units", "refused"
-HIDDEN = "hidden_vehicle"
+HIDDEN, INSTANCED = "hidden_vehicle", "instanced_sensors"
 """Codes of warnings, beside those of the engine."""
 
 
@@ -25,7 +32,7 @@ def scene_advice(scene: Scene) -> tuple[advice.Advice, ...]:
     """Return warnings about a scene: missing data, units, and sensors that cannot be scored."""
     sensors = sensor_objects(scene)
     warnings = (*missing_data(scene, sensors), *_units(scene), *_hidden_vehicle(scene))
-    return (*warnings, *_refused(scene, sensors))
+    return (*warnings, *_instanced(scene), *_refused(scene, sensors))
 
 
 def missing_data(
@@ -71,7 +78,7 @@ def _scored_data(scene: Scene, sensors: Sequence[Object]) -> Iterator[ID]:
             yield obj.data
 
 
-def _failed_drivers(blocks: Iterable[Any], sensors: Collection[Object]) -> Iterator[advice.Advice]:
+def _failed_drivers(blocks: Iterable[Any], sensors: Container[Object]) -> Iterator[advice.Advice]:
     """Yield a warning for each object with a driver that did not run."""
     for block in blocks:
         drivers = getattr(block.animation_data, "drivers", ()) if _animatable(block) else ()
@@ -105,8 +112,12 @@ def _hidden_vehicle(scene: Scene) -> Iterator[advice.Advice]:
         values = {"collection": vehicle.name, "how": how, "is_whole": True}
         yield advice.Advice(None, HIDDEN, values, fix="show_vehicle")
     else:
-        for child in _hidden_children(layers[0]):
-            values = {"collection": child.name, "how": hidden_how(child), "is_whole": False}
+        hidden = {child.collection: hidden_how(child) for child in _hidden_children(layers[0])}
+        instanced = {instanced_by(obj) for obj in visible_members(vehicle, layer)} - {None}
+        for collection in instanced:
+            hidden |= dict.fromkeys(_hidden_inside(collection), IN_RENDERS)
+        for child, how in hidden.items():
+            values = {"collection": child.name, "how": how, "is_whole": False}
             yield advice.Advice(None, HIDDEN, values)
 
 
@@ -117,6 +128,29 @@ def _hidden_children(layer: LayerCollection) -> Iterator[LayerCollection]:
             yield from _hidden_children(child)
         elif any(obj.type == "MESH" for obj in child.collection.all_objects):
             yield child
+
+
+def _hidden_inside(collection: Collection) -> Iterator[Collection]:
+    """Yield the outermost collections of an instanced one that renders do not show, with a mesh."""
+    if not collection.hide_render:
+        for child in collection.children:
+            yield from _hidden_inside(child)
+    elif any(obj.type == "MESH" for obj in collection.all_objects):
+        yield collection
+
+
+def _instanced(scene: Scene) -> Iterator[advice.Advice]:
+    """Yield a warning for each instanced collection with sensors: an instance cannot be placed."""
+    layer, names = view_layer_of(scene), dict[Collection, set[str]]()
+    for obj in scene.objects:
+        collection = instanced_by(obj)
+        if collection is not None and obj.visible_get(view_layer=layer):
+            members = instanced_members(collection, rendered=False)
+            names[collection] = {o.name for o in members if o.perception_entropy.is_sensor}
+    for collection, found in names.items():
+        if found:
+            values = {"names": sorted(found), "collection": collection.name}
+            yield advice.Advice(None, INSTANCED, values)
 
 
 def _refused(scene: Scene, sensors: Sequence[Object]) -> Iterator[advice.Advice]:

@@ -14,6 +14,7 @@ from .scene_settings import as_typed
 RESIDUAL = "pe_residual"
 """Mesh attribute with what single precision leaves out of the points of an imported vehicle."""
 VEHICLE = "Vehicle"
+IN_RENDERS = "hidden in renders"
 SURROUNDINGS = "pe_surroundings"
 """Own property of the collection with what stands round the vehicle: never part of it."""
 
@@ -64,6 +65,34 @@ def visible_members(collection: Collection, layer: ViewLayer) -> set[Object]:
     return members.union(*(visible_members(child, layer) for child in collection.children))
 
 
+def instanced_members(
+    collection: Collection, *, rendered: bool = True, within: tuple[Collection, ...] = ()
+) -> set[Object]:
+    """Return the objects of an instanced collection, of its children, and of the collections that
+    they instance in turn. `rendered`: only those that renders show, without surroundings. `within`:
+    the collections that it is in, outermost first."""
+    is_hidden = collection.hide_render or collection.get(SURROUNDINGS)
+    if collection in within or (rendered and is_hidden):
+        return set()
+    members = {obj for obj in collection.objects if not (rendered and obj.hide_render)}
+    inner = [*collection.children, *filter(None, map(instanced_by, members))]
+    path = (*within, collection)
+    return members.union(*(instanced_members(c, rendered=rendered, within=path) for c in inner))
+
+
+def instanced_by(obj: Object) -> Collection | None:
+    """Return the collection that an object is an instance of; None for other objects."""
+    return obj.instance_collection if obj.instance_type == "COLLECTION" else None
+
+
+def hidden_in_instance(obj: Object) -> set[Object]:
+    """Return the objects of the collection that an object instances which renders do not show."""
+    collection = instanced_by(obj)
+    if collection is None:
+        return set()
+    return instanced_members(collection, rendered=False) - instanced_members(collection)
+
+
 def in_surroundings(obj: Object) -> bool:
     """Whether an object belongs to the surroundings of the vehicle."""
     return any(each.get(SURROUNDINGS) for each in obj.users_collection)
@@ -85,7 +114,7 @@ def hidden_how(layer: LayerCollection) -> str:
     if layer.exclude:
         return "excluded from the view layer"
     if layer.collection.hide_render:
-        return "hidden in renders"
+        return IN_RENDERS
     return "" if layer.is_visible else "hidden in the viewport"
 
 
@@ -97,12 +126,14 @@ def drawn_meshes(
     from object."""
     visible = visible_members(collection, depsgraph.view_layer)
     members = {obj for obj in visible if not mounted_on_sensor(obj)}
+    hidden_by_owner = {obj: hidden_in_instance(obj) for obj in members}
     # The iterator yields curves, texts and metaballs twice: as themselves and as a mesh.
     for instance in depsgraph.object_instances:
         owner = instance.parent if instance.is_instance else instance.object
         obj = instance.object
-        hidden = obj.original.hide_render
-        if owner.original in members and obj.type == "MESH" and not hidden:
+        if owner.original not in members or obj.type != "MESH" or obj.original.hide_render:
+            continue
+        if not (instance.is_instance and obj.original in hidden_by_owner[owner.original]):
             yield obj, np.array(instance.matrix_world, dtype=float)
 
 

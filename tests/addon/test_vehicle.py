@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 import pytest
 
+from blender_addon import bridge
 from tests.addon import scenes
 
 BOX_VOLUME = 8.0
@@ -100,6 +101,49 @@ def test_hidden_does_not_count(parts, how):
     else:
         setattr(hidden, how, True)
     assert scenes.vehicle(parts).part_names == ("seen",)
+
+
+@pytest.mark.parametrize("how", ["object", "child", "collection", "nested", "surroundings"])
+def test_what_is_hidden_in_an_instance_does_not_count(parts, how):
+    """As Blender's renders show an instance: without its children that are hidden in renders."""
+    kit = bpy.data.collections.new("Kit")  # not in the scene but for its instance
+    child, rack = scenes.add_collection(kit, "Child"), bpy.data.collections.new("Rack")
+    scenes.add_box(kit, "seen")
+    hidden = scenes.add_box(child, "hidden")
+    scenes.add_box(rack, "bars")
+    (child if how == "nested" else kit).objects.link(instance_of(rack, "rack"))
+    parts.objects.link(instance_of(kit, "kit"))
+    scenes.add_box(parts, "body")
+    everything = {"seen", "hidden", "bars", "body"}
+    assert set(scenes.vehicle(parts).part_names) == everything
+    if how == "object":
+        hidden.hide_render = True
+    elif how == "surroundings":
+        child[bridge.SURROUNDINGS] = True
+    else:
+        (kit if how == "collection" else child).hide_render = True
+    left = {"collection": {"body"}, "nested": {"seen", "body"}}.get(how, everything - {"hidden"})
+    assert set(scenes.vehicle(parts).part_names) == left
+
+
+def test_hidden_children_and_sensors_of_instances_are_told(car):
+    """Sensors of an instanced collection cannot be placed: they are not scored, and named."""
+    kit = bpy.data.collections.new("Kit")
+    child = scenes.add_collection(kit, "Child")
+    scenes.add_box(child, "hidden")
+    sensor = scenes.add_sensor("inside", location=(0.0, 0.0, 2.0))
+    scenes.add_sensor("roof", location=(0.0, 0.0, 2.0))
+    for own in tuple(sensor.users_collection):
+        own.objects.unlink(sensor)
+    kit.objects.link(sensor)
+    codes = {"hidden_vehicle", "instanced_sensors"}
+    assert not [each for each in bridge.scene_advice(car) if each.code in codes]
+    car.perception_entropy.vehicle.objects.link(instance_of(kit, "kit"))
+    child.hide_render = True
+    bpy.context.view_layer.update()
+    told = {each.code: each.text for each in bridge.scene_advice(car) if each.code in codes}
+    assert "Child is hidden in renders" in told["hidden_vehicle"]
+    assert "inside" in told["instanced_sensors"] and "Kit" in told["instanced_sensors"]
 
 
 def test_curve_counts_once(parts):

@@ -103,8 +103,8 @@ def counted_members(
     """Return the names of the vehicle's counted objects, if cameras see through, covers' losses."""
     visible = bridge.visible_members(collection, depsgraph.view_layer)
     counted = {each for each in visible if not bridge.mounted_on_sensor(each)}
-    instanced = {bridge.instanced_by(each) for each in counted} - {None}
-    counted = counted.union(*map(bridge.instanced_members, instanced))
+    for collection in bridge.instanced_collections(counted):
+        counted |= bridge.instanced_members(collection)
     own = ((each.name_full, each.perception_entropy) for each in counted)
     return tuple(sorted((name, each.see_through, each.cover_loss_db) for name, each in own))
 

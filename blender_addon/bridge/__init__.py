@@ -135,7 +135,7 @@ from .variants import (
 from .vehicle import (
     SURROUNDINGS,
     in_surroundings,
-    instanced_by,
+    instanced_collections,
     instanced_members,
     layers_of,
     vehicle_from_collection,

@@ -18,6 +18,7 @@ from .vehicle import (
     IN_RENDERS,
     hidden_how,
     instanced_by,
+    instanced_collections,
     instanced_members,
     layers_of,
     visible_members,
@@ -113,8 +114,7 @@ def _hidden_vehicle(scene: Scene) -> Iterator[advice.Advice]:
         yield advice.Advice(None, HIDDEN, values, fix="show_vehicle")
     else:
         hidden = {child.collection: hidden_how(child) for child in _hidden_children(layers[0])}
-        instanced = {instanced_by(obj) for obj in visible_members(vehicle, layer)} - {None}
-        for collection in instanced:
+        for collection in instanced_collections(visible_members(vehicle, layer)):
             hidden |= dict.fromkeys(_hidden_inside(collection), IN_RENDERS)
         for child, how in hidden.items():
             values = {"collection": child.name, "how": how, "is_whole": False}

@@ -1,6 +1,6 @@
 """The vehicle: the visible solid objects of a collection as triangles of named parts, and back."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import bpy
@@ -75,7 +75,7 @@ def instanced_members(
     if collection in within or (rendered and is_hidden):
         return set()
     members = {obj for obj in collection.objects if not (rendered and obj.hide_render)}
-    inner = [*collection.children, *filter(None, map(instanced_by, members))]
+    inner = [*collection.children, *instanced_collections(members)]
     path = (*within, collection)
     return members.union(*(instanced_members(c, rendered=rendered, within=path) for c in inner))
 
@@ -83,6 +83,12 @@ def instanced_members(
 def instanced_by(obj: Object) -> Collection | None:
     """Return the collection that an object is an instance of; None for other objects."""
     return obj.instance_collection if obj.instance_type == "COLLECTION" else None
+
+
+def instanced_collections(objects: Iterable[Object]) -> list[Collection]:
+    """Return the collections that objects are instances of, each once."""
+    instanced = dict.fromkeys(map(instanced_by, objects))
+    return [collection for collection in instanced if collection is not None]
 
 
 def hidden_in_instance(obj: Object) -> set[Object]:

@@ -144,12 +144,12 @@ def read_ap_table(
     data = read_bytes(Path(path))
     if is_binary(data):
         raise InputError(source, "file", "a table in text (CSV)", "binary data")
-    rows = numbered_lines(decode_text(data))
+    lines = numbered_lines(decode_text(data))
     columns = COLUMNS if m_at_ranges is None else (RANGE_COLUMN, *COLUMNS[1:])
-    if not rows:
+    if not lines:
         expected = f"a table with the columns {columns[0]} and ap"
         raise InputError(source, "file", expected, "nothing")
-    separator, rows = separated(rows)
+    separator, rows = separated(lines)
     cells = csv_rows(source, rows, columns[:2], separator)
     values = [_values(source, *row, columns) for row in cells]
     m, ap, n = np.array(values, dtype=float).reshape(-1, 3).T

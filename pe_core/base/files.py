@@ -1,8 +1,8 @@
 """Whole files, read with size limits and written atomically; their lines, numbers, names and CSV.
 
 A spreadsheet computes what begins with ``=``, ``+``, ``-`` or ``@``, and a name may come from
-anybody's file. Such a text gets an apostrophe in front (OWASP, "CSV injection"); our own readers
-take it off again.
+anybody's file. Such a text gets an apostrophe in front (OWASP, "CSV injection"), as does one that
+begins with ``#`` and would be a comment; our own readers take it off again.
 """
 
 import codecs
@@ -48,7 +48,7 @@ NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 """Each digit can match in one way only: otherwise the time would grow with the square of a text."""
 MAX_QUOTE = 40
 MARK = "'"
-_FORMULA = re.compile(rf"{MARK}*[=+\-@\t\r\uff1d\uff0b\uff0d\uff20]")
+_FORMULA = re.compile(rf"{MARK}*[#=+\-@\t\r\uff1d\uff0b\uff0d\uff20]")
 """Apostrophes count: a text that has one already gets another, so that it can be told apart."""
 _NUMBERS = re.compile(rf"{NUMBER.pattern}( {NUMBER.pattern})*", re.ASCII)
 MAX_STEM = 100
@@ -343,7 +343,8 @@ def csv_text(rows: Iterable[Iterable[object]], *, quote_texts: bool = False) -> 
 
 
 def marked(text: str) -> str:
-    """Return a text as a cell: with an apostrophe in front if it looks like a formula."""
+    """Return a text as a cell: with an apostrophe in front of what looks like a formula or a
+    comment."""
     is_formula = _FORMULA.match(text) and not _NUMBERS.fullmatch(text)
     return MARK + text if is_formula else text
 

@@ -504,3 +504,9 @@ def test_of_six_numbers_of_nuimages_the_last_is_left_out_and_a_seventh_is_too_ma
         assert any("its sixth coefficient" in line for line in found.lines) == (sixth != 0.0)
     with pytest.raises(pe.InputError, match="4 to 6 numbers"):
         nuimages(tmp_path, [0.1] * 7)
+
+
+def test_a_name_that_begins_as_a_comment_comes_back_from_a_table(tmp_path):
+    rig = pe.Rig([sensor("#1", PUCK, (0, 0, 2)), sensor("=2", PUCK, (1, 0, 2))])
+    pt.export_rig(rig, "csv", tmp_path / "rig.csv")
+    assert [s.name for s in pt.import_rig(tmp_path / "rig.csv").rig] == ["#1", "=2"]

@@ -25,7 +25,8 @@ from .vehicle import (
 )
 
 MISSING, DRIVER, UNITS, REFUSED = "missing", "driver", "units", "refused"
-HIDDEN, INSTANCED = "hidden_vehicle", "instanced_sensors"
+HIDDEN = "hidden_vehicle"
+INSTANCED = "instanced_sensors"
 """Codes of warnings, beside those of the engine."""
 
 
@@ -141,7 +142,8 @@ def _hidden_inside(collection: Collection) -> Iterator[Collection]:
 
 def _instanced(scene: Scene) -> Iterator[advice.Advice]:
     """Yield a warning for each instanced collection with sensors: an instance cannot be placed."""
-    layer, names = view_layer_of(scene), dict[Collection, set[str]]()
+    layer = view_layer_of(scene)
+    names: dict[Collection, set[str]] = {}
     for obj in scene.objects:
         collection = instanced_by(obj)
         if collection is not None and obj.visible_get(view_layer=layer):

@@ -178,7 +178,8 @@ def _is_bed(lower: Floats, higher: Floats) -> bool:
 def _slope(outline: Floats) -> int:
     """Return in how many slices the outline rises from its end to the cabin: by the middle half of
     the difference."""
-    level, top = float(np.median(outline[1 : QUARTER // 2])), float(outline.max())
+    level = float(np.median(outline[1 : QUARTER // 2]))
+    top = float(outline.max())
     start, stop = (
         int(np.argmax(outline > level + share * (top - level))) for share in (0.25, 0.75)
     )

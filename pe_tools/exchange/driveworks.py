@@ -112,7 +112,8 @@ def _sensor(path: Path, row: Table) -> PortableSensor:
 
 PINHOLE, F_THETA = "pinhole", "ftheta"
 FOCAL_KEYS, MIDDLE, SIZE = ("fx", "fy"), ("cx", "cy"), ("width", "height")
-DISTORTION, RADIAL = "distortion", ("k1", "k2", "k3")
+DISTORTION = "distortion"
+RADIAL = ("k1", "k2", "k3")
 POLYNOMIALS = ("polynomial", "bw-poly")
 FORWARD, BACKWARD = "angle-to-pixeldistance", "pixeldistance-to-angle"
 MAX_POWER = 6  # Maximum number of coefficients of a polynomial, the constant included
@@ -190,8 +191,9 @@ def _distortion(properties: Table) -> list[float]:
     """Return k1, k2, k3 of a pinhole; zeros if the file has none. They map undistorted to distorted
     coordinates by 1 + k1 r^2 + k2 r^4 + k3 r^6 (DriveWorks, dwPinholeCameraConfig)."""
     if DISTORTION in properties:
-        field, text = properties.field(DISTORTION), properties.raw(DISTORTION)
-        return values.figures(properties.source, field, text, 3, values.COEFFICIENT)
+        text = properties.raw(DISTORTION)
+        field = properties.field(DISTORTION)
+        return values.figures(properties.source, field, text, 3, rule=values.COEFFICIENT)
     figures = Figures(properties.source, lambda key: properties.raw(key, None), properties.field)
     return [figures.number(key, values.COEFFICIENT) or 0.0 for key in RADIAL]
 

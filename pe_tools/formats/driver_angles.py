@@ -17,14 +17,16 @@ from pe_core.base.values import FINITE, Whole, numbers
 from .channels import Channel, checked_channel, sorted_by_id
 from .yaml_text import parse_yaml
 
-OUSTER_PART, OUSTER_UP, OUSTER_AROUND = (
-    *("beam_intrinsics", "beam_altitude_angles", "beam_azimuth_angles"),
-)
+OUSTER_PART = "beam_intrinsics"
+OUSTER_UP = "beam_altitude_angles"
+OUSTER_AROUND = "beam_azimuth_angles"
 OUSTER_SIGN = -1.0
-VELODYNE_LASERS, VELODYNE_ID = "lasers", "laser_id"
-VELODYNE_UP, VELODYNE_AROUND = "vert_correction", "rot_correction"
+VELODYNE_LASERS = "lasers"
+VELODYNE_ID = "laser_id"
+VELODYNE_UP = "vert_correction"
+VELODYNE_AROUND = "rot_correction"
 VELODYNE_SIGN = 1.0
-"""Factors that make an offset counter-clockwise seen from above."""
+"""A sign is the factor that makes an offset counter-clockwise seen from above."""
 LASERS = re.compile(rf"^{VELODYNE_LASERS} *:", re.MULTILINE)
 LASER_ID = Whole(0, 999_999_999, "a channel's id")
 
@@ -44,7 +46,8 @@ def _ouster(source: str, data: Any) -> list[Channel]:
     has the angles [deg] in a part of its own."""
     table = Table(data, source)
     table = table.table(OUSTER_PART) if OUSTER_PART in table else table
-    up, around = (_angles(table, key) for key in (OUSTER_UP, OUSTER_AROUND))
+    up = _angles(table, OUSTER_UP)
+    around = _angles(table, OUSTER_AROUND)
     if len(up) != len(around):
         raise table.error(OUSTER_AROUND, f"{len(up)} angles, one a channel", len(around))
     return [
@@ -52,8 +55,8 @@ def _ouster(source: str, data: Any) -> list[Channel]:
             source,
             f"{table.field(OUSTER_UP)}[{number}]",
             None,
-            elevation_deg,
-            OUSTER_SIGN * azimuth_deg,
+            elevation_deg=elevation_deg,
+            offset_deg=OUSTER_SIGN * azimuth_deg,
         )
         for number, (elevation_deg, azimuth_deg) in enumerate(zip(up, around, strict=True))
     ]
@@ -72,11 +75,10 @@ def _velodyne(source: str, data: Any) -> list[Channel]:
     channels = []
     for laser in Table(data, source).tables(VELODYNE_LASERS):
         number = laser.whole(VELODYNE_ID, rule=LASER_ID)
-        elevation, offset = (
-            math.degrees(laser.number(key, rule=FINITE)) for key in (VELODYNE_UP, VELODYNE_AROUND)
-        )
+        elevation = math.degrees(laser.number(VELODYNE_UP, rule=FINITE))
+        offset = VELODYNE_SIGN * math.degrees(laser.number(VELODYNE_AROUND, rule=FINITE))
         channels.append(
-            checked_channel(source, laser.path, number, elevation, VELODYNE_SIGN * offset)
+            checked_channel(source, laser.path, number, elevation_deg=elevation, offset_deg=offset)
         )
     if not channels:
         raise InputError(source, VELODYNE_LASERS, "at least one laser", "none")

@@ -58,12 +58,15 @@ class Mesh(ShortRepr):
         Names of the parts; each part has a triangle, and names are unique.
     axes : str
         Text on how the file's axes were interpreted; empty if it is in the ground frame.
+    notes : tuple of str
+        What of the file is left out, and which of its polygons cross themselves.
     """
 
     triangles: NDArray[np.float64]
     parts: NDArray[np.int32]
     part_names: tuple[str, ...]
     axes: str = ""
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,7 @@
 """A vehicle described: axles, up and forward axis by shape and parts' names, a line of text."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -278,12 +279,13 @@ def _wheels(vehicle: Vehicle) -> list[Floats]:
     return centers
 
 
-def vehicle_line(vehicle: Vehicle, faces: str = "") -> str:
+def vehicle_line(vehicle: Vehicle, faces: str = "", notes: Sequence[str] = ()) -> str:
     """Return "4.70 x 1.85 x 1.45 m, faces +x, 15,498 triangles, 22 parts".
 
     `faces`: Text on how the axes of its file were interpreted. Without it, the line has the
         direction that follows from the names of the parts, or the axis along which the vehicle is
         long.
+    `notes`: What of its file is left out; it ends the line.
     """
     low, high = vehicle.bounds
     size = size_words(tuple((high - low).tolist()))
@@ -295,4 +297,4 @@ def vehicle_line(vehicle: Vehicle, faces: str = "") -> str:
     if not faces and (axis := along(shape, UP)) is not None:
         faces = f"lies along {'xyz'[axis]}"
     texts = (size, faces, triangles, parts)
-    return ", ".join(text for text in texts if text)
+    return "; ".join([", ".join(text for text in texts if text), *notes])

@@ -197,7 +197,8 @@ class Study(Tabular):
     """Space, prior, perception model, vehicle, rig, and how to search.
 
     `mesh` names the file the vehicle was read from (or is written to), `axes` is how that is to be
-    taken, and `faces` how its axes were taken, in words (empty: they are the ground frame's).
+    taken, `faces` how its axes were taken, in words (empty: they are the ground frame's), and
+    `mesh_notes` what of it is left out.
     `samples` is the number of voxels a score looks at, 0: all; `reference` says where the vehicle's
     axles are, for exports; `passthrough` is what an imported rig's file had besides the rig, for an
     export to its own format. Of `search`, what concerns the rig's sensors is kept; one that it does
@@ -226,6 +227,7 @@ class Study(Tabular):
     mesh: str | None = None
     axes: MeshAxes = field(default_factory=MeshAxes)
     faces: str = ""
+    mesh_notes: tuple[str, ...] = ()
     reference: Reference | None = None
     selection: Selection = field(default_factory=Selection)
     targets: TargetRule = field(default_factory=TargetRule)
@@ -281,7 +283,7 @@ class Study(Tabular):
         """The vehicle in one line: its file, its size, which way it faces; None without one."""
         if self.vehicle is None:
             return None
-        return f"{self.mesh or 'vehicle'}: {vehicle_line(self.vehicle, self.faces)}"
+        return f"{self.mesh or 'vehicle'}: {vehicle_line(self.vehicle, self.faces, self.mesh_notes)}"
 
     def evaluator(
         self,
@@ -461,7 +463,7 @@ class Study(Tabular):
 
     def with_mesh(self, mesh: str) -> "Study":
         """Return the study with the file named that has the vehicle's mesh as it is here."""
-        return replace(self, mesh=mesh, axes=MeshAxes(), faces="")
+        return replace(self, mesh=mesh, axes=MeshAxes(), faces="", mesh_notes=())
 
 
 FIELDS: dict[str, type] = {"rig": Rig, "space": PerceptionSpace, "prior": Prior, "search": Search}

@@ -243,7 +243,7 @@ def _read_vehicle(table: Table, folder: Path) -> "tuple[Vehicle | None, MeshFile
     read = shipped("reader.mesh")(folder / mesh, axes)
     require_vehicle_size(mesh, read)
     vehicle = Vehicle(read.triangles, read.parts, read.part_names, glass, **settings)
-    return vehicle, MeshFile(mesh, axes, read.axes)
+    return vehicle, MeshFile(mesh, axes, read.axes, read.notes)
 
 
 def _read_sensor(table: Table, folder: Path) -> Sensor:
@@ -347,11 +347,13 @@ def _without_none(value: Any) -> Any:
 
 
 class MeshFile(NamedTuple):
-    """A vehicle's mesh file, its axes by the study, and the axes that were used, in words."""
+    """A vehicle's mesh file, its axes by the study, the axes that were used, in words, and notes
+    on what of the file is left out."""
 
     mesh: str | None = None
     axes: MeshAxes = MeshAxes()
     faces: str = ""
+    mesh_notes: tuple[str, ...] = ()
 
 
 def read_axes(table: Table) -> MeshAxes:

@@ -18,13 +18,17 @@ from .axes import axes_in_text as axes_in_text
 from .mesh import MESH_PLUGIN, fit_names, make_mesh, read_with_plugin
 from .mesh import FoundMesh as FoundMesh
 from .npz import dump_npz, read_npz
+from .obj import read_obj
+from .ply import read_ply
 from .with_trimesh import dump_obj, read_scene
 
 _F = TypeVar("_F")
 
 _READERS: dict[str, Callable[[Path, bytes], Mesh]] = {
     ".npz": read_npz,
-    **dict.fromkeys((".obj", ".stl", ".ply", ".glb"), read_scene),
+    ".obj": read_obj,
+    ".ply": read_ply,
+    **dict.fromkeys((".stl", ".glb"), read_scene),
 }
 _SAYS: dict[str, Callable[[bytes], SaidAxes]] = {
     ".npz": lambda _: OURS,
@@ -52,8 +56,8 @@ def read_mesh(path: str | Path, axes: MeshAxes | None = None) -> Mesh:
     -------
     Mesh
         Triangles (F, 3, 3) [m] in the ground frame, F at least 1, including those of zero area;
-        parts in the file's order, with printable names (`part_names.fit_names`); and a text on
-        how the axes were determined.
+        parts in the file's order, with printable names (`mesh.fit_names`); a text on how the axes
+        were determined; and notes on geometry that is left out.
 
     Raises
     ------

@@ -3,6 +3,7 @@ the study come first, then those that the file names. Without either, the names 
 shape decide; the last resort is a default. A text says how the axes were determined."""
 
 import re
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -66,7 +67,7 @@ def oriented(source: str, mesh: Mesh, said: SaidAxes, axes: MeshAxes) -> Mesh:
         triangles = rotate(turn.ground_from_sensor, triangles)
     up_by, forward_by = chosen.up_by or "assumed", chosen.forward_by or "assumed"
     text = f"faces {chosen.forward} ({forward_by}), up is {chosen.up} ({up_by})"
-    return Mesh(triangles, mesh.parts, mesh.part_names, "" if chosen == OURS else text)
+    return replace(mesh, triangles=triangles, axes="" if chosen == OURS else text)
 
 
 def _chosen(mesh: Mesh, said: SaidAxes, axes: MeshAxes) -> SaidAxes:

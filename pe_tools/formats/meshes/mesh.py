@@ -1,9 +1,9 @@
-"""Common parts of all readers: the checked mesh, limits, polygons as triangles, pieces, names."""
+"""Common parts of all readers: the checked mesh, limits, notes, pieces, names."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pe_core.base.arrays import Floats
-from pe_core.base.errors import InputError, require_memory, shown
+from pe_core.base.errors import InputError, plural, require_memory, shown
 from pe_core.base.plugins import call_plugin, install_hint, plugin_name, required_plugin
 from pe_core.base.values import A_NAME, MAX_NAME
 from pe_core.scene.mesh import Mesh
@@ -24,7 +24,13 @@ TRIANGLE_BYTES = 320
 """Maximum memory of a triangle while it is read (measured): corners, copies, indices."""
 
 
-def make_mesh(source: str, triangles: ArrayLike, parts: ArrayLike, names: Sequence[str]) -> Mesh:
+def make_mesh(
+    source: str,
+    triangles: ArrayLike,
+    parts: ArrayLike,
+    names: Sequence[str],
+    notes: Sequence[str] = (),
+) -> Mesh:
     """Return a checked mesh with unique part names, from the output of a reader. `triangles` (F, 3,
     3) are in metres, `parts` (F,) are indices into `names`; parts with the same name are merged,
     names without triangles are dropped. No triangle, a wrong shape, a coordinate that is not finite
@@ -45,13 +51,14 @@ def make_mesh(source: str, triangles: ArrayLike, parts: ArrayLike, names: Sequen
         expected = f"an index into the {len(names)} part names"
         raise InputError(source, f"parts[{row}]", expected, str(labels[row]))
     if len(names) == 1:
-        return Mesh(corners, np.zeros(len(labels), np.int32), tuple(names))
+        one_part = np.zeros(len(labels), np.int32)
+        return Mesh(corners, one_part, tuple(names), notes=tuple(notes))
     used = np.bincount(labels.astype(np.int64), minlength=len(names)) > 0
     used_names = [name for name, has_triangles in zip(names, used, strict=True) if has_triangles]
     new_index = {name: new for new, name in enumerate(dict.fromkeys(used_names))}
     # Unused names are never looked up, so their number is arbitrary.
     renumber = np.array([new_index.get(name, -1) for name in names], dtype=np.int32)
-    return Mesh(corners, renumber[labels], tuple(new_index))
+    return Mesh(corners, renumber[labels], tuple(new_index), notes=tuple(notes))
 
 
 def require_room(source: str, triangles: int) -> None:
@@ -70,18 +77,16 @@ def require_labels(source: str, shape: tuple[int, ...], dtype: np.dtype[Any], fa
         raise InputError(source, "parts", "whole numbers", f"dtype {dtype}")
 
 
-def fan(counts: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Cut polygons of `counts` (P,) corners, all in one list, into triangle fans. Returns the
-    positions (T, 3) of each triangle's corners in the list, and the polygon (T,) of each triangle.
-    Polygons of fewer than three corners give none."""
-    sizes = counts.astype(np.int64)
-    if (sizes == 3).all():  # the usual case
-        return np.arange(3 * len(sizes)).reshape(-1, 3), np.arange(len(sizes))
-    triangles = np.maximum(sizes - 2, 0)
-    polygons = np.repeat(np.arange(len(sizes)), triangles)
-    step = np.arange(len(polygons)) - np.repeat(np.cumsum(triangles) - triangles, triangles)
-    first = (np.cumsum(sizes) - sizes)[polygons]
-    return np.stack([first, first + step + 1, first + step + 2], axis=1), polygons
+def mesh_notes(skipped: Mapping[str, int], counts: NDArray[Any], crossing: int) -> tuple[str, ...]:
+    """Return what users must know of a file's geometry: what is left out, by its noun, with the
+    faces of fewer than three corners by `counts` (P,), and how many polygons cross themselves."""
+    few = int(np.count_nonzero(counts < 3))
+    left_out = [plural(number, noun) for noun, number in skipped.items() if number]
+    left_out += [f"{plural(few, 'face')} of fewer than 3 corners"] if few else []
+    notes = (f"left out: {', '.join(left_out)}",) if left_out else ()
+    if crossing:
+        notes += (f"{plural(crossing, 'polygon')} not flat, or crossing itself",)
+    return notes
 
 
 INSTEAD = "?"  # Replacement of an unprintable character, and of a name without a printable one
@@ -134,26 +139,30 @@ def joined(pieces: Sequence[Piece]) -> tuple[Floats, NDArray[np.int32]]:
     return triangles, np.repeat(np.arange(len(pieces), dtype=np.int32), sizes)
 
 
-def found(source: str, pieces: list[Piece], metres: float, up: str) -> FoundMesh:
+def found(
+    source: str, pieces: list[Piece], metres: float, up: str, notes: Sequence[str] = ()
+) -> FoundMesh:
     """Join pieces into one mesh; `metres` is the file's unit [m], `up` its up axis."""
     if not (np.isfinite(metres) and metres > 0.0):
         raise InputError(source, "unit", "a length in metres", metres)
     triangles, parts = joined(pieces)
     if metres != 1.0:
         triangles = triangles * metres
-    return FoundMesh(triangles, parts, [piece.name for piece in pieces], up)
+    return FoundMesh(triangles, parts, [piece.name for piece in pieces], up, notes)
 
 
 MESH_PLUGIN = "mesh"
 
 
 class FoundMesh(NamedTuple):
-    """Result of a reader: triangles [m] in the file's axes, parts, names, and the up axis."""
+    """Result of a reader: triangles [m] in the file's axes, parts, names, the up axis, and what
+    users must know, such as geometry that is left out."""
 
     triangles: ArrayLike
     parts: NDArray[Any]
     part_names: Sequence[str]
     up: str
+    notes: Sequence[str] = ()
 
 
 def read_with_plugin(path: Path, data: bytes) -> tuple[Mesh, SaidAxes]:
@@ -166,6 +175,6 @@ def read_with_plugin(path: Path, data: bytes) -> tuple[Mesh, SaidAxes]:
     found = call_plugin(point, reader, path, data)
     if not isinstance(found, FoundMesh):
         raise InputError(plugin_name(point), "result", "a FoundMesh", shown(found))
-    mesh = make_mesh(str(path), found.triangles, found.parts, found.part_names)
+    mesh = make_mesh(str(path), found.triangles, found.parts, found.part_names, found.notes)
     forward = "+x" if found.up != "+x" else "+z"
     return mesh, SaidAxes(found.up, "file", forward, "")

@@ -31,6 +31,9 @@ def read_npz(path: Path, data: bytes) -> Mesh:
         require_memory(source, "file", sum(each.file_size for each in members))
         with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
             found: dict[str, Any] = {name: arrays[name] for name in ARRAYS if name in arrays}
+        wrong = next((n for n, array in found.items() if not isinstance(array, np.ndarray)), None)
+        if wrong is not None:
+            raise InputError(source, wrong, "an array", f"{type(found[wrong]).__name__}")
         names = found.get("part_names", np.array([path.stem]))
         texts = [str(name) for name in names.ravel()[: MAX_PARTS + 1]]
     except (InputError, MemoryError):
@@ -43,7 +46,9 @@ def read_npz(path: Path, data: bytes) -> Mesh:
     triangles = found["triangles"]
     if triangles.dtype.kind not in "fiu":
         raise InputError(source, "triangles", "real numbers", f"dtype {triangles.dtype}")
-    require_room(source, len(np.atleast_1d(triangles)))
+    if triangles.ndim == 0:
+        raise InputError(source, "triangles", "shape (F, 3, 3)", "shape ()")
+    require_room(source, len(triangles))
     if names.ndim != 1 or names.dtype.kind != "U" or len(names) > MAX_PARTS:
         expected = f"a one-dimensional unicode array of at most {MAX_PARTS:,} names"
         raise InputError(source, "part_names", expected, f"{names.dtype} of shape {names.shape}")

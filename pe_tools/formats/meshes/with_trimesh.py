@@ -1,28 +1,29 @@
-"""OBJ, STL, PLY and binary glTF, read by trimesh; what it would read wrongly is refused before."""
+"""STL and binary glTF, read by trimesh; what it would read wrongly is mended or refused before."""
 
 import io
 import json
 import re
 import warnings
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError, require_memory
-from pe_core.base.files import decode_text
 from pe_core.scene.mesh import Mesh
 
-from .mesh import Piece, fit_names, joined, make_mesh, placed, require_room
+from .gltf_instances import INSTANCING, instance_count, with_instances_as_nodes
+from .mesh import Piece, fit_names, joined, make_mesh, mesh_notes, placed, require_room
 
 UNFOLDS = 20  # Memory of a byte of a file while it is read, at most (measured)
 MAX_NODES, MAX_PLACED, MAX_JSON_BYTES = 200_000, 20_000, 32 << 20
 """Limits of a glTF scene: nodes, surfaces of all that have a mesh, and bytes of JSON."""
 UNNAMED = re.compile(r"geometry(_\d+)?|GLTF(_\d+)?")  # Names that trimesh gives to what has none
-BACKWARDS = re.compile(r"^f (?:.* )?[-0].*", re.MULTILINE)
-"""A face of an OBJ file with an index that counts backwards, or is 0: trimesh takes another."""
-HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_mesh_quant")
+NO_TRIANGLES = {"PointCloud": "set of points", "Path3D": "set of lines"}
+HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_mesh_quant", INSTANCING)
 
 
 def read_scene(path: Path, data: bytes) -> Mesh:
@@ -53,12 +54,36 @@ def read_scene(path: Path, data: bytes) -> Mesh:
         pieces.reverse()  # trimesh takes them from the file's end
     triangles, parts = joined(pieces)
     names = [path.stem if UNNAMED.fullmatch(name) else name for name, _ in pieces]
-    return make_mesh(source, triangles, parts, names)
+    notes = mesh_notes(_skipped(scene), np.zeros(0), 0)
+    return make_mesh(source, triangles, parts, names, notes)
+
+
+def _placements(graph: Any) -> Iterator[tuple[str, Floats, str]]:
+    """Each node with a geometry, its transform (4, 4) to the scene, and the geometry's name. By
+    trimesh's own look-up each node of a long chain would keep its way: gigabytes."""
+    links = graph.transforms
+    worlds = {graph.base_frame: np.eye(4)}
+    for placed_node in graph.nodes_geometry:
+        node, way = placed_node, []
+        while node not in worlds:
+            way.append(node)
+            node = links.parents[node]
+        for below in reversed(way):
+            local = links.edge_data[(node, below)].get("matrix", np.eye(4))
+            worlds[below] = worlds[node] @ local
+            node = below
+        yield placed_node, worlds[placed_node], links.node_data[placed_node]["geometry"]
+
+
+def _skipped(scene: Any) -> Counter[str]:
+    """How much geometry of a scene is placed that is no triangles, by its noun."""
+    kinds = (type(scene.geometry[name]).__name__ for _, _, name in _placements(scene.graph))
+    return Counter(NO_TRIANGLES[kind] for kind in kinds if kind in NO_TRIANGLES)
 
 
 def _pieces(source: str, scene: Any) -> Iterator[Piece]:
     """Every placed mesh of a scene; their triangles are counted before any is placed."""
-    nodes = [(node, *scene.graph[node]) for node in scene.graph.nodes_geometry]
+    nodes = list(_placements(scene.graph))
     faces = {
         name: getattr(mesh, "faces", np.zeros((0, 3), int)) for name, mesh in scene.geometry.items()
     }
@@ -72,23 +97,6 @@ def _pieces(source: str, scene: Any) -> Iterator[Piece]:
             of_mesh = scene.geometry[name].metadata.get("from_gltf_primitive")
             part = scene.graph.transforms.parents[node] if of_mesh else node
             yield Piece(part, placed(scene.geometry[name].vertices[corners], matrix))
-
-
-def _obj(source: str, data: bytes) -> tuple[bytes, dict[str, Any]]:
-    """OBJ without what trimesh stumbles over: comments, tabs, blanks before a statement."""
-    if b"\0" in data:
-        raise InputError(source, "file", "OBJ text", "binary data")
-    text = decode_text(data).replace("\r\n", "\n").replace("\r", "\n")
-    text = re.sub(r"^[ \t]*#.*", "", text, flags=re.MULTILINE)
-    text = text.replace("\\\n", " ")
-    if "#" in text or "\t" in text or "\n " in text:
-        text = re.sub(r"^[ \t]*([vf])[ \t]+([^#\n]*).*", r"\1 \2", text, flags=re.MULTILINE)
-        text = re.sub(r"^[ \t]*([og])[ \t]+", r"\1 ", text, flags=re.MULTILINE)
-    if wrong := BACKWARDS.search(text):
-        raise InputError(source, "faces", "vertex indices from 1 up", wrong[0][:60])
-    has_objects = re.search(r"^o ", text, re.MULTILINE) is not None
-    split = "split_objects" if has_objects else "split_groups"
-    return text.encode(), {split: True, "group_material": False}
 
 
 def _stl(source: str, data: bytes) -> tuple[bytes, dict[str, Any]]:
@@ -109,7 +117,10 @@ def _glb(source: str, data: bytes) -> tuple[bytes, dict[str, Any]]:
         nodes, meshes, accessors = (root.get(k, []) for k in ("nodes", "meshes", "accessors"))
         children = [child for node in nodes for child in node.get("children", [])]
         primitives = [each for mesh in meshes for each in mesh["primitives"]]
-        surfaces = sum(len(meshes[n["mesh"]]["primitives"]) for n in nodes if "mesh" in n)
+        held = [node for node in nodes if "mesh" in node]
+        surfaces = sum(
+            len(meshes[node["mesh"]]["primitives"]) * instance_count(root, node) for node in held
+        )
         checks = {
             f"at most {MAX_NODES:,} nodes": len(nodes) <= MAX_NODES,
             f"at most {MAX_PLACED:,} surfaces": max(surfaces, len(primitives)) <= MAX_PLACED,
@@ -134,11 +145,10 @@ def _glb(source: str, data: bytes) -> tuple[bytes, dict[str, Any]]:
     for expected, holds in checks.items():
         if not holds:
             raise InputError(source, "scene", expected, "another")
-    return data, {}
+    return with_instances_as_nodes(source, data, root), {}
 
 
 _PREPARED: dict[str, Callable[[str, bytes], tuple[bytes, dict[str, Any]]]] = {
-    "obj": _obj,
     "stl": _stl,
     "glb": _glb,
 }

@@ -16,6 +16,7 @@ import warnings
 import zipfile
 from contextlib import suppress
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -126,6 +127,30 @@ def scene(**change):
     return glb_file({**root, **change}, binary)
 
 
+def instances(count):
+    """The glb of a box with an accessor that claims so many instances of it."""
+    root, binary = gltf()
+    root["accessors"].append({**root["accessors"][0], "count": count})
+    attributes = {"TRANSLATION": len(root["accessors"]) - 1}
+    root["nodes"][0]["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": attributes}}
+    return glb_file(root, binary)
+
+
+def zigzag(corners):
+    """The OBJ of one polygon that is concave at every second corner."""
+    points = [f"v {k} {k % 2} 0" for k in range(corners - 1)] + [f"v 0 {corners} 0"]
+    face = " ".join(str(k + 1) for k in range(corners))
+    return "\n".join([*points, f"f {face}"])
+
+
+def packed(name, size):
+    """An archive of a member that unfolds to so many bytes."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr(name, b" " * size)
+    return buffer.getvalue()
+
+
 def ply(faces, data, of="uchar int"):
     head = ply_header("binary_little_endian", 8, faces).replace("uchar int", of)
     return head.encode() + np.asarray(POINTS, "<f4").tobytes() + data
@@ -148,6 +173,7 @@ def cases():
     primitives = gltf()[0]["meshes"][0]["primitives"]
     doubling = [{"children": [i + 1, i + 1]} for i in range(60)] + [{"mesh": 0}]
     deep = [*({"children": [i + 1]} for i in range(19_999)), {"mesh": 0}]
+    held = [*({"children": [i + 1], "mesh": 0} for i in range(18_999)), {"mesh": 0}]
     loop = [{"children": [(i + 1) % 1000]} for i in range(1000)]
     triangle = b"v 0 0 0\nv 1 0 0\nv 0 1 0\n"
     meshes = {
@@ -164,7 +190,9 @@ def cases():
         "2^60 nodes.glb": (scene(nodes=doubling), "scene"),
         "too many nodes.glb": (scene(nodes=[{}] * 200_001), "scene"),
         "20,000 deep.glb": (scene(nodes=deep), None),
+        "a mesh in each of 19,000, deep.glb": (scene(nodes=held), None),
         "a long loop.glb": (scene(nodes=loop), "triangles"),
+        "many instances.glb": (instances(20_001), "scene"),
         "brackets.glb": (glb_file(b'{"a":' + b"[" * 100_000, b""), "JSON"),
         "much JSON.glb": (glb_file(b" " * 40_000_000, b""), "file"),
         "a polygon of millions.ply": (
@@ -175,13 +203,17 @@ def cases():
             ply(1, struct.pack("<I", 2**32 - 1) + bytes(12), "uint int"),
             "file",
         ),
-        "uneven lists.ply": (ply(3_000_000, b"\3" + bytes(3_000_012)), "file"),
+        "uneven lists.ply": (ply(3_000_000, b"\3" + bytes(3_000_012)), None),
+        "many corners.obj": (zigzag(20_000), "polygons"),
         "2^32 facets.stl": (b"x" * 80 + b"\xff" * 4 + bytes(50), "triangles"),
         "one line in a million.obj": (triangle + b"\\\n" * 1_000_000 + b"f 1 2 3\n", None),
         "much text.obj": (b"#" * 30_000_000, "file"),
-        "5,000 digits.obj": (triangle + f"f 1 2 {HUGE}\n".encode(), "file"),
+        "5,000 digits.obj": (triangle + f"f 1 2 {HUGE}\n".encode(), "faces"),
         "1e308.obj": (b"v 1e308 -1e308 1e308\n" + triangle + b"f 1 2 3\nf 2 3 4", None),
     }
+    if find_spec("collada") is not None:
+        meshes["an archive.dae"] = packed("a.dae", 1 << 29), "file"
+        meshes["laughs.dae"] = laughs().encode("utf-16"), "file"
     strangers = json.dumps(
         [json.loads(one_box(category_name=f"thing.{i}"))[0] for i in range(50_000)]
     )

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import io
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -236,6 +239,22 @@ def test_parts_of_an_obj(tmp_path: Path, text: str, names: list[str], encoding: 
     assert [mesh.part_names[part] for part in mesh.parts] == names
 
 
+def no_array(name: str, **arrays: Any) -> bytes:
+    """An archive in which one member is no array, but text."""
+    buffer = io.BytesIO(npz_bytes(**arrays))
+    with zipfile.ZipFile(buffer, "a") as archive:
+        archive.writestr(f"{name}.npy", b"no array at all")
+    return buffer.getvalue()
+
+
+def test_indices_of_an_obj_may_count_backwards(tmp_path: Path) -> None:
+    """-1 is the last vertex so far, not the last of the file."""
+    backwards = f"{CORNERS}f -3 -2 -1\nv 9 9 9\nf 1 -1 2\n".encode()
+    forwards = f"{CORNERS}v 9 9 9\nf 1 2 3\nf 1 4 2\n".encode()
+    meshes = [read(tmp_path, "a.obj", data) for data in (backwards, forwards)]
+    assert meshes[0].triangles.tolist() == meshes[1].triangles.tolist()
+
+
 BAD = [
     ("suffix", ("a.fbx", b"")),
     ("file", ("a.npz", cut(npz_bytes(triangles=BOX)))),
@@ -245,13 +264,25 @@ BAD = [
     ("parts, part_names", ("a.npz", npz_bytes(triangles=BOX, parts=ZEROS))),
     ("file", ("a.stl", stl_ascii()[:-14])),
     ("faces", ("a.ply", ply_binary(">", faces=[(0, 1, -1)]))),
-    ("faces", ("a.obj", f"{CORNERS}f -3 -2 -1\nv 9 9 9\n".encode())),
-    ("file", ("a.obj", f"{CORNERS}f 1 2 5\n".encode())),
+    ("faces", ("a.obj", f"{CORNERS}f -4 -2 -1\nv 9 9 9\n".encode())),
+    ("faces", ("a.obj", f"{CORNERS}f 1 2 5\n".encode())),
+    ("faces", ("a.obj", f"{CORNERS}f 0 1 2\n".encode())),
+    ("file", ("a.obj", f"{CORNERS}f 1 2 3.5\n".encode())),
+    ("file", ("a.obj", f"{CORNERS}f 1 /2 3\n".encode())),
+    ("file", ("a.obj", f"v 1 2\n{CORNERS}{FACE}".encode())),
+    ("file", ("a.ply", ply_ascii() + b" one")),
+    ("file", ("a.ply", cut(ply_binary(">")))),
+    ("format", ("a.ply", ply_ascii().replace(b"ascii", b"text"))),
+    ("header", ("a.ply", ply_ascii().replace(b"uchar int", b"uchar word"))),
+    ("header", ("a.ply", b"ply\nformat ascii 1.0\n")),
+    ("triangles", ("a.npz", npz_bytes(triangles=np.float64(1.0)))),
+    ("part_names", ("a.npz", no_array("part_names", triangles=BOX))),
+    ("triangles", ("a.npz", no_array("triangles"))),
     ("JSON", ("a.glb", glb_file(b"{no}", b""))),
     ("scene", ("a.glb", changed("extensionsRequired", ["KHR_draco_mesh_compression"]))),
     ("scene", ("a.glb", changed("accessors", 0, "normalized", True))),
     ("scene", ("a.glb", changed("nodes", 0, "skin", 0))),
     ("scene", ("a.glb", glb_file(*gltf(mode=6)))),
 ]
-"""Of each format what trimesh would read as another shape, and what is wrong in our own."""
+"""Of each format what a reader could read as another shape, and what is no such file."""
 test_bad_input_is_refused_in_one_line = one_line_test(BAD)

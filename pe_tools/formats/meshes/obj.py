@@ -16,7 +16,7 @@ from pe_core.scene.mesh import Mesh
 from .mesh import make_mesh, mesh_notes, require_room
 from .polygons import triangle_count, triangulate
 
-TEXT_UNFOLDS = 8  # Memory of a byte of text while it is read, at most (measured)
+TEXT_UNFOLDS = 20  # Memory of a byte of text while it is read, at most (measured)
 VERTEX, FACE = b"v ", b"f "
 OBJECT, GROUP = b"o", b"g"
 SKIPPED = {b"l": "line", b"p": "point", b"curv": "curve", b"curv2": "curve", b"surf": "surface"}

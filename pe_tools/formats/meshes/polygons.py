@@ -150,10 +150,7 @@ def _fan_fits(rings: Floats) -> NDArray[np.bool_]:
     if rings.shape[1] == 4:
         fits: NDArray[np.bool_] = (areas[:, 0] * areas[:, 1]).sum(axis=1) >= 0.0
         return fits
-    total = areas.sum(axis=1)
-    along = np.abs((areas * total[:, None]).sum(axis=2)).sum(axis=1)
-    whole: NDArray[np.bool_] = along <= (total * total).sum(axis=1) * (1.0 + ROUNDING)
-    return whole
+    return ~_covers_more(areas)
 
 
 def _cut_quads(rings: Floats) -> Indices:
@@ -165,10 +162,17 @@ def _overlap(rings: Floats, cut: Indices) -> NDArray[np.bool_]:
     """Whether the triangles (P, N - 2, 3) of each ring (P, N, 3) cover more than the ring."""
     corners = rings[np.arange(len(rings))[:, None, None], cut]
     areas = np.cross(corners[:, :, 1] - corners[:, :, 0], corners[:, :, 2] - corners[:, :, 0])
+    return _covers_more(areas)
+
+
+def _covers_more(areas: Floats) -> NDArray[np.bool_]:
+    """Whether triangles with area vectors (P, T, 3) cover more than the polygon (P,) that they are
+    of, seen across it: then some overlap."""
     total = areas.sum(axis=1)
+    squared = (total * total).sum(axis=1)
     along = np.abs((areas * total[:, None]).sum(axis=2)).sum(axis=1)
-    more: NDArray[np.bool_] = along > (total * total).sum(axis=1) * (1.0 + ROUNDING)
-    return more
+    more: NDArray[np.bool_] = along > squared * (1.0 + ROUNDING)
+    return more | ((squared == 0.0) & (areas != 0.0).any(axis=(1, 2)))
 
 
 def _area_vectors(rings: Floats) -> Floats:

@@ -283,7 +283,9 @@ class Study(Tabular):
         """The vehicle in one line: its file, its size, which way it faces; None without one."""
         if self.vehicle is None:
             return None
-        return f"{self.mesh or 'vehicle'}: {vehicle_line(self.vehicle, self.faces, self.mesh_notes)}"
+        return (
+            f"{self.mesh or 'vehicle'}: {vehicle_line(self.vehicle, self.faces, self.mesh_notes)}"
+        )
 
     def evaluator(
         self,

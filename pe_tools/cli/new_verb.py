@@ -65,7 +65,9 @@ def new_study(args: argparse.Namespace) -> Answer:
     mesh, scale, unit = read_in_metres(mesh_path, args.up, args.forward, args.scale)
     glass = tuple(name for name in mesh.part_names if is_called(name, GLASS, NO_GLASS))
     vehicle = Vehicle(mesh.triangles, mesh.parts, mesh.part_names, glass)
-    show(f"{one_line(f'{mesh_path}: {vehicle_line(vehicle, mesh.axes, mesh.notes)}')}\n", sys.stderr)
+    show(
+        f"{one_line(f'{mesh_path}: {vehicle_line(vehicle, mesh.axes, mesh.notes)}')}\n", sys.stderr
+    )
     start = Sensor(MOUNT, model, Pose.from_degrees((0, 0, 0), (0, 0, 0)))
     roof = roof_sensor(vehicle, start, catalog.housing(args.sensor), area_path.name)
     # Folders that are links are followed first: `..` of a link is the folder that it leads to.

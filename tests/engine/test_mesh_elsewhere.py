@@ -125,3 +125,61 @@ def test_collada_s_unit_up_axis_polygons_and_nodes(monkeypatch, tmp_path):
     np.testing.assert_allclose(mesh.triangles, corners[[(0, 1, 2), (0, 2, 3)]], atol=1e-6)
     assert mesh.part_names == ("inner",)
     assert mesh.axes == "faces +x (study), up is +y (file)"
+
+
+POLYLIST = DAE[DAE.index("<polylist") : DAE.index("</mesh>")]
+INPUT = '<input semantic="VERTEX" source="#v" offset="0"/>'
+HOLED = (
+    "0 0 0 100 0 0 100 0 40 0 0 40 10 0 10 20 0 10 20 0 30 10 0 30",
+    f"<polygons count='1'>{INPUT}<ph><p>0 1 2 3</p><h>4 5 6 7</h></ph></polygons>",
+)
+AREAS = {  # square inches
+    "a dart": ("0 0 0 100 0 0 10 0 10 0 0 100", POLYLIST, 1000.0),
+    "polygons": (HOLED[0], f"<polygons count='1'>{INPUT}<p>0 1 2 3</p></polygons>", 4000.0),
+    "a hole": (*HOLED, 3800.0),
+    "a hole, and none": (HOLED[0], HOLED[1].replace("<ph>", "<p>4 5 6</p><ph>"), 3900.0),
+    "a fan": (HOLED[0], f"<trifans count='1'>{INPUT}<p>0 1 2 3</p></trifans>", 4000.0),
+    "lines": (HOLED[0], f"<linestrips>{INPUT}<p>0 1</p></linestrips>{POLYLIST}", 4000.0),
+}
+
+
+def dae(points, primitives):
+    """The file with other points (3 N numbers) and primitives."""
+    numbers = points.split()
+    old = DAE[DAE.index('<float_array id="a"') : DAE.index("</float_array>")]
+    text = DAE.replace(old, f'<float_array id="a" count="{len(numbers)}">{points}')
+    text = text.replace('count="4" stride', f'count="{len(numbers) // 3}" stride')
+    return text.replace(POLYLIST, primitives)
+
+
+@pytest.mark.parametrize("name", AREAS)
+def test_collada_s_polygons_have_the_shoelace_area(monkeypatch, tmp_path, name):
+    points, primitives, right = AREAS[name]
+    mesh = read_dae(monkeypatch, tmp_path, dae(points, primitives))
+    a, b, c = (mesh.triangles[:, k] for k in range(3))
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2.0
+    assert area == pytest.approx(right * 0.0254**2, rel=1e-6)
+    assert mesh.notes == (("left out: 1 set of lines",) if name == "lines" else ())
+
+
+MISSING_IMAGE = """<library_effects><effect id="e"><profile_COMMON><newparam sid="s">
+<surface type="2D"><init_from>none.png</init_from></surface></newparam><technique sid="t"><lambert><diffuse>
+<texture texture="s" texcoord="c"/></diffuse></lambert></technique></profile_COMMON></effect>
+</library_effects><library_materials><material id="m"><instance_effect url="#e"/></material>
+</library_materials>"""
+
+
+def test_collada_with_a_missing_image_is_read(monkeypatch, tmp_path):
+    with_image = DAE.replace("<library_geometries>", f"{MISSING_IMAGE}<library_geometries>")
+    assert len(read_dae(monkeypatch, tmp_path, with_image).triangles) == 2
+
+
+@pytest.mark.parametrize("index", ["-1", "4", "99999999999"])
+@pytest.mark.parametrize("name", ["a dart", "a hole"])
+def test_collada_s_indices_are_within_its_vertices(monkeypatch, tmp_path, name, index):
+    points, primitives, _ = AREAS[name]
+    points = " ".join(points.split()[:12])
+    wrong = primitives.replace("4 5 6 7", f"0 1 {index}").replace("0 1 2 3", f"0 1 {index}")
+    wrong = wrong.replace("<vcount>4<", "<vcount>3<")
+    with pytest.raises(pe.InputError, match=r"car\.dae"):
+        read_dae(monkeypatch, tmp_path, dae(points, wrong))

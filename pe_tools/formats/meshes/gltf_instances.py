@@ -39,7 +39,7 @@ def with_instances_as_nodes(source: str, data: bytes, root: dict[str, Any]) -> b
             node.setdefault("children", []).extend(range(len(nodes), len(nodes) + len(instances)))
             nodes.extend(instances)
             del node["mesh"]
-    except (ValueError, TypeError, LookupError, AttributeError) as error:
+    except (ValueError, TypeError, LookupError, AttributeError, OverflowError) as error:
         raise InputError(source, "scene", "whole instances of a mesh", str(error)) from error
     text = json.dumps(root).encode()
     text += b" " * (-len(text) % 4)

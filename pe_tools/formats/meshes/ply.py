@@ -197,9 +197,7 @@ def _points(body: _Body, columns: dict[str, Any]) -> NDArray[np.float64]:
     return np.stack(axes, axis=1).astype(np.float64)
 
 
-def _polygons(
-    body: _Body, columns: dict[str, Any]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _polygons(body: _Body, columns: dict[str, Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """The corners of all faces in one list, and how many each face has."""
     name = next((each for each in CORNERS if each in columns), None)
     if name is None or not columns[name][0].length_type:

@@ -7,6 +7,7 @@ around it by an edge that is followed twice.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -92,7 +93,7 @@ def joined_ring(rings: Sequence[Floats]) -> Indices:
     flat = points[:, [u, v]] - points[:, [u, v]].min(axis=0)
     flat /= max(float(flat.max()), np.finfo(float).tiny)
     firsts = np.cumsum([0, *(len(ring) for ring in rings)])
-    orders = [np.arange(a, b) for a, b in zip(firsts[:-1], firsts[1:], strict=True)]
+    orders = [np.arange(a, b) for a, b in pairwise(firsts)]
     outer, holes = orders[0], orders[1:]
     following = np.concatenate([np.roll(order, -1) for order in orders])
     for hole in sorted(holes, key=lambda order: -flat[order, 0].max()):

@@ -18,6 +18,7 @@ from .usd_solids import SOLIDS
 
 HIDDEN_PURPOSES = ("guide", "proxy")
 TIME = Usd.TimeCode.EarliestTime()
+HOLE = "face that is a hole"
 MAX_DEPTH = 8  # Instancers within prototypes of instancers, at most
 
 
@@ -108,7 +109,8 @@ class _Reading:
         return np.zeros((0, 3, 3))
 
     def _mesh(self, prim: Any, mesh: Any) -> Floats:
-        points, corners, counts = _polygons(self.source, prim, mesh)
+        points, corners, counts, holes = _polygons(self.source, prim, mesh)
+        self.skipped[HOLE] += holes
         require_room(self.source, self.triangles + len(corners))
         cut = triangulate(self.source, points[corners], counts)
         self.crossing += cut.crossing
@@ -117,9 +119,9 @@ class _Reading:
         return cut.triangles[:, ::-1] if is_left_handed else cut.triangles
 
 
-def _polygons(source: str, prim: Any, mesh: Any) -> tuple[Floats, Indices, Indices]:
-    """Points (P, 3) of a mesh, the corners of its faces in one list, how many each face has. Faces
-    that the mesh calls holes are none."""
+def _polygons(source: str, prim: Any, mesh: Any) -> tuple[Floats, Indices, Indices, int]:
+    """Points (P, 3) of a mesh, the corners of its faces in one list, how many each face has, and
+    the number of further faces, which the mesh calls holes."""
     attributes = (
         mesh.GetPointsAttr(),
         mesh.GetFaceVertexCountsAttr(),
@@ -135,7 +137,7 @@ def _polygons(source: str, prim: Any, mesh: Any) -> tuple[Floats, Indices, Indic
         expected = f"as many indices as it counts, within its {len(points)} points"
         raise InputError(source, str(prim.GetPath()), expected, f"{len(corners)}")
     is_hole = np.isin(np.arange(len(counts)), holes)
-    return points, corners[~np.repeat(is_hole, counts)], counts[~is_hole]
+    return points, corners[~np.repeat(is_hole, counts)], counts[~is_hole], int(is_hole.sum())
 
 
 def _is_hidden(image: Any) -> bool:

@@ -1,7 +1,6 @@
 """STL and binary glTF, read by trimesh; what it would read wrongly is mended or refused before."""
 
 import io
-import json
 import re
 import warnings
 from collections import Counter
@@ -13,6 +12,7 @@ import numpy as np
 
 from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError, require_memory
+from pe_core.base.table_reader import parse_json
 from pe_core.scene.mesh import Mesh
 
 from .gltf_instances import INSTANCING, instance_count, with_instances_as_nodes
@@ -23,7 +23,15 @@ MAX_NODES, MAX_PLACED, MAX_JSON_BYTES = 200_000, 20_000, 32 << 20
 """Limits of a glTF scene: nodes, surfaces of all that have a mesh, and bytes of JSON."""
 UNNAMED = re.compile(r"geometry(_\d+)?|GLTF(_\d+)?")  # Names that trimesh gives to what has none
 NO_TRIANGLES = {"PointCloud": "set of points", "Path3D": "set of lines"}
-HARMLESS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_mesh_quant", INSTANCING)
+WRONG_JSON = (ValueError, RecursionError, TypeError, LookupError, AttributeError, OverflowError)
+HARMLESS = (
+    "KHR_materials_",
+    "KHR_texture_",
+    "EXT_texture_",
+    "KHR_lights_",
+    "KHR_mesh_quant",
+    INSTANCING,
+)
 
 
 def read_scene(path: Path, data: bytes) -> Mesh:
@@ -113,7 +121,7 @@ def _glb(source: str, data: bytes) -> tuple[bytes, dict[str, Any]]:
     if size > MAX_JSON_BYTES:
         raise InputError(source, "JSON", f"at most {MAX_JSON_BYTES:,} bytes", f"{size:,}")
     try:
-        root = json.loads(data[20 : 20 + size])
+        root = parse_json(source, data[20 : 20 + size])
         nodes, meshes, accessors = (root.get(k, []) for k in ("nodes", "meshes", "accessors"))
         children = [child for node in nodes for child in node.get("children", [])]
         primitives = [each for mesh in meshes for each in mesh["primitives"]]
@@ -140,7 +148,9 @@ def _glb(source: str, data: bytes) -> tuple[bytes, dict[str, Any]]:
                 accessors[each["attributes"]["POSITION"]].get("normalized") for each in primitives
             ),
         }
-    except (ValueError, RecursionError, TypeError, LookupError, AttributeError) as error:
+    except InputError as error:
+        raise InputError(source, "JSON", error.expected, error.found) from error
+    except WRONG_JSON as error:
         raise InputError(source, "JSON", "a well-formed glTF scene", error) from error
     for expected, holds in checks.items():
         if not holds:

@@ -177,6 +177,8 @@ def import_study(context: bpy.types.Context, filepath: str) -> Told:
     study = pe.load_study(path)
     if lost := bridge.load_into(context.scene, study):
         return Told(f"The scene differs from the file in: {', '.join(lost)}", level="WARNING")
+    if study.mesh_notes:
+        return Told(f"Imported {filepath}; {study.mesh}: {'; '.join(study.mesh_notes)}")
     return Told(f"Imported {filepath} without any loss")
 
 

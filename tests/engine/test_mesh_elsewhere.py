@@ -163,7 +163,8 @@ def test_collada_s_polygons_have_the_shoelace_area(monkeypatch, tmp_path, name):
 
 
 MISSING_IMAGE = """<library_effects><effect id="e"><profile_COMMON><newparam sid="s">
-<surface type="2D"><init_from>none.png</init_from></surface></newparam><technique sid="t"><lambert><diffuse>
+<surface type="2D"><init_from>none.png</init_from></surface></newparam>
+<technique sid="t"><lambert><diffuse>
 <texture texture="s" texcoord="c"/></diffuse></lambert></technique></profile_COMMON></effect>
 </library_effects><library_materials><material id="m"><instance_effect url="#e"/></material>
 </library_materials>"""

@@ -20,8 +20,8 @@ from .polygons import Indices, joined_ring, triangle_count, triangulate
 UP = {"X_UP": "+x", "Y_UP": "+y", "Z_UP": "+z"}
 PACKED = b"PK\3\4"
 """Beginning of an archive: pycollada would unpack one without a limit."""
-LOOKS = ("images", "effects", "materials", "animations", "animation_clips", "cameras", "lights")
-LOOKS += ("controllers", "physics_models", "physics_materials", "physics_scenes", "force_fields")
+LOOKS = {"images", "effects", "materials", "animations", "animation_clips", "cameras", "lights"}
+LOOKS |= {"controllers", "physics_models", "physics_materials", "physics_scenes", "force_fields"}
 NOT_READ = {f"library_{name}" for name in LOOKS}
 NOT_READ |= {"bind_material", "instance_camera", "instance_light", "extra"}
 """Elements that say nothing of the shape; an image among them may be missing."""

@@ -83,10 +83,10 @@ def mesh_notes(skipped: Mapping[str, int], counts: NDArray[Any], crossing: int) 
     few = int(np.count_nonzero(counts < 3))
     left_out = [plural(number, noun) for noun, number in skipped.items() if number]
     left_out += [f"{plural(few, 'face')} of fewer than 3 corners"] if few else []
-    notes = (f"left out: {', '.join(left_out)}",) if left_out else ()
+    notes = [f"left out: {', '.join(left_out)}"] if left_out else []
     if crossing:
-        notes += (f"{plural(crossing, 'polygon')} not flat, or crossing itself",)
-    return notes
+        notes.append(f"{plural(crossing, 'polygon')} not flat, or crossing itself")
+    return tuple(notes)
 
 
 INSTEAD = "?"  # Replacement of an unprintable character, and of a name without a printable one

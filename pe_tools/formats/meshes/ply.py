@@ -80,7 +80,7 @@ def read_ply(path: Path, data: bytes) -> Mesh:
     stem as its name. Other elements than vertices and faces are skipped."""
     source = str(path)
     require_memory(source, "file", len(data) * UNFOLDS)
-    order, elements, body = _header(source, data)
+    elements, body = _header(source, data)
     start = 0
     columns: dict[str, dict[str, Any]] = {}
     skipped: Counter[str] = Counter()
@@ -102,8 +102,8 @@ def read_ply(path: Path, data: bytes) -> Mesh:
     return make_mesh(source, cut.triangles, np.zeros_like(cut.polygons), [path.stem], notes)
 
 
-def _header(source: str, data: bytes) -> tuple[str, list[_Element], _Body]:
-    """The order of bytes, the elements, and what is behind the header."""
+def _header(source: str, data: bytes) -> tuple[list[_Element], _Body]:
+    """The elements, and what is behind the header."""
     end = data.find(END, 0, MAX_HEADER_BYTES)
     begin = data.find(b"\n", end) + 1
     if not data.startswith(b"ply") or end < 0 or begin == 0:
@@ -127,7 +127,7 @@ def _header(source: str, data: bytes) -> tuple[str, list[_Element], _Body]:
     order = ORDERS.get(kind, "")
     if not kind:
         raise InputError(source, "format", "one of " + ", ".join(ORDERS), "none")
-    return order, elements, _Body(source, _values(source, data[begin:], order), order)
+    return elements, _Body(source, _values(source, data[begin:], order), order)
 
 
 def _type(source: str, name: str) -> str:
@@ -152,11 +152,13 @@ def _starts(body: _Body, element: _Element, at: int) -> tuple[NDArray[np.int64],
     if element.count * max(least, 1) > len(body.values) - at:
         found = f"{element.count:,} of {element.name}"
         raise InputError(body.source, "file", "as many elements as the header names", found)
+    if not element.count:
+        return np.zeros((0, len(element.properties)), np.int64), at
     rows = np.arange(element.count)
     first, end = _row(body, element, at)
-    even = at * 0 + np.array(first)[None, :] + (rows * (end - at))[:, None]
+    even = np.array(first)[None, :] + (rows * (end - at))[:, None]
     lists = [k for k, each in enumerate(element.properties) if each.length_type]
-    if not element.count or not lists:
+    if not lists:
         return even, at + element.count * (end - at)
     if int(even[-1, -1]) < len(body.values):
         lengths = [_lengths(body, element.properties[k], even[:, k]) for k in lists]

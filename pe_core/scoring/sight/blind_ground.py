@@ -172,10 +172,10 @@ def widest_sector(blind: Flags, height: float) -> BlindSector:
 
 
 def body_rectangle(vehicle: Vehicle | None) -> Rectangle:
-    """((x, x), (y, y)) of the vehicle seen from above [m]."""
+    """((x, x), (y, y)) of the vehicle as drawn, seen from above [m]."""
     if vehicle is None:
         return (-NO_BODY_M, NO_BODY_M), (-NO_BODY_M, NO_BODY_M)
-    (x0, y0, _), (x1, y1, _) = (corner.tolist() for corner in vehicle.bounds)
+    (x0, y0, _), (x1, y1, _) = (corner.tolist() for corner in vehicle.as_drawn.bounds)
     return (x0, x1), (y0, y1)
 
 

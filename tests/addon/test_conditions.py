@@ -89,7 +89,9 @@ def test_a_shown_state_moves_nothing_that_stands_on_the_ground(car):
     assert shown.bounds[1][1] > drawn.bounds[1][1] + 0.5  # the door is open
     assert np.abs(shown.as_drawn.triangles - drawn.triangles).max() < 1e-4
     car.frame_set(1)
-    assert vehicle_cache.shared.read(car, bpy.context.evaluated_depsgraph_get()).vehicle.drawn is None
+    assert (
+        vehicle_cache.shared.read(car, bpy.context.evaluated_depsgraph_get()).vehicle.drawn is None
+    )
 
 
 def test_a_part_that_bends_is_refused_by_name(car):

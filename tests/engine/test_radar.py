@@ -72,12 +72,36 @@ def test_a_requirement_takes_the_rcs_that_nearly_all_bodies_exceed():
     assert model.cautious is model.cautious and not model.is_cautious  # caches hold on to it
 
 
+@pytest.mark.parametrize(
+    "body, low_dbsm",
+    [("adult", -20.7), ("cyclist", -14.6), ("motorcyclist", -14.6), ("car", -2.6)],
+)
+def test_each_class_has_the_rcs_of_its_weak_bodies(body, low_dbsm):
+    """9.6 dB below the median, the spread of pedestrians: -11.1, -5 and 7 dBsm.
+
+    The mode sees each body as one cell; the range is 250 m for 10 dBsm, so 250 m times 10 to the
+    power of (low - 10) / 40 for the body.
+    """
+    mode = {"name": "a", "azimuth_deg": [-45, 45], "range_m": 250, "elevation_deg": [-30, 30]}
+    found = BODIES[body]
+    sensor = radar({"kind": "radar", "mode": [mode]}, position=(0.0, 0.0, found.size[2] / 2.0))
+    far = 250.0 * 10.0 ** ((low_dbsm - 10.0) / 40.0)
+
+    def seen(front):
+        foot = (front + found.size[0] / 2.0, 0.0, 0.0)
+        return sees(sensor, found, foot, 0.0, None, Criterion())
+
+    assert seen(far - 0.3) and not seen(far + 0.3)
+    mild = catalog.from_table("own", {"kind": "radar", "mode": [mode], "rcs_dbsm": {"car": 9.0}})
+    assert mild.cautious.reflectivity("car").dbsm == (-2.6,)
+
+
 def test_rare_detections_in_many_cells_are_no_point():
     """Of a car in 8.2 cells of range: the probability of any detection, by the cells alike."""
     mode = {"name": "a", "azimuth_deg": [-9, 9], "range_m": 100, "elevation_deg": [-9, 9]}
     mode |= {"range_resolution_m": 0.5, "max_range_m": 300}
     sensor = radar({"kind": "radar", "mode": [mode]}, position=(0.0, 0.0, 0.65))
-    snr, count = snr_for(0.9, 1e-6) * 10 ** ((7.0 - 10.0) / 10.0), 4.1 / 0.5
+    snr, count = snr_for(0.9, 1e-6) * 10 ** ((-2.6 - 10.0) / 10.0), 4.1 / 0.5
     seen, sure, expected = [], [], []
     for x in np.arange(30.0, 120.0, 0.5):
         seen.append(sees(sensor, BODIES["car"], (x, 0.0, 0.0), 0.0, None, Criterion()))

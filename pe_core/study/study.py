@@ -410,8 +410,8 @@ class Study(Tabular):
         yield from (checker or self.checker()).steps(rig, cases=cases)
 
     def under(self, condition: StateInWeather) -> "Study":
-        """Return the study under a condition, without conditions. What stands on the ground, such as
-        the zones of its requirements, stays where the vehicle as drawn puts it."""
+        """Return the study under a condition, without conditions. What stands on the ground, such
+        as the zones of its requirements, stays where the vehicle as drawn puts it."""
         rig, vehicle = condition(self.rig, self.vehicle)
         bare = [
             replace(each, under=replace(each.under, states=(), weathers=()))

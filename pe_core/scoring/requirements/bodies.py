@@ -25,8 +25,8 @@ BAND_M = 0.1
 """Height of the bands of a body whose visible share is asked for."""
 RING_PLACES = 16
 """Places round a ring at which it has to be seen, each at its lower and its upper edge. They are
-turned by a quarter of a step, so that those of the far half are between those of the near half: what
-hides a strip of 5 mm hides one of them."""
+turned by a quarter of a step, so that those of the far half are between those of the near half:
+what hides a strip of 5 mm hides one of them."""
 RING_CELL_M = 1e-3
 """Side of the cells of a ring, and of the posts at the corners of its box: less than a pixel."""
 CORNERS = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
@@ -145,7 +145,8 @@ class Body:
         edge = (height - RING_CELL_M) / 2.0
         inside = np.column_stack([np.tile(around, (2, 1)), np.repeat([-edge, edge], RING_PLACES)])
         corners = CORNERS * (np.array([radius, radius, height / 2.0]) + RING_CELL_M / 2.0)
-        centers = np.concatenate([inside, corners]) + (0.0, 0.0, self.low + height / 2.0)
+        centers = np.concatenate([inside, corners])
+        centers[:, 2] += self.low + height / 2.0
         return centers, np.full(centers.shape, RING_CELL_M)
 
     def shells(self) -> tuple[Floats, Floats, Ints]:

@@ -12,9 +12,9 @@ at most the length of the list. Points on the sides of the box that face the rad
 silhouette, each with the solid angle of its piece of the side.
 
 **A cautious radar** (a requirement's) errs low. m is no more than the probability of any detection,
-until that is `SURE`: rare detections in many cells are none. The sides are divided into patches, and
-each has the least Pd of its four corners: what an edge of the field, of the range or of the vehicle
-cuts counts as not detected.
+until that is `SURE`: rare detections in many cells are none. The sides are divided into patches,
+and each has the least Pd of its four corners: what an edge of the field, of the range or of the
+vehicle cuts counts as not detected.
 
 **Voxels.** A voxel has the share of its silhouette in that of a reference car with the same centre,
 seen from all headings alike: m = m of the car, divided by k = (l + w) h / (2 s^2) (as in

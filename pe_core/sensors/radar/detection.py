@@ -30,8 +30,8 @@ MEDIAN_DBSM = {
 """Medians of measurements at 77 to 79 GHz [dBsm], as surveys quote them. A cyclist is taken as the
 bicycle."""
 SPREAD_DB = 9.6
-"""How far below its median the RCS is that 95 % of the measurements exceed: a pedestrian's is within
--20.7 to -4.8 dBsm in 90 % of them. Of other classes no spread was found: this one is taken."""
+"""How far below its median the RCS is that 95 % of the measurements exceed: a pedestrian's is
+within -20.7 to -4.8 dBsm in 90 % of them. Of other classes no spread was found: this is taken."""
 LOW_DBSM = {name: round(level - SPREAD_DB, 1) for name, level in MEDIAN_DBSM.items()}
 """What 95 % of the measurements exceed [dBsm]."""
 UNKNOWN_DBSM = MEDIAN_DBSM["pedestrian"]

@@ -26,11 +26,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..base.arrays import Floats, Ints
-from .entropy import BLIND_PRECISION, H_BLIND, ApCurve, entropy_of, precision_of, ranged
+from .entropy import (
+    BLIND_PRECISION,
+    H_BLIND,
+    ApCurve,
+    CurveOf,
+    OwnCurve,
+    entropy_of,
+    precision_of,
+    ranged,
+)
 from .frames import Frames
 
-CurveOf = str | ApCurve
-"""An AP curve: the name of a kind of sensor ("lidar", "camera"), or the curve itself."""
 Measurement = tuple[CurveOf, NDArray]
 """Curve and m of a fusion group: integers (beams) or floats (pixels)."""
 MAX_TABLE = (1 << 16) - 1  # Counts are stored in 16 bits
@@ -105,8 +112,8 @@ class Fusion:
         self._tables: dict[CurveOf, CountTables] = {}
 
     def curve(self, kind: CurveOf) -> ApCurve:
-        """Return the AP curve of a kind, or the curve itself."""
-        return kind if isinstance(kind, ApCurve) else self.model.curve(kind)
+        """Return the AP curve of a kind, or the sensor's own."""
+        return kind.curve if isinstance(kind, OwnCurve) else self.model.curve(kind)
 
     def ranged(self, groups: Sequence[Measurement], distance: Floats) -> list[Measurement]:
         """Return groups with the range terms of their curves; `distance` (N,) is that of m."""

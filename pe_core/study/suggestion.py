@@ -218,8 +218,10 @@ class _Mender:
         most += HELP_PLACES * len(coding.blocks)
         number = 0
         for candidates in chain(_steps_of_one(coding), _places_of_one(coding, study.search.seed)):
+            if not left:
+                break
             enough: dict[str, list[Candidate]] = {}
-            for candidate in candidates if left else ():
+            for candidate in candidates:
                 self._goes_on(number / most)
                 number += 1
                 for name in self._met_by(candidate.rig, checker, left):

@@ -54,14 +54,16 @@ class VehicleCache:
         members = () if collection is None else counted_members(collection, depsgraph)
         of = "" if collection is None else collection.name_full
         clearance = bridge.clearance_of(scene)
-        key = (scene.name, of, self._version, members, clearance)
+        motions = bridge.shown_motions(scene)
+        key = (scene.name, of, self._version, members, clearance, motions)
         cached = self._vehicles.get(scene.name, NO_VEHICLE)
         if key != cached.key:
             vehicle = None
             if members:
                 # A score reports what is wrong with a vehicle; here it is as if there were none.
                 with contextlib.suppress(pe.InputError):
-                    vehicle = bridge.vehicle_from_collection(collection, depsgraph, clearance)
+                    shown = bridge.vehicle_from_collection(collection, depsgraph, clearance)
+                    vehicle = bridge.with_drawn(scene, shown)
             self._vehicles = {
                 name: b for name, b in self._vehicles.items() if name in bpy.data.scenes
             }

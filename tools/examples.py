@@ -139,12 +139,7 @@ def in_states(result: Result) -> Iterator[Result]:
     for state in study.conditions.states:
         if not state.motions:
             continue  # as drawn: the result itself
-        moved = replace(
-            study,
-            vehicle=state.vehicle(study.vehicle),
-            rig=state.rig(study.rig, study.vehicle),
-            conditions=type(study.conditions)(),
-        )
+        moved = study.under(study.conditions.one(state.name))
         outcome = outcome_of(pt.ScoreJob(moved))
         yield Result(f"{result.name}, {state.name}", moved, outcome, verdicts_of(moved))
 

@@ -4,7 +4,7 @@ What is imported here is what other modules of the add-on take from it.
 """
 
 from .apply_variant import apply_records, shown_collection
-from .conditions import as_drawn, conditions_of, read_states, shown_state
+from .conditions import as_drawn, conditions_of, read_states, shown_motions, shown_state, with_drawn
 from .fingerprint import Fingerprint, fingerprint
 from .loading import load_into, record_of_study
 from .mirroring import (

@@ -10,6 +10,7 @@ import contextlib
 import json
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -52,10 +53,31 @@ STILL = Rigid((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 def shown_state(scene: Scene) -> str:
     """Return the name of the state that is shown; empty where the vehicle is shown as drawn."""
+    row = _shown_row(scene)
+    return "" if row is None else row.name or "?"
+
+
+def _shown_row(scene: Scene) -> PropertyGroup | None:
     settings, shown = scene.perception_entropy, scene.frame_current
     if shown == settings.drawn_frame:
-        return ""
-    return next((row.name or "?" for row in settings.states if row.frame == shown), "")
+        return None
+    return next((row for row in settings.states if row.frame == shown), None)
+
+
+def shown_motions(scene: Scene) -> str:
+    """Return the motions of the state that is shown, as they are stored; empty as drawn."""
+    row = _shown_row(scene)
+    return "" if row is None else row.table
+
+
+def with_drawn(scene: Scene, vehicle: pe.Vehicle) -> pe.Vehicle:
+    """Return the vehicle as it is shown, which knows how it is drawn: `Vehicle.drawn`."""
+    row = _shown_row(scene)
+    if row is None:
+        return vehicle
+    with contextlib.suppress(pe.InputError):  # a score reports what is wrong with a state
+        return replace(vehicle, drawn=_state_of(row).undone(vehicle))
+    return vehicle
 
 
 @contextlib.contextmanager

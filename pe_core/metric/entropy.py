@@ -61,6 +61,18 @@ class ApCurve:
         return math.exp(exponent) if exponent < 700.0 else math.inf
 
 
+@dataclass(frozen=True, slots=True)
+class OwnCurve:
+    """The AP curve of a sensor that has one of its own, and its kind: frame rates are by kind."""
+
+    kind: str
+    curve: ApCurve
+
+
+CurveOf = str | OwnCurve
+"""What an AP curve is looked up by: a kind of sensor, or a kind with a curve of its own."""
+
+
 POINTPILLARS = ApCurve(0.152, 0.659)
 """LiDAR, PointPillars on KITTI moderate (Ma, Liu and Li, ICRA 2021)."""
 RTM3D = ApCurve(0.055, 0.155)  # Camera, RTM3D on KITTI moderate (same source)

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from ..base.arrays import Floats, ReadOnlyDict
 from ..base.setting import Panel, check_settings, setting
 from ..base.values import Number, Whole
-from .entropy import BLIND_PRECISION
+from .entropy import BLIND_PRECISION, CurveOf, OwnCurve
 
 RATE = Number(0.1, 1000.0, unit="Hz")
 NOISE = Number(0.0, noun="process noise", infinite=True)
@@ -78,9 +78,10 @@ class Frames:
         """Return the same with the noise of one class as that of all."""
         return replace(self, q=self.noises.get(name, self.q), noises={})
 
-    def rate(self, kind: object) -> float:
-        """Return the rate of a kind [Hz]; that of all others for an AP curve."""
-        return self.rates.get(kind, self.rate_hz) if isinstance(kind, str) else self.rate_hz
+    def rate(self, kind: CurveOf) -> float:
+        """Return the rate of a kind [Hz], also of a sensor with an AP curve of its own."""
+        name = kind.kind if isinstance(kind, OwnCurve) else kind
+        return self.rates.get(name, self.rate_hz)
 
     def times(self, rates: Sequence[float]) -> list[tuple[float, list[int]]]:
         """Return the times of frames up to the last one at 0 [s], with the groups that have one."""
@@ -98,7 +99,7 @@ class Frames:
                 times.append((at, [group]))
         return times
 
-    def fused(self, kinds: Sequence[object], added: Sequence[ArrayLike], floor: float) -> Floats:
+    def fused(self, kinds: Sequence[CurveOf], added: Sequence[ArrayLike], floor: float) -> Floats:
         """Return 1 / sigma^2 after the last frame, when each group adds the same at each frame.
         `added` is what each group adds to the floor: 1 / sigma^2 - f, arrays of one shape."""
         precision, last = np.asarray(floor), None

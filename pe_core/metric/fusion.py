@@ -26,11 +26,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..base.arrays import Floats, Ints
-from .entropy import BLIND_PRECISION, H_BLIND, ApCurve, entropy_of, precision_of, ranged
+from .entropy import (
+    BLIND_PRECISION,
+    H_BLIND,
+    ApCurve,
+    CurveOf,
+    OwnCurve,
+    entropy_of,
+    precision_of,
+    ranged,
+)
 from .frames import Frames
 
-CurveOf = str | ApCurve
-"""An AP curve: the name of a kind of sensor ("lidar", "camera"), or the curve itself."""
 Measurement = tuple[CurveOf, NDArray]
 """Curve and m of a fusion group: integers (beams) or floats (pixels)."""
 MAX_TABLE = (1 << 16) - 1  # Counts are stored in 16 bits
@@ -105,8 +112,8 @@ class Fusion:
         self._tables: dict[CurveOf, CountTables] = {}
 
     def curve(self, kind: CurveOf) -> ApCurve:
-        """Return the AP curve of a kind, or the curve itself."""
-        return kind if isinstance(kind, ApCurve) else self.model.curve(kind)
+        """Return the AP curve of a kind, or the sensor's own."""
+        return kind.curve if isinstance(kind, OwnCurve) else self.model.curve(kind)
 
     def ranged(self, groups: Sequence[Measurement], distance: Floats) -> list[Measurement]:
         """Return groups with the range terms of their curves; `distance` (N,) is that of m."""
@@ -139,14 +146,11 @@ class Fusion:
         floor = BLIND_PRECISION if self.model.blind == "floor" else 0.0
         return frames.fused(kinds, [p - floor for p in precisions], floor)
 
-    def entropies(
-        self, groups: Sequence[Measurement], kinds: Sequence[CurveOf] | None = None
-    ) -> tuple[Floats, NDArray[np.bool_]]:
+    def entropies(self, groups: Sequence[Measurement]) -> tuple[Floats, NDArray[np.bool_]]:
         """Entropy H of every voxel [nats], and whether any group sees it.
 
         H is looked up at voxels that only one group with integer m sees, and computed at all
-        others. A blind group changes nothing, except by the literal formula (eq. 7). `kinds` are
-        those of the groups where their curves do not say it; they have the rates of frames.
+        others. A blind group changes nothing, except by the literal formula (eq. 7).
         """
         ignores_blind = self.model.blind == "floor"
         counting = (g for g in groups if is_whole(g[1]) and ignores_blind)
@@ -163,7 +167,7 @@ class Fusion:
             visible |= by_others
             seen = np.flatnonzero(by_others | (not ignores_blind))  # faster than by flags
             precisions = [self.precision(m.take(seen), kind) for kind, m in groups]  # eqs. 4 and 5
-            fused = self.fused(kinds or [kind for kind, _ in groups], precisions)
+            fused = self.fused([kind for kind, _ in groups], precisions)
             np.put(entropies, seen, entropy_of(fused))
         return entropies, visible
 

@@ -176,11 +176,12 @@ class Story:
 
 
 def outline(vehicle: Vehicle | None) -> tuple[Floats, Floats]:
-    """Return the lowest and highest corner (2,) of the vehicle from above; of a car without one."""
+    """Return the lowest and highest corner (2,) of the vehicle as drawn, from above; of a car
+    without a vehicle."""
     if vehicle is None:
         half = np.array(CAR_SIZE_M) / 2.0
         return -half, half
-    low, high = vehicle.bounds
+    low, high = vehicle.as_drawn.bounds
     return low[:2], high[:2]
 
 

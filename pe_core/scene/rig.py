@@ -18,7 +18,7 @@ from ..base.notebook import ShortRepr, Tabular
 from ..base.values import A_NAME, A_TEXT, LENGTH, Number, choice, vector
 from ..geometry.overlap import Hull, meets_box, meets_cylinder, upright_hull
 from ..geometry.poses import Pose, dot, rotate
-from ..metric.entropy import ApCurve
+from ..metric.entropy import ApCurve, CurveOf, OwnCurve
 from .data_sheet import DataSheet
 from .scan import ScanTiming
 from .vehicle import Vehicle
@@ -97,6 +97,11 @@ class Sensor(ShortRepr):
     def kind(self) -> str:
         """Name of the kind: ``"lidar"``, ``"camera"``."""
         return self.model.kind
+
+    @property
+    def detector(self) -> CurveOf:
+        """What its AP curve is looked up by: its kind, with its own curve where it has one."""
+        return self.kind if self.curve is None else OwnCurve(self.kind, self.curve)
 
     @property
     def group(self) -> str:

@@ -71,6 +71,9 @@ class Vehicle(Tabular):
         outside the surface [m]. So a flush-mounted sensor is not occluded by its own surface.
     covers : mapping of str to float
         Parts that radars measure through, and their loss one way [dB]. They occlude all others.
+    drawn : Vehicle, optional
+        The vehicle as it is drawn, if this is the vehicle in a state. What stands on the ground is
+        placed round the vehicle as drawn: a door that opens moves no zone, object or path.
     """
 
     triangles: Floats
@@ -85,6 +88,7 @@ class Vehicle(Tabular):
         scored=True,
     )
     covers: Mapping[str, float] = field(default_factory=dict)
+    drawn: "Vehicle | None" = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         triangles = _checked_triangles(self.triangles)
@@ -108,7 +112,12 @@ class Vehicle(Tabular):
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle without cached properties."""
         own = self.triangles, self.parts, self.part_names, self.glass, self.clearance, self.covers
-        return type(self), own
+        return type(self), (*own, self.drawn)
+
+    @property
+    def as_drawn(self) -> "Vehicle":
+        """The vehicle as it is drawn: itself, unless it is in a state."""
+        return self.drawn or self
 
     def _rows(self) -> list[dict[str, Any]]:
         counts = np.bincount(self.parts, minlength=len(self.part_names)).tolist()

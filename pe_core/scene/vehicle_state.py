@@ -65,6 +65,11 @@ class Motion:
         about = np.asarray(self.about)
         return rotate(self.matrix, points - about) + (about + np.asarray(self.move))
 
+    def points_before(self, points: Floats) -> Floats:
+        """Return points (..., 3) as they were before the motion [m]."""
+        about = np.asarray(self.about)
+        return rotate(self.matrix.T, points - (about + np.asarray(self.move))) + about
+
     def pose(self, pose: Pose) -> Pose:
         """Return a sensor's pose moved."""
         position = self.points(np.asarray(pose.position, dtype=float)).tolist()
@@ -145,7 +150,15 @@ class State:
         for motion, parts, _ in moves:
             inside = np.isin(vehicle.parts, list(parts))
             triangles[inside] = motion.points(triangles[inside])
-        return replace(vehicle, triangles=triangles)
+        return replace(vehicle, triangles=triangles, drawn=vehicle.as_drawn)
+
+    def undone(self, vehicle: Vehicle) -> Vehicle:
+        """Return the vehicle as it is drawn, of the vehicle in this state."""
+        triangles = np.array(vehicle.triangles)
+        for motion, parts, _ in reversed(self.moves(vehicle)):
+            inside = np.isin(vehicle.parts, list(parts))
+            triangles[inside] = motion.points_before(triangles[inside])
+        return replace(vehicle, triangles=triangles, drawn=None)
 
     def rig(self, rig: Rig, vehicle: Vehicle | None) -> Rig:
         """Return a rig in this state; `vehicle` is as it is drawn."""

@@ -20,8 +20,8 @@ from ..base.lazy_threads import threads
 from ..base.values import rounded
 from ..geometry.bins import blocks
 from ..geometry.grids import PerceptionSpace
-from ..metric.entropy import H_BLIND, ApCurve, ranged
-from ..metric.fusion import CurveOf, Fusion, Group, LeaveOneOut, PlaneFusion, VisibleRows
+from ..metric.entropy import H_BLIND, CurveOf, ranged
+from ..metric.fusion import Fusion, Group, LeaveOneOut, PlaneFusion, VisibleRows
 from ..prior.prior import ClassDensity
 from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
@@ -51,8 +51,6 @@ PLANE_BYTES = 24
 SAMPLE_BYTES = 600
 """Memory of a sampled voxel (measured: 270 to 420 while sampling, 590 with 32 sensors)."""
 COARSER = (2, 4, 5, 10, 20)  # Factors of the voxel's side that a message suggests
-KernelKey = tuple[str, ApCurve | None]
-"""A kind, and the AP curve of its own that a sensor may have."""
 MeasuredGroup = tuple[CurveOf, Planes]
 """The AP curve of some sensors, and what measures them on a run of x-planes."""
 PRODUCT_AT_ONCE = 1 << 18
@@ -134,7 +132,7 @@ class GridScorer:
         self._tops = None if vehicle is None else vehicle.top(space)
         self._reached = np.isfinite(-np.inf if self._tops is None else self._tops.max(axis=1))
         self._masses = np.array(outside_masses(densities, space, self._tops))
-        self._kernels: dict[KernelKey, GridKernel] = {}  # as many as there are
+        self._kernels: dict[CurveOf, GridKernel] = {}  # as many as there are
         self._lock = threads().RLock()
 
     def entropy(self, rig: Rig) -> float:
@@ -206,12 +204,12 @@ class GridScorer:
     def needs(self, groups: Grouped, space: PerceptionSpace) -> int:
         """Return about how many bytes it takes to score groups of sensors in a space."""
         firsts = [sensors[0] for sensors in groups]
-        kernels = {(s.kind, s.curve): self._kernel(s) for s in firsts}
+        kernels = {s.detector: self._kernel(s) for s in firsts}
         vehicle, classes = self._vehicle, len(self._names)
         total = columns_bytes(space, classes) + self._workers * block_voxels(space) * PLANE_BYTES
         total += 0 if vehicle is None else len(vehicle.triangles) * TREE_BYTES
         for key, kernel in kernels.items():
-            matching = [group for group in groups if (group[0].kind, group[0].curve) == key]
+            matching = [group for group in groups if group[0].detector == key]
             total += kernel.memory_bytes(matching, space, self._workers)
         return total
 
@@ -222,24 +220,23 @@ class GridScorer:
 
     def _kernel(self, sensor: Sensor) -> GridKernel:
         """Return the kernel that measures sensors of this sensor's kind and AP curve."""
-        kind, key = kind_of(sensor), (sensor.kind, sensor.curve)
+        key = sensor.detector
         if key not in self._kernels:
-            enough = self._fusion.saturation_count(sensor.curve or kind.name)
-            self._kernels[key] = kind.on_grid(self._space, self._vehicle, enough)
+            enough = self._fusion.saturation_count(key)
+            self._kernels[key] = kind_of(sensor).on_grid(self._space, self._vehicle, enough)
         return self._kernels[key]
 
     def _measured(
         self, groups: Sequence[Sequence[Sensor]], ready: Mapping[str, Any], pool: Executor
     ) -> list[MeasuredGroup]:
         """Sum the measurements of each group; a group's sensors are of one kind."""
-        keys = [(sensors[0].kind, sensors[0].curve) for sensors in groups]
+        keys = [sensors[0].detector for sensors in groups]
         planes: dict[int, Planes] = {}
         for key in dict.fromkeys(keys):
             positions = [k for k, group_key in enumerate(keys) if group_key == key]
             of_key = [[ready[s.name] for s in groups[k]] for k in positions]
             planes |= zip(positions, self._kernels[key].planes(of_key, pool), strict=True)
-        named = [(curve or kind, planes[k]) for k, (kind, curve) in enumerate(keys)]
-        return [(curve, self._ranged(curve, measure)) for curve, measure in named]
+        return [(key, self._ranged(key, planes[k])) for k, key in enumerate(keys)]
 
     def _ranged(self, named: CurveOf, measure: Planes) -> Planes:
         """Return the measurement with the range term of its curve: no whole numbers then."""

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from ..base.errors import InputError
 from ..base.values import rounded
 from ..geometry.poses import Pose
-from ..metric.fusion import CurveOf, group_sum
+from ..metric.entropy import CurveOf
+from ..metric.fusion import group_sum
 from ..scene.rig import Rig, Sensor, SensorModel
 
 
@@ -72,13 +73,13 @@ def fused_early(
     for sensors in rig.groups.values():
         present = [measured[s.name] for s in sensors if s.name in members]
         if present:
-            groups.append((sensors[0].curve or sensors[0].kind, group_sum(present)))
+            groups.append((sensors[0].detector, group_sum(present)))
     return groups
 
 
 def members_of(rig: Rig, measured: Mapping[str, Any]) -> list[list[tuple[CurveOf, Any]]]:
     """Return (AP curve, measurement) of each sensor of each fusion group."""
-    return [[(s.curve or s.kind, measured[s.name]) for s in group] for group in rig.groups.values()]
+    return [[(s.detector, measured[s.name]) for s in group] for group in rig.groups.values()]
 
 
 def parts_by_sums(

@@ -93,6 +93,18 @@ class PlacedBoxes:
         """
         step = np.arange(count) + 0.5
         lattice = np.stack([step / count, (step * turn / count) % 1.0], axis=1) * 2.0 - 1.0
+        return self._rays_to_sides(lattice)
+
+    def side_corners(self, count: int) -> "tuple[BoxRays, Floats]":
+        """Return rays to the corners of `count` x `count` equal patches of the sides that face the
+        sensor, and what `side_points` does: side after side, row after row, (count + 1)^2 each."""
+        step = np.linspace(-1.0, 1.0, count + 1)
+        across, up = np.meshgrid(step, step, indexing="ij")
+        return self._rays_to_sides(np.stack([across.ravel(), up.ravel()], axis=1))
+
+    def _rays_to_sides(self, lattice: Floats) -> "tuple[BoxRays, Floats]":
+        """Return rays to points of a lattice (K, 2), in half sides, on each side that faces the
+        sensor, and the solid angle of a K-th of the side there (R,) [sr]."""
         items, places, pieces = [], [], []
         for axis in range(3):
             others = [k for k in range(3) if k != axis]

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arrays import Flags, Floats
-from ..metric.fusion import CurveOf
+from ..metric.entropy import CurveOf
 from ..scene.objects import Objects
 from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
@@ -166,9 +166,8 @@ class MeasurementCache:
         return self._kernels.kernel_of(sensor, sensor.curve)
 
     def _new_kernel(self, sensor: Sensor) -> SampleKernel:
-        kind = kind_of(sensor)
-        count = self._saturation_count(sensor.curve or kind.name)
-        return kind.on_sample(self._voxels, self._vehicle, count)
+        count = self._saturation_count(sensor.detector)
+        return kind_of(sensor).on_sample(self._voxels, self._vehicle, count)
 
 
 def _key(sensor: Sensor) -> Hashable:

@@ -213,7 +213,7 @@ class ConditionedChecker(RequirementChecker):
         self._parts = []
         for condition, numbers in by_condition.items():
             own, moved = [requirements[n] for n in numbers], condition.vehicle(vehicle)
-            checker = RequirementChecker(own, moved, anchor=vehicle, **options)
+            checker = RequirementChecker(own, moved, **options)
             self._parts.append((condition, numbers, checker))
 
     def __reduce__(self) -> tuple[object, ...]:

@@ -414,9 +414,16 @@ class Study(Tabular):
         yield from (checker or self.checker()).steps(rig, cases=cases)
 
     def under(self, condition: StateInWeather) -> "Study":
-        """Return the study under a condition: a study of its own, as any other."""
+        """Return the study under a condition, without conditions. What stands on the ground, such
+        as the zones of its requirements, stays where the vehicle as drawn puts it."""
         rig, vehicle = condition(self.rig, self.vehicle)
-        return replace(self, rig=rig, vehicle=vehicle, conditions=Conditions(), requirements=())
+        bare = [
+            replace(each, under=replace(each.under, states=(), weathers=()))
+            for each in self.requirements
+        ]
+        return replace(
+            self, rig=rig, vehicle=vehicle, conditions=Conditions(), requirements=tuple(bare)
+        )
 
     def with_other_rig(self, rig: Rig) -> "Study":
         """Return the study of another rig, which is scored in the same way. What names the sensors,

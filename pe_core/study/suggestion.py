@@ -2,7 +2,8 @@
 
 For each requirement that is not met, `suggestions` looks for the nearest placement that meets it.
 One design variable of the search is changed at a time, by small steps first; then one sensor (or
-linked pair) is put elsewhere within its range, the nearest places first. `mended` looks for one
+linked pair) is put elsewhere within its range, the nearest places first. What is enough is made
+smaller as long as it stays enough, to `FINEST_STEP`. `mended` looks for one
 more sensor, too, of the models that the rig has: it stands all over the vehicle's surface and looks
 to where the requirement fails. `with_blind_spot` makes a requirement of a place on the ground.
 """
@@ -47,6 +48,8 @@ HELP_STEPS = {
     SHARE: (0.1, 0.2),
 }
 """Steps of one design variable that are tried: in metres, radians (3 to 46 deg), and shares."""
+FINEST_STEP = 0.01
+"""A move is the smallest of its direction to this: in metres, radians, and shares."""
 HELP_PLACES = 40
 """Places within its range that are tried for each sensor, after those steps."""
 ADD_PLACES, ADD_COMPARED = 80, 4
@@ -213,18 +216,48 @@ class _Mender:
         coding, checker = study.coding(), self._checker_of(self._left)
         most = sum(2 * len(HELP_STEPS[v.unit]) for v in coding.variables)
         most += HELP_PLACES * len(coding.blocks)
-        tried = chain(_steps_of_one(coding), _places_of_one(coding, study.search.seed))
-        for number, rig in enumerate(tried):
+        number = 0
+        for candidates in chain(_steps_of_one(coding), _places_of_one(coding, study.search.seed)):
             if not left:
                 break
-            self._goes_on(number / most)
-            for each, off in zip(self._left, checker.shortfalls(rig), strict=True):
-                if not off and each.name in left and self._is_met_mounted(each, rig):
-                    moved = [s.name for s in rig if s.pose != study.rig[s.name].pose]
-                    found = self._suggestion(rig, moved)
-                    if each.name != BLIND_SPOT or found.is_gain:
-                        left.remove(each.name)
-                        self.moved[each.name] = found
+            enough: dict[str, list[Candidate]] = {}
+            for candidate in candidates:
+                self._goes_on(number / most)
+                number += 1
+                for name in self._met_by(candidate.rig, checker, left):
+                    enough.setdefault(name, []).append(candidate)
+            for name, found in enough.items():
+                shortest = [self._shortest(name, each, coding, checker) for each in found]
+                for candidate in (min(shortest, key=lambda c: _length(c, coding)), *found):
+                    moved = [s.name for s in study.rig if candidate.rig[s.name].pose != s.pose]
+                    suggestion = self._suggestion(candidate.rig, moved)
+                    if name != BLIND_SPOT or suggestion.is_gain:
+                        left.remove(name)
+                        self.moved[name] = suggestion
+                        break
+
+    def _met_by(self, rig: Rig, checker: RequirementChecker, names: Sequence[str]) -> Iterator[str]:
+        """Yield which of the named requirements a rig meets."""
+        for each, off in zip(self._left, checker.shortfalls(rig), strict=True):
+            if not off and each.name in names and self._is_met_mounted(each, rig):
+                yield each.name
+
+    def _shortest(
+        self, name: str, candidate: Candidate, coding: Parametrization, checker: RequirementChecker
+    ) -> Candidate:
+        """Return the shortest part of a move that still meets a requirement, by halving."""
+        start, end = coding.start.vector, candidate.vector
+        count = math.ceil(_length(candidate, coding) / FINEST_STEP - 1e-9)
+        too_short, enough, shortest = 0, count, candidate
+        while enough - too_short > 1:
+            middle = (too_short + enough) // 2
+            share = middle / count
+            part = coding.candidate([a + share * (b - a) for a, b in zip(start, end, strict=True)])
+            if coding.allowed(part.rig) and [*self._met_by(part.rig, checker, [name])]:
+                enough, shortest = middle, part
+            else:
+                too_short = middle
+        return shortest
 
     def add(self) -> None:
         """Look for one more sensor."""
@@ -317,10 +350,17 @@ def _takes(model: SensorModel) -> str:
     return f" ({', '.join(told)})" if told else ""
 
 
-def _steps_of_one(coding: Parametrization) -> Iterator[Rig]:
-    """Yield allowed placements that differ from the start in one variable, near ones first."""
+def _length(candidate: Candidate, coding: Parametrization) -> float:
+    """Return by how much the variable changes that a candidate changes most [m, rad, share]."""
+    pairs = zip(candidate.vector, coding.start.vector, strict=True)
+    return max(abs(value - was) for value, was in pairs)
+
+
+def _steps_of_one(coding: Parametrization) -> Iterator[list[Candidate]]:
+    """Yield allowed placements that differ from the start in one variable, by size of the step."""
     start = coding.start.vector
     for rank in range(max(map(len, HELP_STEPS.values()))):
+        found = []
         for number, variable in enumerate(coding.variables):
             for step in HELP_STEPS[variable.unit][rank : rank + 1]:
                 for shift in (step, -step):
@@ -328,10 +368,11 @@ def _steps_of_one(coding: Parametrization) -> Iterator[Rig]:
                     vector[number] = variable.clipped(start[number] + shift)
                     candidate = coding.candidate(vector)
                     if candidate.vector != start and coding.allowed(candidate.rig):
-                        yield candidate.rig
+                        found.append(candidate)
+        yield found
 
 
-def _places_of_one(coding: Parametrization, seed: int) -> Iterator[Rig]:
+def _places_of_one(coding: Parametrization, seed: int) -> Iterator[list[Candidate]]:
     """Yield placements with one sensor, or linked pair, anywhere in its range, near ones first."""
     variables, start = coding.variables, coding.start.vector
     rng, sampled = np.random.default_rng(seed), list[tuple[float, Candidate]]()
@@ -352,7 +393,7 @@ def _places_of_one(coding: Parametrization, seed: int) -> Iterator[Rig]:
                 ]
                 sampled.append((math.hypot(*shares), candidate))
     for _, candidate in sorted(sampled, key=lambda pair: pair[0]):
-        yield candidate.rig
+        yield [candidate]
 
 
 def _figure(value: float, decimals: int) -> str:

@@ -24,7 +24,7 @@ HOLDS, FAILS = "holds", "does not hold"
 def over_frames(ap: Floats, frames: int, q: float) -> Floats:
     """Return the AP (N,) of some frames at 10 Hz, of which each has the AP (N,)."""
     known = Frames(frames=frames, q=q)
-    precision = known.fused([None], [sigma_of(ap) ** -2.0 - BLIND_PRECISION], BLIND_PRECISION)
+    precision = known.fused(["lidar"], [sigma_of(ap) ** -2.0 - BLIND_PRECISION], BLIND_PRECISION)
     return np.asarray(1.0 / (1.0 + precision**-0.5))
 
 

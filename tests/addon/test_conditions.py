@@ -4,10 +4,11 @@ import json
 import math
 
 import bpy
+import numpy as np
 import pytest
 
 import pe_core as pe
-from blender_addon import bridge, result_staleness
+from blender_addon import bridge, result_staleness, vehicle_cache
 from blender_addon.live import state
 from tests.addon import scenes
 from tests.engine import shapes
@@ -75,6 +76,22 @@ def test_a_frame_is_a_state_and_its_motions_are_those_of_the_hinge(car):
     pose = study.conditions.one("door open").rig(study.rig, study.vehicle)["mirror"].pose
     assert pose.position == pytest.approx(tuple(shown), abs=5e-5)
     assert car.frame_current == OPEN_FRAME  # reading shows the frame again that was shown
+
+
+def test_a_shown_state_moves_nothing_that_stands_on_the_ground(car):
+    """Zones, blind ground and stories are placed round the vehicle as drawn, at any frame."""
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    drawn = vehicle_cache.shared.read(car, depsgraph).vehicle
+    add_open_state(car)
+    car.frame_set(OPEN_FRAME)
+    bpy.context.view_layer.update()
+    shown = vehicle_cache.shared.read(car, bpy.context.evaluated_depsgraph_get()).vehicle
+    assert shown.bounds[1][1] > drawn.bounds[1][1] + 0.5  # the door is open
+    assert np.abs(shown.as_drawn.triangles - drawn.triangles).max() < 1e-4
+    car.frame_set(1)
+    assert (
+        vehicle_cache.shared.read(car, bpy.context.evaluated_depsgraph_get()).vehicle.drawn is None
+    )
 
 
 def test_a_part_that_bends_is_refused_by_name(car):

@@ -72,12 +72,35 @@ def test_a_requirement_takes_the_rcs_that_nearly_all_bodies_exceed():
     assert model.cautious is model.cautious and not model.is_cautious  # caches hold on to it
 
 
+@pytest.mark.parametrize(
+    "body, low_dbsm", [("adult", -20.7), ("cyclist", -14.6), ("motorcyclist", -14.6), ("car", -2.6)]
+)
+def test_each_class_has_the_rcs_of_its_weak_bodies(body, low_dbsm):
+    """9.6 dB below the median, the spread of pedestrians: -11.1, -5 and 7 dBsm.
+
+    The mode sees each body as one cell; the range is 250 m for 10 dBsm, so 250 m times 10 to the
+    power of (low - 10) / 40 for the body.
+    """
+    mode = {"name": "a", "azimuth_deg": [-45, 45], "range_m": 250, "elevation_deg": [-30, 30]}
+    found = BODIES[body]
+    sensor = radar({"kind": "radar", "mode": [mode]}, position=(0.0, 0.0, found.size[2] / 2.0))
+    far = 250.0 * 10.0 ** ((low_dbsm - 10.0) / 40.0)
+
+    def seen(front):
+        foot = (front + found.size[0] / 2.0, 0.0, 0.0)
+        return sees(sensor, found, foot, 0.0, None, Criterion())
+
+    assert seen(far - 0.3) and not seen(far + 0.3)
+    mild = catalog.from_table("own", {"kind": "radar", "mode": [mode], "rcs_dbsm": {"car": 9.0}})
+    assert mild.cautious.reflectivity("car").dbsm == (-2.6,)
+
+
 def test_rare_detections_in_many_cells_are_no_point():
     """Of a car in 8.2 cells of range: the probability of any detection, by the cells alike."""
     mode = {"name": "a", "azimuth_deg": [-9, 9], "range_m": 100, "elevation_deg": [-9, 9]}
     mode |= {"range_resolution_m": 0.5, "max_range_m": 300}
     sensor = radar({"kind": "radar", "mode": [mode]}, position=(0.0, 0.0, 0.65))
-    snr, count = snr_for(0.9, 1e-6) * 10 ** ((7.0 - 10.0) / 10.0), 4.1 / 0.5
+    snr, count = snr_for(0.9, 1e-6) * 10 ** ((-2.6 - 10.0) / 10.0), 4.1 / 0.5
     seen, sure, expected = [], [], []
     for x in np.arange(30.0, 120.0, 0.5):
         seen.append(sees(sensor, BODIES["car"], (x, 0.0, 0.0), 0.0, None, Criterion()))
@@ -87,6 +110,44 @@ def test_rare_detections_in_many_cells_are_no_point():
         expected.append(count * pd >= 0.9)
     assert all(truth for is_seen, truth in zip(seen, sure, strict=True) if is_seen)
     assert 0 <= sum(sure) - sum(seen) <= 5 and sum(seen) + 10 < sum(expected) < len(seen)
+
+
+EDGES = {
+    "side": ({"azimuth_deg": [-20, 20]}, lambda u: (8.0, 2.91 + u)),
+    "other side": ({"azimuth_deg": [-20, 35]}, lambda u: (7.0, -2.55 + u)),
+    "top": ({"elevation_deg": [-80, 5]}, lambda u: (10.0 + 4.0 * u, 0.3)),
+    "bottom": ({"elevation_deg": [-7, 60]}, lambda u: (7.0 + 3.0 * u, -0.7)),
+    "far": ({"max_range_m": 30.0}, lambda u: (30.0 + u, 1.0)),
+    "near": ({"min_range_m": 6.0}, lambda u: (6.0 + u, -0.5)),
+}
+
+
+@pytest.mark.parametrize("name", EDGES)
+def test_what_an_edge_of_the_field_cuts_is_detected_with_its_probability(name):
+    """Bodies are moved over an edge. Where the verdict changes, P of the part in the field is at
+    least 0.9 if it is met, by the rays of the oracle (which are right to 0.004).
+
+    A body is one cell of a mode of 200 m, so it is detected nearly surely where it is whole.
+    """
+    own, place = EDGES[name]
+    mode = {"name": "a", "azimuth_deg": [-60, 60], "range_m": 200.0, "elevation_deg": [-60, 60]}
+    mode |= {"range_resolution_m": 50, "azimuth_resolution_deg": 90, "elevation_resolution_deg": 90}
+    mode |= own
+    table = {"kind": "radar", "mode": [mode], "rcs_dbsm": {"post": 7.0}}
+    sensor, rng = radar(table, position=(0.0, 0.0, 0.7)), np.random.default_rng(4)
+    found = []
+    for _ in range(8):
+        body = Body("post", tuple(rng.uniform((0.3, 0.3, 0.8), (3.0, 1.2, 1.8)).tolist()))
+        yaw = float(rng.uniform(-3.0, 3.0))
+        feet = [(*place(u), 0.0) for u in np.linspace(-1.6, 1.6, 81)]
+        met = np.array([sees(sensor, body, at, yaw, None, Criterion()) for at in feet])
+        for k in np.flatnonzero(met[1:] != met[:-1]):
+            x, y, _ = feet[k + 1 if met[k + 1] else k]
+            box = pe.Objects([[x, y, body.size[2] / 2.0]], [body.size], [yaw], [0], ("car",))
+            given = {"mode": [mode]}, sensor.pose, box  # a car of the oracle has 7 dBsm
+            found.append(expected_detections(*given)[0])
+    assert len(found) > 5 and min(found) >= 0.896, sorted(found)
+    assert max(found) < 1.0 and min(found) < 0.99  # some are cut
 
 
 def test_formulas_at_round_numbers():

@@ -177,6 +177,70 @@ def test_a_share_of_a_cylinder_is_never_too_high():
     assert (verdicts[1].passed & ~verdicts[2].passed).any()
 
 
+RING = BODIES["pole_ring"]
+RING_SHIFTS = np.arange(-40, 41) * 2e-3
+"""How far a ring is moved across what cuts it [m]."""
+
+
+def ring_is_whole(shown):
+    """Whether points on the rim of the ring, each 1 mm apart and at both edges, are all shown."""
+    turns = np.linspace(0.0, 2.0 * math.pi, 158)
+    rim = 0.025 * np.column_stack([np.cos(turns), np.sin(turns)])
+    return all(shown(np.column_stack([rim, np.full(158, z)])).all() for z in (0.9, 0.91))
+
+
+@pytest.mark.parametrize("rotation", [(0, 0, 0), (25, 12, 8)], ids=["level", "rolled"])
+def test_a_ring_that_a_side_of_the_picture_cuts_is_not_whole(rotation):
+    """Points of the rim through a pinhole, for rings that are moved over each side of the picture:
+    what is met has all points in it. The posts are at the corners of a box, up to 0.41 radii
+    outside of the rim: what is 12 mm inside is met."""
+    camera = shapes.camera(60.0, (0.0, 0.0, 0.905), rotation, "front")
+    turn = oracle.rotation(*camera.pose.rpy)
+    focal = 960.0 / math.tan(math.radians(30.0))
+    whole = cut = 0
+    for side, most in ((1, 960.0), (-1, -960.0), (2, 540.0), (-2, -540.0)):
+        ends = {abs(side): most / focal, 3 - abs(side): 0.1}
+        middle = turn @ np.array([2.0, 2.0 * ends[1], 2.0 * ends[2]])
+        foot = middle  # the ring's middle is 0.905 m above its foot, as high as the camera
+        across = turn[:, abs(side)] * np.sign(most)
+        for shift in RING_SHIFTS:
+            place = foot + across * shift
+
+            def shown(points, place=place):
+                own = (points + place - (0.0, 0.0, 0.905)) @ turn
+                inside = abs(own[:, 1] / own[:, 0]) * focal <= 960.0
+                return inside & (abs(own[:, 2] / own[:, 0]) * focal <= 540.0)
+
+            met = sees(camera, RING, tuple(place), 0.0, None, Criterion(share=1.0))
+            truth = ring_is_whole(shown)
+            assert truth or not met, (side, shift)
+            whole, cut = whole + met, cut + (not truth)
+            further = place + 0.012 * across
+            assert met or not ring_is_whole(lambda p, at=further: shown(p, at)), (side, shift)
+    assert whole > 40 and cut > 40
+
+
+@pytest.mark.parametrize("wide_m", [0.005, 0.012, 0.2])
+def test_a_ring_that_a_part_of_the_vehicle_cuts_is_not_whole(wide_m):
+    """An upright bar before the ring, moved across it: whole only where it hides no point."""
+    camera = shapes.camera(60.0, (0.0, 0.0, 0.905), (0, 0, 0), "front")
+    whole = cut = 0
+    for shift in np.arange(-70, 71) * 2e-3:
+        low, high = (1.5, shift - wide_m / 2.0, 0.5), (1.51, shift + wide_m / 2.0, 1.4)
+        bar = pe.Vehicle(shapes.box(low, high))
+        met = sees(camera, RING, (3.0, 0.0, 0.0), 0.0, bar, Criterion(share=1.0))
+
+        def shown(points, low=low, high=high):
+            ways = points[:, 1] / (points[:, 0] + 3.0)
+            across = np.array([1.5, 1.51])[:, None] * ways
+            return (across.max(axis=0) < low[1]) | (across.min(axis=0) > high[1])
+
+        truth = ring_is_whole(shown)
+        assert truth or not met, shift
+        whole, cut = whole + met, cut + (not truth)
+    assert whole > 20 and cut > 10
+
+
 def box_entries(start, way, foot, heading, low, high):
     """Distance (B,) at which lines enter a box turned by a heading; inf: they do not."""
     turn = oracle.rotation(0.0, 0.0, heading)

@@ -112,14 +112,20 @@ def test_the_nearest_change_of_one_sensor_is_suggested():
         assert own is not None and len(own.moved) == 1 and own.moved[0] in own.text
         met = {v.name: v.met for v in start.verdicts(own.rig)}
         assert met[name] and set(own.breaks) == {n for n in met if not met[n]} - {"behind", "left"}
-    half = [
-        pe.Pose(*((np.array([new, old]).mean(axis=0)).tolist() for new, old in pairs))
-        for pairs in (
-            ((moved.pose.position, s.pose.position), (moved.pose.rpy, s.pose.rpy))
-            for moved, s in zip(found["behind"].rig, start.rig, strict=True)
-        )
-    ]
-    assert not {v.name: v.met for v in start.verdicts(start.rig.with_poses(half))}["behind"]
+    for name, own in found.items():
+        shorter = start.rig.with_poses(list(map(a_step_less, own.rig, start.rig)))
+        assert not {v.name: v.met for v in start.verdicts(shorter)}[name]
+
+
+def a_step_less(moved, start):
+    """The pose on the way from a start, 1 cm or 0.01 rad before the pose that is moved."""
+    pairs = [(moved.pose.position, start.pose.position), (moved.pose.rpy, start.pose.rpy)]
+    ways = [np.array(new) - np.array(old) for new, old in pairs]
+    length = max(np.abs(way).max() for way in ways)
+    share = 0.0 if length == 0.0 else 1.0 - 0.01 / length
+    return pe.Pose(
+        *((np.array(old) + share * way).tolist() for (_, old), way in zip(pairs, ways, strict=True))
+    )
 
 
 def test_what_is_suggested_is_met_with_the_mounting_errors_that_are_asked_for():

@@ -99,12 +99,10 @@ def test_blind_ground_is_as_far_out_from_the_vehicle_as_drawn_in_every_state():
     )
     own = Requirement("g", zone, (), Criterion(blind_out=0.5, blind_height=0.8))
     door = shapes.box((0.9, 1.0, 0.9), (1.0, 3.0, 2.0))
-    opened = pe.Vehicle(np.concatenate([van().triangles, door]), clearance=0.0)
+    opened = pe.Vehicle(np.concatenate([van().triangles, door]), clearance=0.0, drawn=van())
     front = pe.Rig([rig()["front"]])
     out = [
-        RequirementChecker([own], vehicle, space=space, anchor=van())
-        .check(front)[0]
-        .ground.blind_out
+        RequirementChecker([own], vehicle, space=space).check(front)[0].ground.blind_out
         for vehicle in (van(), opened)
     ]
     assert out[0] == out[1] > 2.5

@@ -10,6 +10,7 @@ import pytest
 import pe_core as pe
 from pe_core.base.table_reader import Table
 from pe_core.scoring.sampling import CENTERED
+from pe_core.scoring.sight.blind_ground import body_rectangle
 from pe_core.search import Tolerance
 from pe_core.study import Conditions, condition_table, study_from_dict, study_to_dict
 from pe_core.study.condition_table import study_objective
@@ -193,6 +194,38 @@ def test_what_blind_ground_leaves_to_spare_is_the_least_of_all_conditions():
     joined = worst_verdict([found, worst, replace(found, ground=less)])
     assert joined.margin == -1.0 and joined.ground.spare_out is None
     assert joined.ground.spare_m2 == less.spare_m2
+
+
+WIDE_OPEN = pe.State("wide open", [replace(OPEN.motions[0], rotation=(0.0, 0.0, -1.2))])
+LIFTED = pe.State("lifted", heave=0.2, pitch_rad=0.05, unsprung=["wheel_*"])
+
+
+@pytest.mark.parametrize("state", [OPEN, WIDE_OPEN, LIFTED], ids=lambda state: state.name)
+def test_what_stands_on_the_ground_does_not_move_with_the_vehicle(state):
+    """Zones, the rectangle from which blind ground is measured, and the bodies of a story.
+
+    A door that is wide open makes the vehicle 0.93 m wider.
+    """
+    requirement = pe.requirements.Requirement(
+        "left",
+        pe.requirements.Zone(x=("rear", "front"), y=("left + 0.5", "left + 1.5")),
+        (pe.requirements.BODIES["child"],),
+        under=pe.requirements.Under(states=("*",)),
+    )
+    study = pe.Study(rig(), car(), shapes.small_space(), conditions=Conditions([state]))
+    study = replace(study, requirements=(requirement,))
+    moved = study.under(study.conditions.one(state.name))
+    bounds = [np.array(each.vehicle.bounds) for each in (study, moved)]
+    assert np.abs(bounds[0] - bounds[1]).max() > 0.01
+    zones = [each.checker().zones[0].corners for each in (study, moved)]
+    assert np.array_equal(*zones)
+    assert body_rectangle(moved.vehicle) == body_rectangle(study.vehicle)
+    story = next(iter(pe.motion.stories().values()))
+    assert np.array_equal(story.positions(moved.vehicle)[0], story.positions(study.vehicle)[0])
+    again = pickle.loads(pickle.dumps(moved.vehicle))
+    assert body_rectangle(again) == body_rectangle(study.vehicle)
+    undone = state.undone(moved.vehicle)
+    assert np.abs(undone.triangles - study.vehicle.triangles).max() < 1e-12
 
 
 def test_a_sensor_that_a_state_moves_may_fail_in_a_search():

@@ -223,6 +223,33 @@ def two_sensors(first, second, model=None):
     return [pe.Sensor("a", lidar, scan=first), pe.Sensor("b", model or lidar, scan=second)]
 
 
+@pytest.mark.parametrize("samples", [0, 2048], ids=["grid", "sample"])
+def test_a_sensor_with_its_own_curve_has_the_rate_of_its_kind(samples):
+    """A curve of its own that is that of its kind changes nothing, at whatever rate."""
+    frames = Frames(4, 2.0, rates={"camera": 37.0, "lidar": 5.0})
+    cameras = [
+        shapes.camera(60.0, (0.0, 0.0, 1.7), (0.0, 5.0, 90.0 * k), f"camera {k}") for k in range(2)
+    ]
+    lidar = pe.Sensor("roof", shapes.small_lidar(8, 180), pe.Pose((0.0, 0.0, 1.9)))
+    curves = pe.PerceptionModel()
+    given = {"samples": samples, "frames": frames}
+    plain = pe.Rig([*cameras, lidar])
+    own = pe.Rig([replace(each, curve=curves.curve(each.kind)) for each in plain])
+    scores = [
+        pe.Study(rig, None, shapes.small_space(), **given).key_figures().over_frames
+        for rig in (plain, own)
+    ]
+    assert scores[0] == pytest.approx(scores[1], abs=1e-9)
+    model = curves.with_model(curves.model, frames)
+    drawn = [
+        pe.Evaluator(shapes.small_space(), pe.Prior.road(), model=model, samples=samples).entropy(
+            rig
+        )
+        for rig in (plain, own)
+    ]
+    assert drawn[0] == pytest.approx(drawn[1], abs=1e-9)
+
+
 def seam_of(sensors, bearing, rates=(10.0, 10.0), speed=10.0):
     at = {s.name: np.full((1, 1), bearing) for s in sensors}
     found = seam(tuple(sensors), at, dict(zip("ab", rates, strict=True)), np.full((1, 1), speed))

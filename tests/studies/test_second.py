@@ -93,6 +93,32 @@ def test_the_results_are_those_of_the_committed_runs():
     assert second_analysis(plan, parts, runs, scores) == saved
 
 
+PAGES = [FOLDER.parent / "second.md", FOLDER.parents[1] / "README.md"]
+
+
+def test_both_parts_have_both_verdicts_by_one_rule():
+    """p after Holm says whether a figure ranks, the interval whether it may be useful.
+
+    The intervals of part 3 end at 0.52, 0.41, 0.47 and 0.33: only the first is not below 0.48.
+    """
+    saved = json.loads((FOLDER / "results.json").read_text("utf-8"))
+    plan = full_second_plan()
+    for part in (GOOD, LAYOUTS):
+        for row in saved[part]["figures"].values():
+            ranks = row["p_holm"] < plan.statistics.alpha and row["rho"] > 0.0
+            assert (row["verdict"] == HOLDS) == ranks
+            assert (row["useful"] == REFUTED) == (row["interval"][1] < plan.second.good.useful_rho)
+    useful = [row["useful"] for row in saved[LAYOUTS]["figures"].values()]
+    assert useful == [UNDECIDED, REFUTED, REFUTED, REFUTED]
+
+
+@pytest.mark.parametrize("part", [GOOD, LAYOUTS])
+def test_what_expected_ap_says_beyond_coverage_is_on_the_pages_for_both_parts(part):
+    row = json.loads((FOLDER / "results.json").read_text("utf-8"))[part]["afterwards"][AP_BEYOND]
+    figures = f"{row['rho']:+.2f} ({row['interval'][0]:+.2f} to {row['interval'][1]:+.2f})"
+    assert all(figures in page.read_text("utf-8") for page in PAGES)
+
+
 def test_w_of_made_up_scans_is_found():
     shares = np.log([[1.0, 1.0], [1.0, 0.5], [0.5, 1.0], [0.5, 0.5]])
     ap = [0.8 + 0.1 * (2 * 0.7 * rows + 2 * 0.3 * columns) for rows, columns in shares]
@@ -222,7 +248,11 @@ def test_verdicts_of_made_up_runs():
     for figures in (found[GOOD]["figures"], found[LAYOUTS]["figures"]):
         assert figures[PRIMARY]["verdict"] == figures[BEYOND]["verdict"] == HOLDS
         assert figures[PRIMARY]["rho"] > 0.9 > abs(figures[COVERAGE]["rho"])
-        assert figures[COVERAGE]["verdict"] in (UNDECIDED, REFUTED)
+        assert figures[COVERAGE]["verdict"] == UNDECIDED
+        for row in figures.values():
+            below = row["interval"][1] < plan.second.good.useful_rho
+            assert row["useful"] == (REFUTED if below else UNDECIDED)
+    assert abs(found[LAYOUTS]["afterwards"][AP_BEYOND]["rho"]) < 0.9
     unused = [r.name for r in parts(plan)[GOOD] if r.name not in needed(plan, results)]
     assert len(unused) == 48 and all(name.endswith("s2") for name in unused)
     fewer = {name: result for name, result in results.items() if name not in unused}

@@ -23,7 +23,13 @@ HEADING = Angle(-360.0, 360.0)
 LOW = Number(0.0, 100.0, unit="m", noun="length")
 BAND_M = 0.1
 """Height of the bands of a body whose visible share is asked for."""
-RING_CELLS = 4
+RING_PLACES = 16
+"""Places round a ring at which it has to be seen, each at its lower and its upper edge. They are
+turned by a quarter of a step, so that those of the far half are between those of the near half:
+what hides a strip of 5 mm hides one of them."""
+RING_CELL_M = 1e-3
+"""Side of the cells of a ring, and of the posts at the corners of its box: less than a pixel."""
+CORNERS = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
 COLUMN_M = 0.5
 MAX_COLUMNS = 4
 """A body is one column wide and long up to `COLUMN_M`, at most `MAX_COLUMNS` beyond."""
@@ -99,21 +105,15 @@ class Body:
         """Return centres (K, 3), from the foot, and sizes (K, 3) of the body's boxes [m].
 
         `cells`: The cells of which a share has to be visible, and the posts beside the body,
-            instead of the one box: band after band, those of `cell_plan`. Of a ring, its four
-            sides.
+            instead of the one box: band after band, those of `cell_plan`. Of a ring,
+            `_ring_cells`.
         """
         length, width, height = self.box
         if not cells:
             center = [0.0, 0.0, self.low + height / 2.0]
             return np.array([center]), np.array([[length, width, height]])
         if self.is_ring:
-            diameter = self.size[0]
-            side = min(height, diameter / 4.0)
-            # the outer corners of a box lie on the circle: (r + s/2)^2 + (s/2)^2 = (d/2)^2
-            away = math.sqrt(diameter**2 / 4.0 - side**2 / 4.0) - side / 2.0
-            turns = np.array([(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)])
-            centers = np.column_stack([away * turns, np.full(RING_CELLS, self.low + height / 2.0)])
-            return centers, np.tile([side, side, height], (RING_CELLS, 1))
+            return self._ring_cells()
         along, across = (self._divided(axis) for axis in (0, 1))
         k, i, j = np.nonzero(cell_plan(self.bands, *self.columns))
         z = self.low + (k + 0.5) * height / self.bands
@@ -124,11 +124,30 @@ class Body:
     def cell_bands(self) -> tuple[Ints, Flags]:
         """Return the band of each of `boxes(True)` (K,), and whether it is a post."""
         if self.is_ring:
-            return np.zeros(RING_CELLS, np.int64), np.zeros(RING_CELLS, bool)
+            posts = np.repeat([False, True], [2 * RING_PLACES, len(CORNERS)])
+            return np.zeros(len(posts), np.int64), posts
         k, i, j = np.nonzero(cell_plan(self.bands, *self.columns))
         (along, across), inner = self.columns, np.ones(len(k), bool)
         inner &= (i > 0) & (i <= along) & (j > 0) & (j <= across)
         return k, ~inner
+
+    def _ring_cells(self) -> tuple[Floats, Floats]:
+        """Return centres (K, 3), from the foot, and sizes (K, 3) of the cells of a ring [m].
+
+        First cells inside the ring, at its edges all round. Then posts outside the corners of its
+        box: if a plane through the camera cuts the ring, as a side of the picture does, one of them
+        is wholly on the side that is not seen.
+        """
+        radius, height = self.size[0] / 2.0, self.size[2]
+        turns = (np.arange(RING_PLACES) + 0.25) * (2.0 * math.pi / RING_PLACES)
+        away = radius - RING_CELL_M * math.sqrt(0.5)
+        around = np.array([(away * math.cos(a), away * math.sin(a)) for a in turns.tolist()])
+        edge = (height - RING_CELL_M) / 2.0
+        inside = np.column_stack([np.tile(around, (2, 1)), np.repeat([-edge, edge], RING_PLACES)])
+        corners = CORNERS * (np.array([radius, radius, height / 2.0]) + RING_CELL_M / 2.0)
+        centers = np.concatenate([inside, corners])
+        centers[:, 2] += self.low + height / 2.0
+        return centers, np.full(centers.shape, RING_CELL_M)
 
     def shells(self) -> tuple[Floats, Floats, Ints]:
         """Return boxes round a cylinder, which its cells do not fill; none of a box. Centres (S, 3)

@@ -41,7 +41,7 @@ class CheckStep(NamedTuple):
 
 
 class RequirementChecker:
-    """Holds rigs to requirements round one vehicle.
+    """Holds rigs to requirements round one vehicle. Zones are placed round the vehicle as drawn.
 
     It is thread-safe: one thread at a time checks.
 
@@ -50,7 +50,6 @@ class RequirementChecker:
     `model`: AP curves of objects, for criteria of AP.
     `reference`: The vehicle's axles, for zones that are anchored to them.
     `space`: The ground on which blind ground is searched.
-    `anchor`: The vehicle to which zones are anchored, where it is not the one that occludes.
     """
 
     def __init__(
@@ -61,12 +60,11 @@ class RequirementChecker:
         model: PerceptionModel | None = None,
         reference: Reference | None = None,
         space: PerceptionSpace | None = None,
-        anchor: Vehicle | None = None,
     ) -> None:
         self.requirements = checked_requirements(requirements)
         self.vehicle, self._model = vehicle, model or PerceptionModel()
         self._reference, self._space = reference, space or PerceptionSpace()
-        self.anchor = anchor or vehicle
+        self.anchor = None if vehicle is None else vehicle.as_drawn
         planes: dict[tuple[Any, ...], VehiclePlanes] = {}
         self.zones: tuple[PlacedZone, ...] = tuple(
             each.zone.placed(self.anchor, reference, each.name, planes)
@@ -81,7 +79,7 @@ class RequirementChecker:
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the arguments: another process makes a checker of its own from them."""
         again = partial(RequirementChecker, self.requirements, self.vehicle, model=self._model)
-        return partial(again, reference=self._reference, space=self._space, anchor=self.anchor), ()
+        return partial(again, reference=self._reference, space=self._space), ()
 
     def check_rig(self, rig: Rig) -> None:
         """Raise `InputError` for a requirement on kinds of sensors that the rig lacks."""

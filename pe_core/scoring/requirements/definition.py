@@ -100,10 +100,11 @@ def visible_share(body: Body, cells: NDArray[np.bool_]) -> Floats:
 
     The cells of a body are bands of columns, and posts beside them (`cell_plan`); a post between
     two that are measured is seen if both are. A column in a band counts if it and its four diagonal
-    neighbours are seen, in the bands above and below as well. Columns count alike.
+    neighbours are seen, in the bands above and below as well. Columns count alike. A ring is
+    visible as a whole, with all its cells and posts, or not at all.
     """
     if body.is_ring:
-        return cells.mean(axis=1)
+        return cells.all(axis=1).astype(float)
     plan = cell_plan(body.bands, *body.columns)
     measured = np.zeros((len(cells), *plan.shape), bool)
     measured[:, plan] = cells

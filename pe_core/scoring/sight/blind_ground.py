@@ -126,8 +126,10 @@ class BlindSector:
 
     `height`: Height of the body [m].
     `width`: 0 where the body is visible all round, 360 where it is nowhere [deg]. It is never too
-        small, and at most 2 deg wider than where the middle of an invisible body can stand: it
-        counts the ground under the body, and edges are up to `TOO_FAR_M` too far out.
+        small. It counts the ground under the body, and edges are up to `TOO_FAR_M` too far out: its
+        ends are at most 0.3 m from where the middle of an invisible body can stand. An edge that
+        runs away from the origin is less than 1 deg too far; one that crosses the circle at a
+        slant s is 1 deg / sin(s) too far.
     `bearing`: Bearing of its middle, counter-clockwise from ahead, above -180 to 180 [deg].
     """
 
@@ -172,10 +174,10 @@ def widest_sector(blind: Flags, height: float) -> BlindSector:
 
 
 def body_rectangle(vehicle: Vehicle | None) -> Rectangle:
-    """((x, x), (y, y)) of the vehicle seen from above [m]."""
+    """((x, x), (y, y)) of the vehicle as drawn, seen from above [m]."""
     if vehicle is None:
         return (-NO_BODY_M, NO_BODY_M), (-NO_BODY_M, NO_BODY_M)
-    (x0, y0, _), (x1, y1, _) = (corner.tolist() for corner in vehicle.bounds)
+    (x0, y0, _), (x1, y1, _) = (corner.tolist() for corner in vehicle.as_drawn.bounds)
     return (x0, x1), (y0, y1)
 
 

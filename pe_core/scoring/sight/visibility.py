@@ -203,7 +203,7 @@ class MeasuredVoxels:
     def measured(self, rig: Rig) -> dict[str, NDArray]:
         """Return m (V,) of each sensor by name, with the range terms of their curves."""
         self._sensors.measure(rig)
-        named = [(s.curve or s.kind, self._sensors.m[s.name]) for s in rig]
+        named = [(s.detector, self._sensors.m[s.name]) for s in rig]
         terms = self._fusion.ranged(named, self._distance)
         return {s.name: of_sensor for s, (_, of_sensor) in zip(rig, terms, strict=True)}
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ...base.arrays import Floats, Ints
 from ...base.errors import InputError
 from ...base.values import rounded
-from ...metric.entropy import H_BEST, H_BLIND, above_floor, ap_of_entropy
+from ...metric.entropy import H_BEST, H_BLIND, OwnCurve, above_floor, ap_of_entropy
 from ...metric.fusion import Fusion, early_fusion
 from ...scene.objects import Objects
 from ...scene.rig import Rig
@@ -91,12 +91,13 @@ class FusedObjects:
         if not groups:
             return entropies, visible
         for name, rows in self._rows.items():
-            fusion, kinds = self._fusion[name], [kind for kind, _ in groups]
+            fusion = self._fusion[name]
             measured = [
-                (self._model.object_curve(kind, name), total[rows]) for kind, total in groups
+                (OwnCurve(kind, self._model.object_curve(kind, name)), total[rows])
+                for kind, total in groups
             ]
             ranged = fusion.ranged(measured, self._distance[rows])
-            entropies[rows], visible[rows] = fusion.entropies(ranged, kinds)
+            entropies[rows], visible[rows] = fusion.entropies(ranged)
         return entropies, visible
 
 

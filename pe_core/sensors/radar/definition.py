@@ -8,10 +8,13 @@ by the cells, and a cell is detected with the probability Pd of `detection`.
 
 **Objects.** m is the sum over modes of N times the mean of Pd over the object's silhouette: 0 for
 the part that the mode does not reach, that the vehicle or, in traffic, another object hides. It is
-at most the length of the list. Of a cautious radar (a requirement's) it is no more than the
-probability of any detection, until that is `SURE`: rare detections in many cells are none. Points
-on the sides of the box that face the radar stand for the silhouette, each with the solid angle of
-its piece of the side.
+at most the length of the list. Points on the sides of the box that face the radar stand for the
+silhouette, each with the solid angle of its piece of the side.
+
+**A cautious radar** (a requirement's) errs low. m is no more than the probability of any detection,
+until that is `SURE`: rare detections in many cells are none. The sides are divided into patches,
+and each has the least Pd of its four corners: what an edge of the field, of the range or of the
+vehicle cuts counts as not detected.
 
 **Voxels.** A voxel has the share of its silhouette in that of a reference car with the same centre,
 seen from all headings alike: m = m of the car, divided by k = (l + w) h / (2 s^2) (as in
@@ -20,6 +23,7 @@ seen from all headings alike: m = m of the car, divided by k = (l + w) h / (2 s^
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -29,7 +33,7 @@ from ...geometry.poses import dot
 from ...scene.objects import Objects
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
-from ..boxes import NUDGE_M, PlacedBoxes, Rivals, behind_others
+from ..boxes import NUDGE_M, BoxRays, PlacedBoxes, Rivals, behind_others
 from ..kernels import ObjectView
 from ..kind import SIZES
 from ..ray_fan import RayFan, angles_of, cast_fan
@@ -43,6 +47,9 @@ TARGET = "car"
 ASPECTS = np.radians(np.arange(2.5, 180.0, 5.0))
 """Aspects over which the RCS of the reference car is averaged [rad]."""
 SIDE_POINTS = 55, 34  # Points of a side of a box: neighbouring Fibonacci numbers
+SIDE_PATCHES = 10
+"""A side of a box is so many patches wide and high to a cautious radar: a body that an edge cuts
+loses up to a tenth of the side."""
 OBJECTS_AT_ONCE = 1024
 SURE = 0.9
 """Probability of a detection from which an object counts as one point to a requirement."""
@@ -188,21 +195,58 @@ def _block(
         some = labels == number
         reflectivity = radar.reflectivity(objects.class_names[number])
         rcs[some] = reflectivity.square_metres(aspect[some])
-    sides, solid = own_boxes.side_points(*SIDE_POINTS)
+    silhouette = _Silhouette.of(own_boxes, radar.is_cautious)
+    sides = silhouette.rays
     angles = angles_of(sensor, sides.directions)
     free, loss = seen_through(fan, angles, sides.distance)
     free &= ~behind_others(boxes, near, sides)
-    whole = np.maximum(np.bincount(sides.item, solid, len(own)), np.finfo(float).tiny)
     m, missed = np.zeros(len(own)), np.ones(len(own))
     for mode in radar.modes:
         cells = cells_of(mode, sizes, far)
         pd = mode_signal(radar, mode, angles, sides.distance, (rcs / cells)[sides.item], loss)
-        mean = np.bincount(sides.item, solid * free * pd, len(own)) / whole
+        mean = silhouette.mean(free * pd, len(own))
         m += cells * mean
         missed *= np.maximum(1.0 - mean, 0.0) ** cells  # at most so often no cell detects it
     if radar.is_cautious:
         m = np.where(1.0 - missed >= SURE, m, np.minimum(m, 1.0 - missed))
     return m if radar.list_length is None else np.minimum(m, radar.list_length)
+
+
+@dataclass(frozen=True, slots=True)
+class _Silhouette:
+    """Points on the sides of boxes that face the radar, which stand for the boxes' silhouettes.
+
+    `rays` (R,) lead to the points, `solid` (R,) are solid angles [sr]. If `is_cautious`, the points
+    are the corners of patches.
+    """
+
+    rays: BoxRays
+    solid: Floats
+    is_cautious: bool
+
+    @classmethod
+    def of(cls, boxes: PlacedBoxes, is_cautious: bool) -> "_Silhouette":
+        if is_cautious:
+            return cls(*boxes.side_corners(SIDE_PATCHES), True)
+        return cls(*boxes.side_points(*SIDE_POINTS), False)
+
+    def mean(self, values: Floats, count: int) -> Floats:
+        """Return the mean of values (R,) over the silhouettes of `count` boxes; of a cautious radar
+        a lower bound."""
+        items, solid = self.rays.item, self.solid
+        if self.is_cautious:
+            items = items[:: (SIDE_PATCHES + 1) ** 2].repeat(SIDE_PATCHES**2)
+            solid = np.mean(_corners_of_patches(solid), axis=0)
+            values = np.min(_corners_of_patches(values), axis=0)
+        whole = np.maximum(np.bincount(items, solid, count), np.finfo(float).tiny)
+        return np.asarray(np.bincount(items, solid * values, count) / whole)
+
+
+def _corners_of_patches(values: Floats) -> Floats:
+    """Return values (R,) at the corners of patches by corner and patch, (4, P)."""
+    grids = values.reshape(-1, SIDE_PATCHES + 1, SIDE_PATCHES + 1)
+    corners = grids[:, :-1, :-1], grids[:, 1:, :-1], grids[:, :-1, 1:], grids[:, 1:, 1:]
+    return np.stack([each.reshape(-1) for each in corners])
 
 
 def seen_sizes(boxes: PlacedBoxes) -> tuple[tuple[Floats, Floats, Floats], Floats, Floats]:

@@ -29,9 +29,11 @@ MEDIAN_DBSM = {
 }
 """Medians of measurements at 77 to 79 GHz [dBsm], as surveys quote them. A cyclist is taken as the
 bicycle."""
-LOW_DBSM = {"pedestrian": -20.7}
-"""What 95 % of the measurements exceed [dBsm]: a pedestrian's RCS is within -20.7 to -4.8 dBsm in
-90 % of them. Of other classes no spread was found."""
+SPREAD_DB = 9.6
+"""How far below its median the RCS is that 95 % of the measurements exceed: a pedestrian's is
+within -20.7 to -4.8 dBsm in 90 % of them. Of other classes no spread was found: this is taken."""
+LOW_DBSM = {name: round(level - SPREAD_DB, 1) for name, level in MEDIAN_DBSM.items()}
+"""What 95 % of the measurements exceed [dBsm]."""
 UNKNOWN_DBSM = MEDIAN_DBSM["pedestrian"]
 """Of a class without a figure: the weakest of the table, on the safe side."""
 NO_ECHO = -math.inf  # Of a class without a figure to a requirement [dBsm]
@@ -117,11 +119,11 @@ def reflectivity_of(name: str, own: Mapping[str, Reflectivity]) -> Reflectivity:
 
 
 def cautious_reflectivity(name: str, own: Mapping[str, Reflectivity]) -> Reflectivity:
-    """Return the RCS of a class to a requirement. The sensor's own figure or the median, or what 95
-    % of the measurements exceed where that is less. A class without a figure sends no echo: nobody
-    knows its RCS."""
-    found = own.get(name) or Reflectivity((MEDIAN_DBSM.get(name, NO_ECHO),))
+    """Return the RCS of a class to a requirement: what 95 % of the measurements exceed, or the
+    sensor's own figure where that is less. A class that is not in the table has the sensor's own
+    figure. Without one it sends no echo: nobody knows its RCS."""
     most = LOW_DBSM.get(name, math.inf)
+    found = own.get(name) or Reflectivity((LOW_DBSM.get(name, NO_ECHO),))
     return Reflectivity(tuple(min(level, most) for level in found.dbsm), found.aspects)
 
 

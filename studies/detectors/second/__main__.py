@@ -63,6 +63,7 @@ def _summary(found: Json) -> str:
     for part, where in ((GOOD, "among the good"), (LAYOUTS, "in real layouts")):
         for name, row in ((found[part] or {}).get("figures") or {}).items():
             lines.append(f"{row['verdict']:12} {name} ranks {where}: rho {row['rho']:+.2f}")
+            lines.append(f"{row['useful']:12} {name} is a useful ranking {where}")
     for ring, row in ((found[SEARCHES] or {}).get("minus_entropy") or {}).items():
         lines.append(f"{row['verdict']} in {ring}: {row['mean']:+.3f} AP")
     return "\n".join(lines)

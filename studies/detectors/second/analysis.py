@@ -110,10 +110,14 @@ def _good(plan: Plan, runs: Sequence[Run], results: Results, scores: Results) ->
 def _layouts(plan: Plan, results: Results, scores: Results) -> Json:
     """Return rho of each figure with the AP in real layouts, over all placements."""
     whole = of_mixed(LAYOUTS, parts_of(plan)[LAYOUTS], good_placements(plan), results)
+    values = whole.all_values(scores)
     return {
         "ap": _extent(whole.samples.ap),
         "noise": round(whole.samples.noise, 4),
-        "figures": _figures(plan, whole.all_values(scores), whole.samples),
+        "figures": _figures(plan, values, whole.samples),
+        "afterwards": {
+            AP_BEYOND: rank_of(plan, whole.samples, values[EXPECTED_AP], values[COVERAGE])
+        },
     }
 
 
@@ -123,12 +127,12 @@ def _extent(ap: Floats) -> list[float]:
 
 
 def _figures(plan: Plan, value: Mapping[str, Floats], samples: PlacementSamples) -> Json:
-    """Return rho, interval, p and verdict of each figure, values (P,) by score."""
+    """Return rho, interval, p and verdicts of each figure, values (P,) by score."""
     found = {n: rank_of(plan, samples, value[n]) for n in (PRIMARY, EXPECTED_AP, COVERAGE)}
     found[BEYOND] = rank_of(plan, samples, value[PRIMARY], value[COVERAGE])
     for row, p in zip(found.values(), holm([r["p"] for r in found.values()]), strict=True):
         row["p_holm"] = p
-        row["verdict"] = rank_verdict(row, plan.statistics.alpha, plan.second.good.useful_rho)
+        row |= rank_verdicts(row, plan.statistics.alpha, plan.second.good.useful_rho)
     return found
 
 
@@ -167,8 +171,11 @@ def _over_rigs(less: Sequence[float]) -> Json:
     }
 
 
-def rank_verdict(row: Json, alpha: float, useful: float) -> str:
-    """Return whether a figure ranks among the good, by its p after Holm and its interval."""
-    if row["p_holm"] < alpha and row["rho"] > 0.0:
-        return HOLDS
-    return REFUTED if row["interval"][1] < useful else UNDECIDED
+def rank_verdicts(row: Json, alpha: float, useful: float) -> dict[str, str]:
+    """Return two verdicts: whether a figure ranks, by its p after Holm, and whether it is refuted
+    as a useful ranking, by its interval alone. A figure may rank and be no useful ranking."""
+    ranks = row["p_holm"] < alpha and row["rho"] > 0.0
+    return {
+        "verdict": HOLDS if ranks else UNDECIDED,
+        "useful": REFUTED if row["interval"][1] < useful else UNDECIDED,
+    }

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..base.arrays import Floats, ReadOnlyDict
-from ..base.errors import InputError, one_of, shown
+from ..base.errors import InputError, one_of, require_kind, shown
 from ..base.notebook import ShortRepr
 from ..base.setting import FLAG, OneOf, Pair, Panel, check_settings, setting
 from ..base.values import A_NAME, A_PATH, ANY, LENGTH, Number, listed
@@ -130,8 +130,7 @@ class Slot:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", A_NAME.checked("slot", "name", self.name))
-        if not isinstance(self.pose, Pose):
-            raise InputError("slot", "pose", "a Pose", type(self.pose).__name__)
+        require_kind("slot", "pose", self.pose, Pose)
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ..base.arrays import ReadOnlyDict
-from ..base.errors import InputError, shown
+from ..base.errors import InputError, require_kind, shown
 from ..base.notebook import ShortRepr, Tabular
 from ..base.setting import OneOf, Panel, check_settings, setting
 from ..base.values import A_NAME, A_PATH, Whole
@@ -180,8 +180,7 @@ class Search(ShortRepr):
         check_settings(self, who)
         for kind in (Schedule, Mounting, Tolerance, Goals):
             name = kind.__name__.lower()
-            if not isinstance(value := getattr(self, name), kind):
-                raise InputError(who, name, f"a {kind.__name__}", type(value).__name__)
+            require_kind(who, name, getattr(self, name), kind)
         known = checked_method(who, self.method or None, self.schedule != Schedule())
         object.__setattr__(self, "method", known)
 
@@ -254,8 +253,8 @@ class Study(Tabular):
         object.__setattr__(self, "requirements", checked_requirements(self.requirements))
         for name, kind in FIELDS.items():
             value = getattr(self, name)
-            if not isinstance(value, kind) and (value is not None or name not in OPTIONAL):
-                raise InputError("study", name, f"a {kind.__name__}", type(value).__name__)
+            if value is not None or name not in OPTIONAL:
+                require_kind("study", name, value, kind)
         if self.vehicle is not None:
             require_vehicle_size("vehicle", self.vehicle)
         if self.mesh is not None:

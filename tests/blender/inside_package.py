@@ -48,11 +48,14 @@ def state() -> dict[str, list[str]]:
 
 
 def names() -> set[str]:
-    """Return the labels of all classes, and the names of their properties."""
-    labels = {getattr(cls, "bl_label", "") for cls in perception_entropy.CLASSES}
-    declared = [english.own_properties(cls) for cls in perception_entropy.CLASSES]
-    named = {each.keywords.get("name", "") for own in declared for each in own.values()}
-    return (labels | named) - {""}
+    """Return the labels of all classes, and the names of their properties and items of menus."""
+    texts = {getattr(cls, "bl_label", "") for cls in perception_entropy.CLASSES}
+    for cls in perception_entropy.CLASSES:
+        for declared in english.own_properties(cls).values():
+            items = declared.keywords.get("items", ())
+            texts |= {declared.keywords.get("name", "")}
+            texts |= set() if callable(items) else {item[1] for item in items}
+    return texts - {""}
 
 
 def translated(code: str) -> dict[str, object]:

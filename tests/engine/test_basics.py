@@ -29,12 +29,12 @@ def test_a_pose_is_the_same_from_a_matrix_and_from_a_quaternion():
     """A quarter turn to the left, by hand: x becomes y, and (w, x, y, z) is (1, 0, 0, 1) / sqrt 2;
     turns about y and x likewise, and any rotation there and back."""
     half = math.sqrt(0.5)
-    turns = {
-        (0, 0, 90): (half, 0, 0, half),
-        (0, 90, 0): (half, 0, half, 0),
-        (90, 0, 0): (half, half, 0, 0),
-    }
-    for degrees, wxyz in turns.items():
+    turns = (
+        ((0, 0, 90), (half, 0, 0, half)),
+        ((0, 90, 0), (half, 0, half, 0)),
+        ((90, 0, 0), (half, half, 0, 0)),
+    )
+    for degrees, wxyz in turns:
         wanted = pe.Pose.from_degrees((1, 2, 3), degrees)
         found = pe.Pose.from_quaternion((1, 2, 3), wxyz)
         assert np.allclose(found.matrix, wanted.matrix, atol=1e-12)
@@ -60,7 +60,7 @@ MATRIX[:3, 3] = (1.0, 2.0, 3.0)
         MATRIX.T,  # of row vectors
         MATRIX * (1, 1, -1, 1),  # mirrors
         MATRIX * (2, 2, 2, 1),  # scales
-        MATRIX + [[0, 0.1, 0, 0], *np.zeros((3, 4))],  # shears
+        np.add(MATRIX, [[0, 0.1, 0, 0], *np.zeros((3, 4))]),  # shears
         MATRIX[:3, :3],
         np.full((4, 4), np.nan),
         np.diag([1, 1, 1, np.inf]),

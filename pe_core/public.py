@@ -59,6 +59,7 @@ from .search import (
     Tolerance,
     Wanted,
     optimize,
+    snap_to_mount,
 )
 from .sensors import (
     BeamField,
@@ -89,4 +90,4 @@ __all__ += ["SensorScore", "Sight", "Slot", "SlotMount", "Start", "State", "Step
 __all__ += ["SurfaceMount", "TargetRule", "Tolerance", "Vehicle", "Wanted", "Weather"]
 __all__ += ["__version__", "beam_field", "catalog", "cuts_body", "guessed_reference", "load_study"]
 __all__ += ["measure", "measure_objects", "optimize", "requirements", "save_study"]
-__all__ += ["study_from_dict", "study_to_dict"]
+__all__ += ["snap_to_mount", "study_from_dict", "study_to_dict"]

@@ -53,6 +53,7 @@ from ..search import (
     checked_axes,
     checked_bounds,
     checked_method,
+    rig_on_mounts,
 )
 from ..search.build_figures import housings_of
 from ..search.key_figures import KeyFigures
@@ -436,6 +437,14 @@ class Study(Tabular):
         check_pairs(self.rig, search.mounting)
         where = search.free, search.limits, search.mounting, housings_of(self.rig)
         return SearchSpace.on_vehicle(self.rig, self.vehicle, *where, search.goals.fixed)
+
+    def on_mounts(self) -> "Study":
+        """Return the study with each sensor that is not on its mount at the nearest pose there.
+
+        Sensors that follow others, mirror images and groups, follow. `InputError` where a mount
+        cannot be.
+        """
+        return self.with_rig(rig_on_mounts(self.rig, self.search_space()))
 
     def search_run(self, journal: Iterable[Sequence[Any]] = ()) -> SearchRun:
         """Return the search of this study as a run that is asked and told: `SearchRun`."""

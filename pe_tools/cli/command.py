@@ -112,6 +112,8 @@ def add_search_options(parser: argparse.ArgumentParser) -> None:
     add("--fix", type=_names, default=(), metavar="NAME,...", help=about)
     about = "start from the placement of this study, too; any number"
     add("--start", action="append", default=[], metavar="STUDY", help=about)
+    about = "begin with each sensor on its mount: one that is not takes the nearest pose there"
+    add("--snap", action="store_true", help=about)
     about = f"a Pareto front of these: two or more of {', '.join(GOALS)}"
     add("--front", type=_names, metavar="NAME,...", help=about)
     about = f"{', '.join(KEPT)}: kept as this or as the start has it, too; none: nothing is kept"
@@ -182,6 +184,8 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
     state, weather = getattr(args, "state", None), getattr(args, "weather", None)
     if state or weather:
         study = study.under(study.conditions.one(state, weather))
+    if getattr(args, "snap", False):
+        study = _on_mounts(study)
     search = study.search
     if (samples := getattr(args, "search_samples", None)) is not None:
         search = replace(search, samples=samples)
@@ -198,6 +202,16 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
     elif not has_schedule and own.method == SCHEDULED_METHOD and own.schedule != Schedule():
         tell(f"--method {search.method}: the study's schedule, of {SCHEDULED_METHOD}, is not used")
     return with_goals(replace(study, search=search), args)
+
+
+def _on_mounts(study: Study) -> Study:
+    """Return a study with its sensors on their mounts; those that moved are told."""
+    placed = study.on_mounts()
+    for sensor in placed.rig:
+        if sensor.pose != study.rig[sensor.name].pose:
+            at = ", ".join(f"{value:g}" for value in sensor.pose.position)
+            tell(f"{sensor.name}: put on its mount, at ({at}) m")
+    return placed
 
 
 def with_goals(study: Study, args: argparse.Namespace) -> Study:

@@ -75,6 +75,8 @@ def add_run_options(parser: argparse.ArgumentParser, *, search: bool) -> None:
     if search:
         about = "go on with the search that was begun in this folder"
         folder.add_argument("--resume", metavar="DIR", help=about)
+        about = "begin with each sensor on its mount: one that is not takes the nearest pose there"
+        parser.add_argument("--snap", action="store_true", help=about)
     parser.add_argument("--json", action="store_true", help="print result.json on stdout")
     add_score_options(parser)
     if search:
@@ -112,8 +114,6 @@ def add_search_options(parser: argparse.ArgumentParser) -> None:
     add("--fix", type=_names, default=(), metavar="NAME,...", help=about)
     about = "start from the placement of this study, too; any number"
     add("--start", action="append", default=[], metavar="STUDY", help=about)
-    about = "begin with each sensor on its mount: one that is not takes the nearest pose there"
-    add("--snap", action="store_true", help=about)
     about = f"a Pareto front of these: two or more of {', '.join(GOALS)}"
     add("--front", type=_names, metavar="NAME,...", help=about)
     about = f"{', '.join(KEPT)}: kept as this or as the start has it, too; none: nothing is kept"

@@ -59,7 +59,7 @@ def row_of(
     if isinstance(result, InputError):
         return SweepRow(run, FAILED, message=str(result))
     before, after = result.before, result.after
-    aps = (None, None) if result.in_traffic is None else tuple(o.ap for o in result.in_traffic)
+    ap_before, ap = (o.ap for o in result.in_traffic) if result.in_traffic else (None, None)
     met = [verdict.met for verdict in result.verdicts]
     return SweepRow(
         run,
@@ -68,7 +68,8 @@ def row_of(
         after.entropy,
         after.coverage,
         message,
-        *aps,
+        ap_before,
+        ap,
         figures=result.figures,
         met=(sum(met), len(met)) if met else None,
     )
@@ -85,7 +86,8 @@ def row_of_result(run: SweepRun, folder: Path, kind: str) -> SweepRow | None:
             return None
         before, entropy = float(data["before"]["entropy"]), float(data["entropy"])
         found = data.get(EXPECTED_AP)
-        aps = () if found is None else [float(found[k]["ap"]) for k in ("before", "after")]
+        ends = ("before", "after")
+        aps = [None if found is None else float(found[end]["ap"]) for end in ends]
         met = [bool(verdict["met"]) for verdict in data.get("requirements", ())]
         return SweepRow(
             run,
@@ -94,7 +96,8 @@ def row_of_result(run: SweepRun, folder: Path, kind: str) -> SweepRow | None:
             entropy,
             float(data["coverage"]),
             "",
-            *aps,
+            aps[0],
+            aps[1],
             figures=_read_figures(data.get("figures")),
             met=(sum(met), len(met)) if met else None,
         )

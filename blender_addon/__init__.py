@@ -10,7 +10,6 @@ from . import (
     consistency,
     diagnostics,
     engine_process,
-    language,
     library,
     live,
     location_query,
@@ -24,8 +23,8 @@ from . import (
     where_map,
     wiring,
 )
+from .english import keep_english
 from .overlay import draw_handler as overlay
-from .translation_context import in_own_context
 
 CLASSES = (*preferences_panel.CLASSES, *properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
 
@@ -33,8 +32,7 @@ CLASSES = (*preferences_panel.CLASSES, *properties.CLASSES, *operators.CLASSES, 
 def register() -> None:
     """Called by Blender when the add-on is enabled."""
     for cls in CLASSES:
-        in_own_context(cls)
-    language.register()
+        keep_english(cls)
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     properties.add_pointers()
@@ -60,7 +58,6 @@ def unregister() -> None:
     properties.remove_pointers()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)
-    language.unregister()
 
 
 def stop() -> None:

@@ -4,10 +4,9 @@ import bpy
 
 from . import library, own_catalog, signals
 from .engine import app
-from .language import draw_label
 from .library import stored
+from .panel_text import draw_label
 from .properties import fields
-from .translation_context import CONTEXT
 
 
 def show_or_hide(preferences: bpy.types.AddonPreferences, _context: bpy.types.Context) -> None:
@@ -56,7 +55,7 @@ class PE_Preferences(bpy.types.AddonPreferences):
         column.prop(self, "show_library")
         row = self.layout.split(factor=NAMES_SHARE)
         row.separator()
-        link = row.operator("wm.url_open", text="Website", text_ctxt=CONTEXT, icon="URL")
+        link = row.operator("wm.url_open", text="Website", translate=False, icon="URL")
         link.url = app.WEBSITE
 
     def _section(self, heading: str) -> bpy.types.UILayout:

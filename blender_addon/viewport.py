@@ -15,7 +15,7 @@ import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
 
-from .language import shown
+from .panel_text import typeset
 
 Rgba = tuple[float, float, float, float]
 PlateBox = tuple[float, float, float, float]
@@ -80,21 +80,21 @@ def release_gpu() -> None:
 
 
 def text_size(text: str, size_px: float) -> tuple[float, float]:
-    """Return the width and height of a line of text, in the language that it is drawn in [px]."""
+    """Return the width and height of a line of text as it is drawn [px]."""
     blf.size(FONT, size_px)
-    width, height = blf.dimensions(FONT, shown(text))
+    width, height = blf.dimensions(FONT, typeset(text))
     return width, height
 
 
 def draw_text(
     text: str, x: float, y: float, size_px: float, color: Rgba, *, left_of_x: float = 0.0
 ) -> float:
-    """Draw a line of text on a baseline, in the interface's language; return its width [px].
+    """Draw a line of text on a baseline; return its width [px].
     `left_of_x` is the share of the text that lies left of `x`: 0 begins there, 1 ends there."""
     width, _ = text_size(text, size_px)
     blf.color(FONT, *color)
     blf.position(FONT, round(x - left_of_x * width), round(y), 0.0)
-    blf.draw(FONT, shown(text))
+    blf.draw(FONT, typeset(text))
     return width
 
 

@@ -38,6 +38,8 @@ from .search import (
     METHODS,
     Choice,
     Constraints,
+    Front,
+    Goals,
     Method,
     MountArea,
     Mounting,
@@ -50,10 +52,14 @@ from .search import (
     Selection,
     Slot,
     SlotMount,
+    Start,
     Step,
+    Stop,
     SurfaceMount,
     Tolerance,
+    Wanted,
     optimize,
+    snap_to_mount,
 )
 from .sensors import (
     BeamField,
@@ -72,15 +78,16 @@ from .sensors import (
 from .study import Conditions, Search, Study, load_study, save_study, study_from_dict, study_to_dict
 from .version import __version__
 
-__all__ = ["METHODS", "ApCurve", "BeamField", "BlindGround", "BoxReport", "Boxes"]
-__all__ += ["BrownConrady", "Camera", "Choice", "Conditions", "Constraints", "DataSheet"]
-__all__ += ["Evaluator", "FTheta", "Focus", "GroundMap", "GroundSight", "Housing", "InputError"]
+__all__ = ["METHODS", "ApCurve", "BeamField", "BlindGround", "BoxReport", "Boxes", "BrownConrady"]
+__all__ += ["Camera", "Choice", "Conditions", "Constraints", "DataSheet", "Evaluator", "FTheta"]
+__all__ += ["Focus", "Front", "Goals", "GroundMap", "GroundSight", "Housing", "InputError"]
 __all__ += ["KannalaBrandt", "Lidar", "Mesh", "MeshAxes", "Method", "Motion", "MountArea"]
 __all__ += ["Mounting", "NoGo", "ObjectClass", "ObjectEvaluator", "ObjectScore", "Objective"]
 __all__ += ["Objects", "Option", "PartScore", "PerceptionModel", "PerceptionSpace", "Pinhole"]
 __all__ += ["Pose", "Prior", "Reach", "Reference", "Rig", "RigEvaluator", "ScanTiming", "Scatter"]
 __all__ += ["Schedule", "Score", "Search", "SearchRun", "SearchSpace", "Selection", "Sensor"]
-__all__ += ["SensorScore", "Sight", "Slot", "SlotMount", "State", "Step", "Study", "SurfaceMount"]
-__all__ += ["TargetRule", "Tolerance", "Vehicle", "Weather", "__version__", "beam_field"]
-__all__ += ["catalog", "cuts_body", "guessed_reference", "load_study", "measure", "measure_objects"]
-__all__ += ["optimize", "requirements", "save_study", "study_from_dict", "study_to_dict"]
+__all__ += ["SensorScore", "Sight", "Slot", "SlotMount", "Start", "State", "Step", "Stop", "Study"]
+__all__ += ["SurfaceMount", "TargetRule", "Tolerance", "Vehicle", "Wanted", "Weather"]
+__all__ += ["__version__", "beam_field", "catalog", "cuts_body", "guessed_reference", "load_study"]
+__all__ += ["measure", "measure_objects", "optimize", "requirements", "save_study"]
+__all__ += ["snap_to_mount", "study_from_dict", "study_to_dict"]

@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pe_core.base.arrays import Floats
-from pe_core.base.errors import InputError, shown
+from pe_core.base.errors import InputError, require_kind, shown
 from pe_core.base.plugins import required_package
 from pe_core.base.values import choice
 from pe_core.scene.rig import Rig, Sensor
 from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.score import PartScore, Score
+from pe_core.sensors import Lidar
 from pe_core.study.study import Study
 
 from .graphics import COVERAGE, ENTROPY, QUANTITIES, cast, fitted_bounds
@@ -64,6 +65,7 @@ def ground(
     step : float
         Side of a cell [m].
     """
+    require_kind("plot", "study", study, Study)
     key = QUANTITY_KEYS[choice("plot", "quantity", quantity, QUANTITY_KEYS)]
     axes = _axes(axes, (8.0, 4.4))
     rig = study.rig if rig is None else rig
@@ -102,6 +104,7 @@ def rig(
     view : {"side", "top", "front"}
         From the right, from above, or from ahead.
     """
+    require_kind("plot", "study", study, Study)
     right, up, _, _ = VIEWS[choice("plot", "view", view, VIEWS)]
     rig = study.rig if rig is None else rig
     points = [np.array([sensor.pose.position for sensor in rig])]
@@ -130,8 +133,7 @@ def beams(study: Study, sensor: str | Sensor, *, axes: Axes | None = None) -> Ax
     sensor : str or Sensor
         A LiDAR of the study's rig by its name, or any other.
     """
-    if isinstance(sensor, str):
-        sensor = study.rig[choice("plot", "sensor", sensor, [s.name for s in study.rig])]
+    sensor = _lidar(study, sensor)
     found = cast(sensor, study.vehicle, MOST_BEAMS)
     axes = _axes(axes, (8.0, 3.6))
     x, y, z = found.directions.T
@@ -153,6 +155,18 @@ def beams(study: Study, sensor: str | Sensor, *, axes: Axes | None = None) -> Ax
     axes.set_xticks(range(-180, 181, 60))
     axes.set_title(f"{sensor.name}: {sensor.model.name}", loc="left", fontsize="medium")
     return _with_legend(axes, markerscale=6)
+
+
+def _lidar(study: Study, sensor: str | Sensor) -> Sensor:
+    """Return a LiDAR, of the study's rig by its name; `InputError` for a sensor that is none."""
+    require_kind("plot", "study", study, Study)
+    if isinstance(sensor, str):
+        sensor = study.rig[choice("plot", "sensor", sensor, [s.name for s in study.rig])]
+    require_kind("plot", "sensor", sensor, Sensor)
+    if not isinstance(sensor.model, Lidar):
+        found = f"{shown(sensor.name)}, a sensor of kind {sensor.kind!r}"
+        raise InputError("plot", "sensor", "a LiDAR, which has beams", found)
+    return sensor
 
 
 def compare(scores: Mapping[str, Score], *, axes: Axes | None = None) -> Axes:

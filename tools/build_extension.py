@@ -223,13 +223,12 @@ def build() -> Path:
 
 
 def check_contents(archive: Path) -> None:
-    """Make sure that engine, page and languages are in: Blender's tool may leave files out."""
+    """Make sure that engine and page are in: Blender's tool may leave files out."""
     with zipfile.ZipFile(archive) as packed:
         names = set(packed.namelist())
     presets = {path.relative_to(ROOT).as_posix() for path in ENGINE.glob("**/*.toml")}
     always = {"__init__.py", "blender_manifest.toml", "LICENSE", "CHANGELOG.md", EXAMPLE}
     always |= {path.relative_to(ROOT).as_posix() for path in TOOLS.glob("page/**/*.[cjh][st]*")}
-    always |= {path.relative_to(ADDON).as_posix() for path in ADDON.glob("languages/*.po")}
     assets = {path.relative_to(ADDON).as_posix() for path in ADDON.glob("assets/*")}
     for wanted in sorted(always | presets | assets):
         if wanted not in names:

@@ -223,7 +223,7 @@ def make(name: str) -> None:
     made = figures(name)
     text = json.dumps(made, indent=2, ensure_ascii=False)
     (FOLDER / name / FIGURES).write_text(text + "\n", "utf-8")
-    command = f"pe optimize examples/{name}/{tried(name)[-1].name}"
+    command = f"pe optimize examples/{name}/{tried(name)[-1].name} -o results"
     page = page_bytes([ReportContext(name.replace("_", " "), outcome, command=command)])
     (FOLDER / name / RESULT).write_bytes(page)
     draw(name)

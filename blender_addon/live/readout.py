@@ -10,8 +10,7 @@ from typing import NamedTuple
 import bpy
 
 from .. import engine_process, viewport
-from ..language import is_simple, plain
-from ..language import shown as in_language
+from ..panel_text import is_simple, plain, typeset
 from ..viewport import FAINT, INK, PLATE, SMALL, Rgba
 from .readout_text import BETTER, WORSE, ReadoutLine, TextPiece, readout_of
 from .state import LiveScore, ShownScore, live_state, shown_score
@@ -81,8 +80,7 @@ def rows_of(score: LiveScore | None, note: str, shown: ShownScore | None) -> lis
     rows = [] if shown is None else _rows_of_score(score, shown)
     if note:
         rows += [
-            TextRow(SMALL, ((line, ALERT),))
-            for line in textwrap.wrap(in_language(note), MAX_COLUMNS)
+            TextRow(SMALL, ((line, ALERT),)) for line in textwrap.wrap(typeset(note), MAX_COLUMNS)
         ]
     return rows or [TextRow(SMALL, (("Live: scoring ...", FAINT),))]
 

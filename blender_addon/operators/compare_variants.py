@@ -9,9 +9,9 @@ from bpy.props import EnumProperty
 
 from .. import bridge, result_staleness, variant_pictures
 from ..engine import advice, pe
-from ..language import draw_label, shown, worded
 from ..live import SENSE_ICONS
 from ..own_jobs import ComparedVariant, CompareJob, PendingVariant
+from ..panel_text import draw_label, worded
 from .declared import INTERNAL, OperatorResult, Told, operator
 from .jobs import JobRow, Task
 from .variants import unless_variants
@@ -85,9 +85,8 @@ def _open(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> Ope
     letters = width // LETTER_PX
     self.said = sentences(self.names, self.rows, letters)
     self.said += wrap(bridge.hardware_note(compared_variants(context.scene)), letters)
-    title, close = shown(self.bl_label), shown("Close")
     return context.window_manager.invoke_props_dialog(
-        self, width=width, title=title, confirm_text=close, translate=False
+        self, width=width, title=self.bl_label, confirm_text="Close", translate=False
     )
 
 

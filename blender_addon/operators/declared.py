@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 import bpy
 from bpy.props import IntProperty
 
-from .. import language, signals
+from .. import signals
 from ..choices import free_name
 from ..engine import pe, text
-from ..translation_context import DEFERRED
+from ..english import DEFERRED
+from ..panel_text import typeset
 
 USER_ERRORS = (pe.InputError, MemoryError)
 """Errors that end an operator with one line: wrong input, and too little memory."""
@@ -111,11 +112,11 @@ def operator(
         def poll(cls: Any, context: bpy.types.Context) -> bool:
             reason = mode if mode and context.mode != "OBJECT" else unless and unless(context)
             if reason:
-                cls.poll_message_set(language.shown(reason))
+                cls.poll_message_set(typeset(reason))
             return reason is None
 
         def description(cls: Any, _context: bpy.types.Context, chosen: Any) -> str:
-            about = language.shown(str(cls.__doc__))
+            about = typeset(str(cls.__doc__))
             return about if tooltip is None else tooltip(about, chosen)
 
         members_of_class: dict[str, Any] = {
@@ -255,9 +256,9 @@ def report_answer(operator: bpy.types.Operator, answer: Answer) -> OperatorResul
 def report(
     operator: bpy.types.Operator, level: Literal["INFO", "WARNING", "ERROR"], text: str
 ) -> None:
-    """Report one line in the interface's language. Characters that would break or reverse the line
+    """Report one line. Characters that would break or reverse the line
     are escaped."""
-    text = language.shown(text[:MAX_LETTERS])
+    text = typeset(text[:MAX_LETTERS])
     printable = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
     operator.report({level}, printable)
 

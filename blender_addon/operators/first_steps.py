@@ -7,7 +7,6 @@ import bpy
 
 from .. import bridge, library
 from ..engine import pe
-from ..language import shown
 from .declared import Failed, OperatorResult, operator
 from .surface_pose import is_part
 
@@ -72,7 +71,7 @@ def _ask_about_changes(self: Any, context: bpy.types.Context, event: Any) -> Ope
     """Ask where the open file has changes that are not saved."""
     if not bpy.data.is_dirty:
         return self.execute(context)
-    message = shown("The open file has changes that are not saved; they are lost")
+    message = "The open file has changes that are not saved; they are lost"
     manager = context.window_manager
     return manager.invoke_confirm(self, event, message=message, translate=False)
 

@@ -12,8 +12,8 @@ import bpy
 
 from .. import bridge, diagnostics, engine_calls, result_staleness, signals, vehicle_cache
 from ..engine import advice, jobs, pe
-from ..language import shown
 from ..live import FinishedScore, live_state
+from ..panel_text import typeset
 from . import known_rigs, running_job
 from .declared import (
     INTERNAL,
@@ -116,7 +116,7 @@ class JobOperator(OperatorMixin):
         elif cls.row.of_scene and context.mode != "OBJECT":
             reason = "Vehicles are scored in Object Mode"
         if reason:
-            cls.poll_message_set(shown(reason))
+            cls.poll_message_set(typeset(reason))
         return reason is None
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:

@@ -19,8 +19,8 @@ from .. import bridge, engine_calls, engine_process, viewport
 from ..choices import free_name
 from ..engine import catalog, graphics, kinds, pe
 from ..engine_calls import Gain
-from ..language import draw_label
 from ..overlay.regions import box_edges
+from ..panel_text import draw_label
 from ..sensor_kinds import mount_for
 from . import running_job
 from .surface_pose import (

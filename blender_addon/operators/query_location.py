@@ -7,7 +7,6 @@ import bpy
 from bpy.props import FloatVectorProperty
 
 from .. import bridge, location_query
-from ..language import shown
 from .declared import INTERNAL, OperatorResult, operator, report
 from .surface_pose import ViewUnderMouse, ray_of, view_under
 
@@ -24,7 +23,7 @@ def clicking(hint: str, once: bool = False) -> dict[str, Any]:
     def begin(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         context.window_manager.modal_handler_add(self)
         context.window.cursor_modal_set("EYEDROPPER")
-        context.workspace.status_text_set(shown(hint))
+        context.workspace.status_text_set(hint)
         return {"RUNNING_MODAL"}
 
     def modal(self: Any, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:

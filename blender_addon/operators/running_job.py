@@ -11,7 +11,7 @@ import bpy
 
 from .. import best_so_far, engine_process, signals, viewport
 from ..engine import jobs, studies
-from ..language import draw_label, shown
+from ..panel_text import draw_label, typeset
 
 TOPIC = "job"
 TICK_S = 0.05
@@ -174,7 +174,7 @@ def draw_status(header: bpy.types.Header, _context: bpy.types.Context) -> None:
         draw_label(row, current.on_escape)
         bar = row.row()
         bar.ui_units_x = STATUS_BAR_WIDTH
-        bar.progress(text=shown(current.text), factor=current.progress.fraction, translate=False)
+        bar.progress(text=typeset(current.text), factor=current.progress.fraction, translate=False)
         row.separator_spacer()
 
 

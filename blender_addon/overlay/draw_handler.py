@@ -14,7 +14,7 @@ from mathutils import Matrix
 
 from .. import body_query, bridge, engine_process, vehicle_cache, viewport
 from ..engine import graphics, pe
-from ..language import is_simple, plain
+from ..panel_text import is_simple, plain
 from . import labels, scheduler, strip, surroundings, wipe
 from .batches import Batches
 from .layer_cache import shown_of

@@ -6,7 +6,7 @@ from typing import Any
 from bpy.types import Context, PropertyGroup, UILayout
 
 from ..engine import sight
-from ..language import draw_label
+from ..panel_text import draw_label
 from .layout import (
     columns,
     draw_declared,

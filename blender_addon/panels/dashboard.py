@@ -4,9 +4,9 @@ from bpy.types import Context, Scene, UILayout
 
 from ..bridge import Result, shown_state, wanted_of
 from ..engine import advice, search
-from ..language import draw_label, is_simple
 from ..live import BETTER, SAME, SENSE_ICONS, WORSE, change_text, shown_score, told_figures
 from ..operators import known_rigs, shown_verdicts
+from ..panel_text import draw_label, is_simple
 from ..sensor_cache import sensors as listed_sensors
 from .layout import columns, draw_sentence
 

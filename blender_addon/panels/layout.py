@@ -11,9 +11,9 @@ import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 
 from ..engine import advice
-from ..language import draw_label, is_simple, shown, worded
 from ..live import SAME, SENSE_ICONS
 from ..operators import FIX_LABELS
+from ..panel_text import draw_label, is_simple, worded
 from ..properties import ROWS, DeclaredRow, declared_rows
 from ..sensor_cache import sensors as listed_sensors
 
@@ -225,11 +225,7 @@ def _room(context: Context, beside_px: float, share: float = 1.0) -> tuple[float
     return max(room, MIN_ROOM_PX * scale), points * scale
 
 
-WIDE = "\u3000-\u30ff\u3400-\u9fff\uff00-\uffef"
-"""Characters of languages without gaps between words: a line may end after any of them."""
-NEVER_FIRST = "\u3001\u3002\u30fb\u30fc\uff09\uff0c\uff1a\uff1b\uff1f\u300d)."
-"""Marks that no line begins with."""
-WORD = re.compile(rf"\s*(?:[{WIDE}]|[^\s{WIDE}]+)[{NEVER_FIRST}]*")
+WORD = re.compile(r"\s*\S+")
 
 
 @lru_cache(maxsize=512)
@@ -301,7 +297,7 @@ def draw_warning(layout: UILayout, context: Context, warning: advice.Advice) -> 
         part.name = warning.part
     if warning.fix in FIX_LABELS:
         mend = row.operator(
-            "pe.mend", text=shown(FIX_LABELS[warning.fix]), icon="TOOL_SETTINGS", translate=False
+            "pe.mend", text=FIX_LABELS[warning.fix], icon="TOOL_SETTINGS", translate=False
         )
         mend.fix, mend.subject = warning.fix, warning.subject or ""
         mend.amount = (*warning.amount, 0.0, 0.0, 0.0)[:3]

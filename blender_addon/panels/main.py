@@ -6,8 +6,8 @@ from bpy.types import Context, PropertyGroup, UILayout
 from .. import where_map
 from ..diagnostics import vehicle_line
 from ..engine import app
-from ..language import draw_label, shown
 from ..operators import offers, running_job
+from ..panel_text import draw_label, typeset
 from ..sensor_cache import sensors as listed_sensors
 from .dashboard import draw_dashboard
 from .layout import columns, draw_declared, draw_sentence, draw_warning, is_empty, panel
@@ -24,7 +24,7 @@ def draw_actions(layout: UILayout, settings: PropertyGroup) -> None:
         row.operator("pe.optimize", icon="ORIENTATION_GIMBAL")
         return
     row.progress(
-        text=shown(running_job.current.text),
+        text=typeset(running_job.current.text),
         factor=running_job.current.progress.fraction,
         translate=False,
     )
@@ -37,7 +37,7 @@ def draw_empty(layout: UILayout) -> None:
     column.scale_y = 1.5
     column.operator("pe.use_selected", icon="RESTRICT_SELECT_OFF")
     column.operator("pe.open_example", icon="FILE_BLEND")
-    link = column.operator("wm.url_open", text=shown("Guide"), translate=False, icon="HELP")
+    link = column.operator("wm.url_open", text="Guide", translate=False, icon="HELP")
     link.url = f"{app.WEBSITE}guide/"
 
 
@@ -130,7 +130,7 @@ def draw_export(menu: bpy.types.Menu, _context: Context) -> None:
     menu.layout.operator("pe.export_study", text="Study (Perception Entropy, .toml)")
     menu.layout.operator("pe.export_rig", text="Rig of Sensors (Perception Entropy)")
     text = "Fields of View and Scene (Perception Entropy)"
-    menu.layout.operator_menu_enum("pe.export_scene", "output", text=shown(text), translate=False)
+    menu.layout.operator_menu_enum("pe.export_scene", "output", text=text, translate=False)
 
 
 def draw_import(menu: bpy.types.Menu, _context: Context) -> None:

@@ -3,7 +3,6 @@
 import bpy
 from bpy.types import Context, UILayout
 
-from ..language import shown
 from ..operators import offers
 
 
@@ -16,7 +15,7 @@ class PE_MT_add(bpy.types.Menu):
     def draw(self, _context: Context) -> None:
         for offer in offers():
             add = self.layout.operator(
-                "pe.add_sensor", text=shown(offer.label), icon="ADD", translate=False
+                "pe.add_sensor", text=offer.label, icon="ADD", translate=False
             )
             add.model = offer.usual
         self.layout.separator()

@@ -5,8 +5,8 @@ from typing import Any
 from bpy.types import Context, PropertyGroup, UILayout
 
 from ..bridge import after_of, full_table
-from ..language import draw_label
 from ..operators import shown_verdicts
+from ..panel_text import draw_label
 from ..properties.requirement import BODIES_ASKED, OF_GROUND
 from .layout import (
     columns,

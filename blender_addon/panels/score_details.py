@@ -4,8 +4,8 @@ from bpy.types import Context, PropertyGroup, UILayout
 
 from .. import body_query, location_query, where_map
 from ..diagnostics import explanation
-from ..language import draw_label
 from ..operators import suggest
+from ..panel_text import draw_label
 from .layout import BUTTON_PX, draw_sentence, draw_stale_mark, panel
 from .sensor_lists import draw_sensor_table
 

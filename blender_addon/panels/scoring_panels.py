@@ -5,7 +5,7 @@ from typing import Any
 from bpy.types import Context, PropertyGroup, UILayout
 
 from ..choices import CUSTOM, FROM_BOXES, OBJECTS, REGIONS
-from ..language import draw_label, shown
+from ..panel_text import draw_label
 from ..sensor_kinds import kind_label, row_of
 from .layout import (
     columns,
@@ -78,7 +78,7 @@ def advanced(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
     if not settings.curves:
         layout.operator("pe.own_curves")
     for curve in settings.curves:
-        layout.prop(curve, "own", text=shown(kind_label(curve.name)), translate=False)
+        layout.prop(curve, "own", text=kind_label(curve.name), translate=False)
         numbers = layout.row(align=True)
         numbers.active = curve.own
         for name in "abc":

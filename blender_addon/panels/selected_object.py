@@ -3,7 +3,7 @@
 from bpy.types import Context, Object, PropertyGroup, UILayout
 
 from ..bridge import holder_of, in_surroundings
-from ..language import draw_label, is_simple, shown
+from ..panel_text import draw_label, is_simple
 from ..properties import AXIS_LABELS
 from .layout import draw_declared, draw_sentence, panel
 
@@ -36,7 +36,7 @@ def sensor(layout: UILayout, _settings: PropertyGroup, context: Context) -> None
     split = layout.split(factor=0.4)
     draw_label(split, "Mounted on")
     mount_name = settings.mount or "Box of Coordinates"
-    split.operator_menu_enum("pe.mount_sensor", "mount", text=shown(mount_name), translate=False)
+    split.operator_menu_enum("pe.mount_sensor", "mount", text=mount_name, translate=False)
     if not is_simple(context.scene):
         layout.prop(settings, "rack")
     draw_label(layout, f"The search may change, for {obj.name}:")
@@ -47,7 +47,7 @@ def sensor(layout: UILayout, _settings: PropertyGroup, context: Context) -> None
     for index, label in enumerate(AXIS_LABELS):
         part = row.row(align=True)
         part.active = index >= len("xyz") or not settings.mount
-        part.prop(settings, "free", index=index, text=shown(label), translate=False, toggle=True)
+        part.prop(settings, "free", index=index, text=label, translate=False, toggle=True)
 
 
 def draw_pose(layout: UILayout, context: Context, obj: Object) -> None:
@@ -65,7 +65,7 @@ def draw_pose(layout: UILayout, context: Context, obj: Object) -> None:
                 any(locks) if obj.parent else locks[index]
             )  # its own frame is not the ground frame
             cell.enabled = not (holder or locked)
-            cell.prop(settings, name, index=index, text=shown(text), translate=False)
+            cell.prop(settings, name, index=index, text=text, translate=False)
     if holder:
         draw_sentence(layout, context, f"Pose is fixed by {holder}", icon="LOCKED")
 
@@ -93,7 +93,7 @@ def bounds(layout: UILayout, _settings: PropertyGroup, context: Context) -> None
             continue
         row = column.row(align=True)
         bounded = settings.bounded[index]
-        text = shown(label if bounded else f"Bound {label}")
+        text = label if bounded else f"Bound {label}"
         button = row.operator("pe.bound_axis", text=text, depress=bounded, translate=False)
         button.axis = index
         if bounded:

@@ -6,7 +6,7 @@ from bpy.types import Context, Object, PropertyGroup, Scene, UILayout
 
 from ..bridge import figures_of_sensor, sensor_loss
 from ..diagnostics import explanation
-from ..language import draw_label, is_simple
+from ..panel_text import draw_label, is_simple
 from ..sensor_cache import sensors as listed_sensors
 from .layout import ICON_PX, fitted, row_list
 

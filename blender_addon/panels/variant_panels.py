@@ -6,8 +6,8 @@ import bpy
 from bpy.types import Context, Object, PropertyGroup, UILayout
 
 from ..choices import BEFORE_MOVE, RANDOM
-from ..language import draw_label, shown
 from ..operators import menu_of_rigs, reference_label
+from ..panel_text import draw_label
 from .layout import (
     columns,
     draw_declared,
@@ -61,7 +61,7 @@ def variants(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
         name, menu = columns(layout, 0.4)
         draw_label(name, "Compare Live With")
         label = reference_label(context.scene)
-        menu.menu(PE_MT_live_against.bl_idname, text=shown(label), translate=False)
+        menu.menu(PE_MT_live_against.bl_idname, text=label, translate=False)
     draw_text(layout)
     layout.prop(selected(settings), "note", text="", icon="TEXT", placeholder="Note")
 
@@ -122,7 +122,7 @@ def draw_state(layout: UILayout, settings: PropertyGroup) -> None:
     update.operator("pe.update_variant", text="Update")
     row = layout.row(align=True)
     row.operator("pe.compare_variants", icon="MOD_ARRAY")
-    row.menu(PE_MT_known_rigs.bl_idname, icon="AUTO", text=shown("Add Rig"), translate=False)
+    row.menu(PE_MT_known_rigs.bl_idname, icon="AUTO", text="Add Rig", translate=False)
 
 
 @panel("Sensor Choices")

@@ -88,6 +88,13 @@ def one_of(names: Iterable[object], given: object) -> str:
     return f"one of {', '.join(ordered)}" if ordered else "no name at all"
 
 
+def require_kind(source: object, field: str, value: object, kind: type) -> None:
+    """Raise `InputError` for a value that is not of a class."""
+    if not isinstance(value, kind):
+        article = "an" if kind.__name__[0] in "AEIOU" else "a"
+        raise InputError(source, field, f"{article} {kind.__name__}", type(value).__name__)
+
+
 def require_name(source: object, field: str, name: object, names: Iterable[str]) -> None:
     """Raise `InputError` for a name that is none of several."""
     if name not in (known := tuple(names)):

@@ -5,13 +5,15 @@ a study must have the same score in every Python, including Blender's.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
-from ..base.values import Angle, Number, degrees_in_file, vector
+from ..base.errors import InputError
+from ..base.values import Angle, Number, degrees_in_file, numbers, vector
 
 FARTHEST_M = 1e4  # Maximum magnitude of a coordinate; kernels rely on it
 TURNS_DEG = 3600.0
@@ -19,6 +21,10 @@ TURNS_DEG = 3600.0
 METRES = Number(-FARTHEST_M, FARTHEST_M, unit="m")
 ROTATION = Angle(-TURNS_DEG, TURNS_DEG)
 ROTATION_DEG = Number(-TURNS_DEG, TURNS_DEG, unit="degrees")
+PROPER_WITHIN = 1e-4
+"""Maximum deviation of a matrix from a rotation: files and single precision round."""
+LAST_ROW = (0.0, 0.0, 0.0, 1.0)
+"""Of a homogeneous matrix that moves columns."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +61,53 @@ class Pose:
         roll, pitch, yaw = (math.radians(d) for d in degrees)
         return cls(position, (roll, pitch, yaw))  # type: ignore[arg-type]  # checked when made
 
+    @classmethod
+    def from_matrix(cls, ground_from_sensor: ArrayLike) -> "Pose":
+        """Return the pose of a homogeneous matrix, ``ground = matrix @ sensor`` on columns.
+
+        `InputError` when the shape is another, the last row is not 0, 0, 0, 1 (as of the transposed
+        matrix), or the rotation scales, shears or mirrors.
+
+        Parameters
+        ----------
+        ground_from_sensor : (4, 4) or (3, 4) float
+            Rotation and position [m] of the sensor's frame: x forward, y left, z up.
+        """
+        matrix = numbers(ground_from_sensor)
+        if matrix is None or matrix.shape not in ((4, 4), (3, 4)):
+            found = "no array of numbers" if matrix is None else f"shape {matrix.shape}"
+            raise InputError("pose", "matrix", "shape (4, 4) or (3, 4)", found)
+        if not np.isfinite(matrix).all():
+            raise InputError("pose", "matrix", "finite numbers", "others")
+        if not (np.abs(matrix[3:] - LAST_ROW) <= PROPER_WITHIN).all():
+            raise InputError("pose", "matrix", "a last row 0, 0, 0, 1", str(matrix[3].tolist()))
+        rotation = checked_rotation("pose", "matrix", matrix[:3, :3])
+        return cls(matrix[:3, 3], rpy_from_matrix(rotation))  # type: ignore[arg-type]
+
+    @classmethod
+    def from_quaternion(cls, position: ArrayLike, wxyz: ArrayLike) -> "Pose":
+        """Return a pose with the rotation of a quaternion.
+
+        `InputError` when a number is missing, or the quaternion is not of length 1.
+
+        Parameters
+        ----------
+        position : (3,) float
+            As of a pose [m].
+        wxyz : (4,) float
+            Unit quaternion, the real part first, from the sensor frame to the ground frame.
+        """
+        rotation = from_quaternion("pose", "wxyz", vector("pose", "wxyz", wxyz, 4))
+        return cls(position, rpy_from_matrix(rotation))  # type: ignore[arg-type]
+
+    @property
+    def matrix(self) -> Floats:
+        """(4, 4) homogeneous matrix from the sensor frame to the ground frame [m]."""
+        matrix = np.eye(4)
+        matrix[:3, :3] = self.ground_from_sensor
+        matrix[:3, 3] = self.position
+        return matrix
+
     @property
     def rotation_deg(self) -> tuple[float, float, float]:
         """Roll, pitch, yaw [deg], rounded so that `from_degrees` restores the same bits."""
@@ -89,6 +142,31 @@ def rpy_from_matrix(rotation: Floats) -> tuple[float, float, float]:
         return 0.0, pitch, math.atan2(-rotation[0, 1], rotation[1, 1])
     roll = math.atan2(rotation[2, 1], rotation[2, 2])
     return roll, pitch, math.atan2(rotation[1, 0], rotation[0, 0])
+
+
+def from_quaternion(source: object, field: str, values: Sequence[float]) -> Floats:
+    """Return the (3, 3) rotation of a quaternion (w, x, y, z), or raise `InputError`."""
+    norm = math.sqrt(sum(v * v for v in values))
+    if not 0.5 < norm < 2.0:
+        raise InputError(source, field, "a quaternion of length 1", f"one of length {norm:g}")
+    w, x, y, z = (v / norm for v in values)
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def checked_rotation(source: object, field: str, rotation: Floats) -> Floats:
+    """Return a (3, 3) rotation; raise `InputError` if it is not a rotation, or if it mirrors."""
+    off = np.abs(rotate(rotation, rotation) - np.eye(3)).max()
+    if not off < PROPER_WITHIN:
+        raise InputError(source, field, "a rotation", f"rows off by {off:.2g} from right angles")
+    if dot(cross(rotation[0], rotation[1]), rotation[2]) < 0.0:
+        raise InputError(source, field, "a right-handed rotation", "a rotation that mirrors")
+    return rotation
 
 
 def rotate(rotation: Floats, points: Floats) -> Floats:

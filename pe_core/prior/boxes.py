@@ -116,13 +116,13 @@ class Boxes(ShortRepr):
     def of(cls, table: Any) -> "Boxes":
         """Return the boxes of a table in memory, yaw in radians.
 
-        `table` is a mapping or a structured array with the columns class, x, y, z, length, width,
-        height, yaw, or a sequence of such rows.
+        `table` is a mapping, a structured array or a data frame (pandas, polars) with the columns
+        class, x, y, z, length, width, height, yaw, or a sequence of such rows, which may be
+        mappings.
         """
-        if isinstance(table, np.ndarray) and table.dtype.names:
-            table = {name: table[name] for name in table.dtype.names}
         if not isinstance(table, Mapping):
-            table = _columns_of(table)
+            names = table.dtype.names if isinstance(table, np.ndarray) else _names_of(table)
+            table = {name: table[name] for name in names} if names else _columns_of(table)
         for name in ("class", *COLUMNS):
             if name not in table:
                 raise InputError("boxes", name, "a column of that name", "none")
@@ -164,6 +164,11 @@ def _boxes(count: int) -> str:
     return "box" if count == 1 else "boxes"
 
 
+def _names_of(table: Any) -> list[str]:
+    """Names of the columns of a data frame; none of anything else."""
+    return list(getattr(table, "columns", ()))
+
+
 def _columns_of(rows: Any) -> dict[str, Sequence[Any]]:
     """Columns of a sequence of rows."""
     names = ("class", *COLUMNS)
@@ -171,10 +176,19 @@ def _columns_of(rows: Any) -> dict[str, Sequence[Any]]:
         raise InputError(
             "boxes", "table", "columns or rows (read_boxes reads a file)", type(rows).__name__
         )
+    if rows and all(isinstance(row, Mapping) for row in rows):
+        rows = [[_cell(i, row, name) for name in names] for i, row in enumerate(rows)]
     for i, row in enumerate(rows):
         if not isinstance(row, Sequence) or isinstance(row, str) or len(row) != len(names):
             raise InputError("boxes", f"box {i}", ", ".join(names), shown(row))
     return {name: [row[k] for row in rows] for k, name in enumerate(names)}
+
+
+def _cell(number: int, row: Mapping[str, Any], name: str) -> Any:
+    """Return a value of a row by its column."""
+    if name not in row:
+        raise InputError("boxes", f"box {number}: {name}", "a value of that name", "none")
+    return row[name]
 
 
 def is_class_name(name: str) -> bool:

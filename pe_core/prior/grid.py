@@ -10,7 +10,7 @@ import numpy as np
 from numpy.lib import format as npy
 
 from ..base.arrays import Floats, read_only_copy
-from ..base.errors import InputError
+from ..base.errors import InputError, require_kind
 from ..base.files import read_bytes
 from ..base.notebook import ShortRepr
 from ..base.values import A_PATH, numbers
@@ -40,8 +40,7 @@ class Grid(ShortRepr):
     digest: str = field(init=False, repr=False, default="")
 
     def __post_init__(self) -> None:
-        if not isinstance(self.space, PerceptionSpace):
-            raise InputError("grid", "space", "a PerceptionSpace", type(self.space).__name__)
+        require_kind("grid", "space", self.space, PerceptionSpace)
         shape, array = self.space.shape, numbers(self.weights)
         if array is None or array.shape not in (shape, shape[:2]):
             found: Any = "no array" if array is None else f"shape {array.shape}"

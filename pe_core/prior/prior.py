@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
-from ..base.errors import InputError, require_memory, require_name, shown
+from ..base.errors import InputError, require_kind, require_memory, require_name, shown
 from ..base.notebook import ShortRepr
 from ..base.setting import NAMES, Pair, Panel, check_settings, required_setting, setting
-from ..base.values import WEIGHT, Number, choice
+from ..base.values import WEIGHT, Number, choice, listed
 from ..geometry.grids import PerceptionSpace
 from .boxes import Boxes, BoxReport, voxelised
 from .classes import (
@@ -136,10 +136,18 @@ class Prior(ShortRepr):
 
     def __post_init__(self) -> None:
         choice("prior", "model", self.model, MODELS)
-        for name in ("classes", "focus"):
-            object.__setattr__(self, name, tuple(getattr(self, name)))
+        for name, kind in (("classes", ObjectClass), ("focus", Focus)):
+            items = listed(getattr(self, name))
+            if items is None:
+                raise InputError("prior", name, "a list", shown(getattr(self, name)))
+            for item in items:
+                require_kind("prior", name, item, kind)
+            object.__setattr__(self, name, tuple(items))
+        if self.boxes is not None:
+            require_kind("prior", "boxes", self.boxes, Boxes)
         if bool(self.classes) != (self.model in SHIPPED):
-            expected = "at least one" if self.model in SHIPPED else f"none with {self.model!r}"
+            shipped = f"at least one, or Prior.{self.model}() for those that are shipped"
+            expected = shipped if self.model in SHIPPED else f"none with {self.model!r}"
             raise InputError("prior", "classes", expected, len(self.classes))
         if bool(self.boxes) != (self.model == FROM_BOXES):
             expected = "at least one" if self.model == FROM_BOXES else f"none with {self.model!r}"

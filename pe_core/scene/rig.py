@@ -13,9 +13,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.errors import InputError, shown
+from ..base.errors import InputError, require_kind, shown
 from ..base.notebook import ShortRepr, Tabular
-from ..base.values import A_NAME, A_TEXT, LENGTH, Number, choice, vector
+from ..base.values import A_NAME, A_TEXT, LENGTH, Number, choice, listed, vector
 from ..geometry.overlap import Hull, meets_box, meets_cylinder, upright_hull
 from ..geometry.poses import Pose, dot, rotate
 from ..metric.entropy import ApCurve, CurveOf, OwnCurve
@@ -82,12 +82,11 @@ class Sensor(ShortRepr):
         who = f"sensor {self.name!r}"
         if not isinstance(self.model, SensorModel):
             raise InputError(who, "model", "the model of a sensor", type(self.model).__name__)
-        if not isinstance(self.pose, Pose):
-            raise InputError(who, "pose", "a Pose", type(self.pose).__name__)
+        require_kind(who, "pose", self.pose, Pose)
         fusion = None if self.fusion in (None, "") else A_NAME.checked(who, "fusion", self.fusion)
         object.__setattr__(self, "fusion", fusion)
-        if not isinstance(self.curve, ApCurve | None):
-            raise InputError(who, "curve", "an ApCurve", type(self.curve).__name__)
+        if self.curve is not None:
+            require_kind(who, "curve", self.curve, ApCurve)
         if self.color is not None and not (
             isinstance(self.color, str) and COLOR.fullmatch(self.color)
         ):
@@ -129,12 +128,14 @@ class Rig(Tabular):
     sensors: Sequence[Sensor]
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "sensors", tuple(self.sensors))
+        sensors = listed(self.sensors)
+        if sensors is None:
+            raise InputError("rig", "sensors", "a list of sensors", shown(self.sensors))
+        object.__setattr__(self, "sensors", tuple(sensors))
         if not self.sensors:
             raise InputError("rig", "sensors", "at least one sensor", "none")
         for sensor in self.sensors:
-            if not isinstance(sensor, Sensor):
-                raise InputError("rig", "sensors", "sensors", type(sensor).__name__)
+            require_kind("rig", "sensors", sensor, Sensor)
         names = Counter(s.name for s in self.sensors)
         if twice := sorted(name for name, count in names.items() if count > 1):
             raise InputError("rig", "sensor name", "a name used once", repr(twice[0]))

@@ -353,15 +353,16 @@ def _shaft_is_empty(vehicle: Vehicle, position: Floats, axis: int, sign: float) 
     return not within.any()
 
 
-def open_side(vehicle: Vehicle, point: Floats, normal: Floats) -> float:
-    """Side of a surface where more rays miss the body: 1.0 along its unit normal (3,), or -1.0."""
+def open_shares(vehicle: Vehicle, point: Floats, normal: Floats) -> tuple[float, float]:
+    """Return which shares of rays from a point (3,) of a surface miss the body: on the side of its
+    unit normal (3,), and on the other."""
     rays = spiral(SIDES, 90.0)
     towards, shares = dot(rays, normal), []
     for side in (1.0, -1.0):
         origin = point + side * LIFT_M * normal
         hits = vehicle.first_hit_from(origin, rays[side * towards > GRAZING])
         shares.append(float(np.mean(np.isinf(hits.distance))))
-    return 1.0 if shares[0] - shares[1] >= 0.0 else -1.0
+    return shares[0], shares[1]
 
 
 @cache

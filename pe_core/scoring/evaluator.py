@@ -13,6 +13,7 @@ from ..prior.prior import Prior
 from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..sensors import PerceptionModel
+from .checks import require_scene
 from .grid_scorer import GridScorer, columns_bytes, require_room_for, require_room_for_samples
 from .sampled_scorer import SampledScorer
 from .sampling import CENTERED, SAMPLES_OR_GRID, Shift
@@ -55,6 +56,7 @@ class Evaluator:
         model: PerceptionModel | None = None,
         workers: int | None = None,
     ) -> None:
+        require_scene("evaluator", space, prior, vehicle)
         samples = SAMPLES_OR_GRID.checked("evaluator", "samples", samples)
         if workers is not None:
             workers = WORKERS.checked("evaluator", "workers", workers)

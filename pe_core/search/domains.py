@@ -11,13 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.arrays import Floats
+from ..base.arrays import Flags, Floats, Ints
 from ..base.errors import InputError, one_of, shown
 from ..geometry.poses import Pose, cross, dot, rotate, rotation_matrix, rpy_from_matrix
 from ..geometry.ray_traversal import TriangleTree
 from ..scene.rig import Housing, Sensor
-from ..scene.vehicle import Vehicle, closest_points, open_side
-from .mounts import AnyMount, SlotMount, SurfaceMount
+from ..scene.vehicle import Vehicle, closest_points, open_shares
+from .mounts import UPRIGHT, AnyMount, SlotMount, SurfaceMount
 
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 POSITION_AXES = AXES[:3]
@@ -32,6 +32,8 @@ ROUNDING_RAD = math.radians(0.5 * 10.0**-ANGLE_DECIMALS_DEG)
 METRE, RADIAN, SHARE = "m", "rad", "share"
 SLACK = 1.0 + 1e-9
 """A search within a computed distance must find that distance again, in spite of rounding."""
+LEVEL_WITHIN = 1e-9
+"""A face at its largest slope may be steeper by rounding [cosine]."""
 PROBED_FACES = 8
 """If so many faces have the same open side, all faces are taken to have it."""
 Bounds = tuple[float, float]
@@ -99,36 +101,57 @@ def variable_of(axis: str, bounds: tuple[float, float]) -> DesignVariable:
 
 
 class MountSurface:
-    """The faces of a mount, which are parts of the vehicle's body or an area of their own.
-    `InputError` when there is no vehicle or no such part, or the parts or the area have no faces.
+    """The faces of a mount, which are parts of the vehicle's body or an area of their own. An
+    upright sensor has those alone whose open side looks up. Which side of a face is open is found
+    when the face is the closest of all for the first time: that takes a millisecond a face.
+
+    `InputError` when there is no vehicle or no such part, the parts or the area have no faces, or
+    none for an upright sensor.
     """
 
     def __init__(self, who: str, mount: SurfaceMount, vehicle: Vehicle | None) -> None:
         self.vehicle, self.triangles = _faces(who, mount, vehicle)
+        self._who, self._mount = who, mount
         self._tree = TriangleTree(self.triangles)
-        self._corners = np.unique(self.triangles.reshape(-1, 3), axis=0)
         self._outward: dict[int, Floats] = {}
         # The side of the probed faces if all agree, as in most meshes; else 0.0.
         probed = np.linspace(0, len(self.triangles) - 1, PROBED_FACES).astype(int)
         sides = {self._side_of(face) for face in np.unique(probed).tolist()}
         self._side = sides.pop() if len(sides) == 1 else 0.0
+        self._usable, self._decided = self._slopes()
+        self._corners = self._usable_corners()
+        self.bounds = self._corners.min(axis=0), self._corners.max(axis=0)
+        """Lowest and highest corner, each (3,) [m]."""
 
     @property
-    def bounds(self) -> tuple[Floats, Floats]:
-        """Lowest and highest corner, each (3,) [m]."""
-        return self._corners.min(axis=0), self._corners.max(axis=0)
+    def faces(self) -> Ints:
+        """(N,) indices of the faces that may carry a sensor, as far as their side is known."""
+        return np.flatnonzero(self._usable)
 
     def closest(self, point: Floats) -> tuple[Floats, int]:
         """Return the point (3,) of the surface that is closest to a point, and its face."""
-        away = self._corners - point
-        reach = float(np.sqrt(dot(away, away).min())) * SLACK + 1e-12
-        near = self._tree.near(point, reach)
-        feet = closest_points(point, self.triangles[near])
-        best = int(np.argmin(dot(feet - point, feet - point)))
-        return feet[best], int(near[best])
+        while True:
+            away = self._corners - point
+            reach = float(np.sqrt(dot(away, away).min())) * SLACK + 1e-12
+            near = self._tree.near(point, reach)
+            near = near[self._usable[near]]
+            feet = closest_points(point, self.triangles[near])
+            best = int(np.argmin(dot(feet - point, feet - point)))
+            if self.carries(face := int(near[best])):
+                return feet[best], face
+            self._corners = self._usable_corners()
+
+    def carries(self, face: int) -> bool:
+        """Whether a sensor of the mount may be on a face: an upright one on none that is steep,
+        looks down or is hidden on both sides."""
+        if not self._decided[face]:
+            self._decided[face] = True
+            self._usable[face] = self._is_open(face) and self.outward(face)[2] >= self._least_up
+        return bool(self._usable[face])
 
     def is_nearer(self, point: Floats, distance: float) -> bool:
-        """Whether the surface is nearer to a point (3,) than a distance [m]."""
+        """Whether the mount's parts or area, all faces of them, are nearer to a point (3,) than a
+        distance [m]."""
         feet = closest_points(point, self.triangles[self._tree.near(point, distance)])
         return bool((dot(feet - point, feet - point) < distance**2).any())
 
@@ -139,6 +162,31 @@ class MountSurface:
             self._outward[face] = side * self._normal(face)
         return self._outward[face]
 
+    @property
+    def _least_up(self) -> float:
+        """The least upward part of an outward unit normal; no normal has less than -1."""
+        is_upright = self._mount.orientation == UPRIGHT
+        return math.cos(self._mount.max_slope if is_upright else math.pi) - LEVEL_WITHIN
+
+    def _slopes(self) -> tuple[Flags, Flags]:
+        """Return (F,) which faces may carry a sensor, and (F,) of which that is sure already."""
+        edges = self.triangles[:, 1:] - self.triangles[:, :1]
+        normals = cross(edges[:, 0], edges[:, 1])
+        up = normals[:, 2] / np.sqrt(dot(normals, normals))
+        if self._side:
+            usable = self._side * up >= self._least_up
+            return usable, np.ones(len(up), dtype=bool)
+        usable = np.abs(up) >= self._least_up
+        return usable, ~usable | (-np.abs(up) >= self._least_up)
+
+    def _usable_corners(self) -> Floats:
+        """(N, 3) corners of the faces that may carry a sensor [m]; `InputError` if none may."""
+        if not self._usable.any():
+            slope = degrees_text(self._mount.max_slope)
+            expected = f"faces that look up and slope at most {slope}, for an upright sensor"
+            raise InputError(self._who, "max_slope", expected, "steeper ones alone, or hidden ones")
+        return np.unique(self.triangles[self._usable].reshape(-1, 3), axis=0)
+
     def _normal(self, face: int) -> Floats:
         """Return the unit normal (3,) of a face; its corners are counter-clockwise round it."""
         corners = self.triangles[face]
@@ -146,9 +194,21 @@ class MountSurface:
         return normal / np.sqrt(dot(normal, normal))
 
     def _side_of(self, face: int) -> float:
-        """Return 1.0 where a face's open side is that of its normal, else -1.0."""
+        """Return 1.0 where a face's open side is that of its normal, else -1.0. A sheet that is as
+        open on both sides has the upper one."""
+        along, against = self._open_shares(face)
+        is_turned = along == against > 0.0 and self._normal(face)[2] < 0.0
+        return -1.0 if along < against or is_turned else 1.0
+
+    def _is_open(self, face: int) -> bool:
+        """Whether rays leave a face on either side."""
+        return max(self._open_shares(face)) > 0.0
+
+    def _open_shares(self, face: int) -> tuple[float, float]:
+        """Return which shares of rays miss the body on the side of a face's normal, and on the
+        other."""
         middle = self.triangles[face].sum(axis=0) / 3.0
-        return open_side(self.vehicle, middle, self._normal(face))
+        return open_shares(self.vehicle, middle, self._normal(face))
 
 
 def _faces(who: str, mount: SurfaceMount, vehicle: Vehicle | None) -> tuple[Vehicle, Floats]:
@@ -245,7 +305,7 @@ class SurfaceDomain:
         foot, face = surface.closest(self.base(pose))
         normal = surface.outward(face)
         rpy: Sequence[float] = pose.rpy
-        if mount.orientation != "upright":
+        if mount.orientation != UPRIGHT:
             frame = frame_of(mount.orientation, normal)
             rpy = rpy_from_matrix(rotate(frame.T, pose.ground_from_sensor.T).T)
         self._angles = start_values(dict(zip(TURNS, rpy, strict=True)), bounds)
@@ -307,7 +367,7 @@ def pose_on(
     the angles relative to the mount's frame there [rad], `point` is `standoff_point`."""
     rotation = rotate(frame_of(mount.orientation, normal), rotation_matrix(*rpy).T).T
     position = foot + mount.standoff * normal - rotate(rotation, point)
-    if mount.orientation != "upright":
+    if mount.orientation != UPRIGHT:
         rpy = rpy_from_matrix(rotation)
     return pose_from_values(dict(zip(AXES, (*position.tolist(), *rpy), strict=True)))
 
@@ -315,7 +375,7 @@ def pose_on(
 def frame_of(orientation: str, normal: Floats) -> Floats:
     """Return the rotation (3, 3), ground from mount, of a mount where the unit normal is (3,)."""
     x, y, z = normal.tolist()
-    if orientation == "upright":
+    if orientation == UPRIGHT:
         return np.eye(3)
     if orientation == "facing":
         return rotation_matrix(0.0, -math.asin(min(max(z, -1.0), 1.0)), math.atan2(y, x))

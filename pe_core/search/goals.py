@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 from ..base.arrays import ReadOnlyDict
-from ..base.errors import InputError, require_name, shown
+from ..base.errors import InputError, require_kind, require_name, shown
 from ..base.setting import NAMES, OneOf, Panel, Several, check_settings, setting
 from ..base.values import A_NAME, Number, Whole, listed
 from ..geometry.poses import Pose
@@ -155,6 +155,10 @@ class Start:
     def __post_init__(self) -> None:
         put = object.__setattr__
         put(self, "name", A_NAME.checked("optimize", "start.name", self.name))
+        if not isinstance(self.poses, Mapping):
+            raise InputError("optimize", "start.poses", "poses by sensor", shown(self.poses))
+        for pose in self.poses.values():
+            require_kind("optimize", "start.poses", pose, Pose)
         put(self, "poses", ReadOnlyDict(self.poses))
 
     @property
@@ -219,8 +223,7 @@ class Goals:
 
     def __post_init__(self) -> None:
         for key, kind in (("stop", Stop), ("front", Front), ("wanted", Wanted)):
-            if not isinstance(value := getattr(self, key), kind):
-                raise InputError("optimize", key, f"a {kind.__name__}", type(value).__name__)
+            require_kind("optimize", key, getattr(self, key), kind)
         starts: Any = listed(self.starts)
         if starts is None or not all(isinstance(each, Start) for each in starts):
             raise InputError("optimize", "start", "a list of starts", shown(self.starts))

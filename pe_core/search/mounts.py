@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from ..base.arrays import Floats, ReadOnlyDict
-from ..base.errors import InputError, one_of, shown
+from ..base.errors import InputError, one_of, require_kind, shown
 from ..base.notebook import ShortRepr
 from ..base.setting import FLAG, OneOf, Pair, Panel, check_settings, setting
-from ..base.values import A_NAME, A_PATH, ANY, LENGTH, Number, listed
+from ..base.values import A_NAME, A_PATH, ANY, LENGTH, Angle, Number, listed
 from ..geometry.poses import Pose
 from ..scene.vehicle import Vehicle
 
@@ -59,7 +59,9 @@ class MountArea(ShortRepr):
         return hash((self.file, self.parts, len(self.triangles)))
 
 
-ORIENTATIONS = ("upright", "normal", "facing")
+UPRIGHT = "upright"
+ORIENTATIONS = (UPRIGHT, "normal", "facing")
+SLOPE = Angle(0.0, 180.0)
 STANDOFF = Number(0.0, 10.0, unit="m")
 DISTANCE = Number(0.0, cap=1e4, unit="m")
 SIDES = Pair(ANY)
@@ -84,6 +86,10 @@ class SurfaceMount:
         surface's normal (a base plate), or to one whose x axis is (a camera in a bumper).
     area : MountArea, optional
         Faces in place of parts: painted in Blender, or with a certain material.
+    max_slope : float
+        With orientation "upright", faces that are steeper than this, measured from level, are no
+        part of the mount: neither the sides of a roof nor its underside carry an upright sensor.
+        From 180 degrees on, all faces are [rad].
     """
 
     parts: Sequence[str] = ()
@@ -108,6 +114,12 @@ class SurfaceMount:
         ),
     )
     area: MountArea | None = None
+    max_slope: float = setting(
+        math.radians(60.0),
+        SLOPE,
+        "Of an upright sensor: steeper faces are no part of the mount; 0 is level, 90 a wall",
+        Panel("max_slope", "Max Slope", precision=1),
+    )
 
     def __post_init__(self) -> None:
         put, who = object.__setattr__, "mount"
@@ -130,8 +142,7 @@ class Slot:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", A_NAME.checked("slot", "name", self.name))
-        if not isinstance(self.pose, Pose):
-            raise InputError("slot", "pose", "a Pose", type(self.pose).__name__)
+        require_kind("slot", "pose", self.pose, Pose)
 
 
 @dataclass(frozen=True, slots=True)

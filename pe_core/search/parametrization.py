@@ -28,6 +28,7 @@ from .domains import (
     pose_from_values,
     pose_text,
     rounded,
+    snap_to_mount,
 )
 from .mounts import Mounting, SlotMount, SurfaceMount
 from .search_space import Rule, SearchSpace, rules_of
@@ -98,6 +99,11 @@ def _links(rig: Rig, mounting: Mounting) -> Iterator[Follower]:
             expected = f"the mirror image of {first!r} across y = 0, {pose_text(image)}"
             raise InputError(f"sensor {second!r}", "position", expected, pose_text(pose))
         yield Follower(second, first)
+    yield from _group_links(rig, mounting)
+
+
+def _group_links(rig: Rig, mounting: Mounting) -> Iterator[Follower]:
+    """Yield the followers of groups, each with its pose relative to its leader."""
     for leader, *follower_names in mounting.groups:
         leader_pose = rig[leader].pose
         leader_from_ground = leader_pose.ground_from_sensor.T
@@ -122,6 +128,36 @@ def _check_names(rig: Rig, mounting: Mounting) -> None:
         if name in mounting.on:
             expected = "no mount for a sensor that follows another"
             raise InputError(f"sensor {name!r}", "mount", expected, shown(mounting.on[name]))
+
+
+def rig_on_mounts(rig: Rig, space: SearchSpace) -> Rig:
+    """Return a rig whose sensors are on their mounts: one that is not takes the nearest pose there.
+    Mirror images and groups follow their leaders. `InputError` as of `Parametrization`."""
+    mounting, surfaces = space.mounting, dict[str, MountSurface]()
+    _check_names(rig, mounting)
+    poses = {sensor.name: _pose_on_mount(sensor, space, surfaces) for sensor in rig}
+    links = [Follower(second, first) for first, second in mounting.pairs]
+    links += _group_links(rig, mounting)
+    for _ in links:  # a leader may follow another
+        for link in links:
+            led = link.pose(poses[link.leader])
+            if not is_same_pose(led, poses[link.name]):
+                poses[link.name] = led
+    return rig.with_poses([poses[sensor.name] for sensor in rig])
+
+
+def _pose_on_mount(sensor: Sensor, space: SearchSpace, surfaces: dict[str, MountSurface]) -> Pose:
+    """Return a sensor's pose if it is on its mount or has none; else the nearest pose there."""
+    mount = space.mounting.mount_of(sensor.name)
+    if mount is None or sensor.name in space.fixed:
+        return sensor.pose
+    try:
+        _domain(sensor, space, surfaces)
+    except InputError as error:
+        if error.field != "position":
+            raise
+        return snap_to_mount(sensor, mount, space.vehicle, space.housings.get(sensor.name))
+    return sensor.pose
 
 
 @dataclass(frozen=True, slots=True)

@@ -102,7 +102,9 @@ class MountingPlaces:
             raise InputError("where", "vehicle", "a vehicle with a surface", "none")
         kind, self._rig, self._sensor, self._vehicle = kind_of(sensor), rig, sensor, vehicle
         self._housings = housings_of([*rig, sensor])
-        self._mount = mount or SurfaceMount(parts or vehicle.part_names, kind.stand_off_m)
+        own_parts = parts or vehicle.part_names
+        anywhere = SurfaceMount(own_parts, kind.stand_off_m, max_slope=math.pi)
+        self._mount = mount or anywhere
         self.surface = MountSurface("where", self._mount, vehicle)
         self._base = standoff_point(self._mount, self._housings.get(sensor.name) if mount else None)
         self._turned = kind.outward(sensor.model) and self._mount.orientation != "facing"
@@ -111,10 +113,14 @@ class MountingPlaces:
         space = SearchSpace({}, Mounting(constraints=constraints), vehicle, self._housings)
         self._rules = rules_of(self.with_sensor(sensor.pose), space, moving, moving, {})
         count = PLACES.checked("where", "places", count)
-        self._points, self._faces = surface_points(self.surface.triangles, count)
+        faces = self.surface.faces
+        self._points, chosen = surface_points(self.surface.triangles[faces], count)
+        self._faces = faces[chosen]
 
     def __iter__(self) -> Iterator[SurfacePlace]:
         for point, face in zip(self._points, self._faces.tolist(), strict=True):
+            if not self.surface.carries(face):
+                continue
             normal = self.surface.outward(face)
             x, y, z = point.tolist()
             pitch, yaw = self._angles(x, y, z) if self._turned else (0.0, 0.0)

@@ -72,8 +72,10 @@ class SearchSpace(ShortRepr):
     fixed: Sequence[str] = ()
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "bounds", ReadOnlyDict(self.bounds))
-        object.__setattr__(self, "housings", ReadOnlyDict(self.housings))
+        for name in ("bounds", "housings"):
+            if not isinstance(table := getattr(self, name), Mapping):
+                raise InputError("search space", name, "a mapping by sensor", shown(table))
+            object.__setattr__(self, name, ReadOnlyDict(table))
 
     @classmethod
     def on_vehicle(

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, TypeVar
 
-from ..base.errors import InputError, require_name, shown
+from ..base.errors import InputError, require_kind, require_name, shown
 from ..base.setting import changed_settings, read_declared, read_settings
 from ..base.table_reader import Table
 from ..base.values import A_NAME
@@ -85,8 +85,7 @@ class Conditions:
         for key, source, kind in (("states", "state", State), ("weathers", "weather", Weather)):
             items = tuple(getattr(self, key))
             for each in items:
-                if not isinstance(each, kind):
-                    raise InputError("study", key, f"a {kind.__name__}", type(each).__name__)
+                require_kind("study", key, each, kind)
             checked_weights(f"[[{source}]]", items)
             object.__setattr__(self, key, items)
         if len(self.all) > MAX_CONDITIONS:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ..base.arrays import ReadOnlyDict
-from ..base.errors import InputError, shown
+from ..base.errors import InputError, require_kind, shown
 from ..base.notebook import ShortRepr, Tabular
 from ..base.setting import OneOf, Panel, check_settings, setting
 from ..base.values import A_NAME, A_PATH, Whole
@@ -53,6 +53,7 @@ from ..search import (
     checked_axes,
     checked_bounds,
     checked_method,
+    rig_on_mounts,
 )
 from ..search.build_figures import housings_of
 from ..search.key_figures import KeyFigures
@@ -180,8 +181,7 @@ class Search(ShortRepr):
         check_settings(self, who)
         for kind in (Schedule, Mounting, Tolerance, Goals):
             name = kind.__name__.lower()
-            if not isinstance(value := getattr(self, name), kind):
-                raise InputError(who, name, f"a {kind.__name__}", type(value).__name__)
+            require_kind(who, name, getattr(self, name), kind)
         known = checked_method(who, self.method or None, self.schedule != Schedule())
         object.__setattr__(self, "method", known)
 
@@ -256,8 +256,8 @@ class Study(Tabular):
         object.__setattr__(self, "requirements", checked_requirements(self.requirements))
         for name, kind in FIELDS.items():
             value = getattr(self, name)
-            if not isinstance(value, kind) and (value is not None or name not in OPTIONAL):
-                raise InputError("study", name, f"a {kind.__name__}", type(value).__name__)
+            if value is not None or name not in OPTIONAL:
+                require_kind("study", name, value, kind)
         if self.vehicle is not None:
             require_vehicle_size("vehicle", self.vehicle)
         if self.mesh is not None:
@@ -448,6 +448,14 @@ class Study(Tabular):
         check_pairs(self.rig, search.mounting)
         where = search.free, search.limits, search.mounting, housings_of(self.rig)
         return SearchSpace.on_vehicle(self.rig, self.vehicle, *where, search.goals.fixed)
+
+    def on_mounts(self) -> "Study":
+        """Return the study with each sensor that is not on its mount at the nearest pose there.
+
+        Sensors that follow others, mirror images and groups, follow. `InputError` where a mount
+        cannot be.
+        """
+        return self.with_rig(rig_on_mounts(self.rig, self.search_space()))
 
     def search_run(self, journal: Iterable[Sequence[Any]] = ()) -> SearchRun:
         """Return the search of this study as a run that is asked and told: `SearchRun`."""

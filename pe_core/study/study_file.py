@@ -88,13 +88,20 @@ MEASUREMENT = ("returns",)  # Settings of a study in [measurement]
 AXES_KEYS = ("scale", "rotation", "up", "forward")
 
 
-def load_study(path: str | Path) -> Study:
+def load_study(path: str | Path, *, starts_anywhere: bool = False) -> Study:
     """Read a study from its TOML file.
 
     `InputError`: one line with the file, the field, what was expected and what was found.
+
+    Parameters
+    ----------
+    starts_anywhere : bool
+        Whether sensors may be off their mounts: `Study.on_mounts` puts them there. Such a study
+        cannot be searched before.
     """
     path = Path(path)
-    return study_from_dict(load_study_data(path), str(path), path.parent)
+    data = load_study_data(path)
+    return study_from_dict(data, str(path), path.parent, starts_anywhere=starts_anywhere)
 
 
 def load_study_data(path: Path) -> dict[str, Any]:
@@ -138,11 +145,16 @@ def read_rig_line(text: str, source: str = "rig") -> Rig:
     return study_from_dict({"sensor": sensors}, source).rig
 
 
-def study_from_dict(data: Any, source: str = "study", folder: Path | None = None) -> Study:
-    """Build a study from the plain data of its file; paths in it are relative to `folder`."""
+def study_from_dict(
+    data: Any, source: str = "study", folder: Path | None = None, *, starts_anywhere: bool = False
+) -> Study:
+    """Build a study from the plain data of its file; paths in it are relative to `folder`. For
+    `starts_anywhere` see `load_study`."""
     table = Table(data, source)
     try:
         study = _read_study(table, folder or Path())
+        if not starts_anywhere:
+            study.coding()  # bounds that do not hold their start are bad input, not a late surprise
     except InputError as error:
         raise error if error.source == source else error.within(source) from None
     table.finish()
@@ -219,7 +231,6 @@ def _read_study(table: Table, folder: Path) -> Study:
     study.designs()
     if study.requirements:
         study.checker()  # zones that cannot be placed are bad input, too
-    study.coding()  # bounds that do not hold their start are bad input, not a late surprise
     return study
 
 

@@ -75,6 +75,8 @@ def add_run_options(parser: argparse.ArgumentParser, *, search: bool) -> None:
     if search:
         about = "go on with the search that was begun in this folder"
         folder.add_argument("--resume", metavar="DIR", help=about)
+        about = "begin with each sensor on its mount: one that is not takes the nearest pose there"
+        parser.add_argument("--snap", action="store_true", help=about)
     parser.add_argument("--json", action="store_true", help="print result.json on stdout")
     add_score_options(parser)
     if search:
@@ -182,6 +184,8 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
     state, weather = getattr(args, "state", None), getattr(args, "weather", None)
     if state or weather:
         study = study.under(study.conditions.one(state, weather))
+    if getattr(args, "snap", False):
+        study = _on_mounts(study)
     search = study.search
     if (samples := getattr(args, "search_samples", None)) is not None:
         search = replace(search, samples=samples)
@@ -198,6 +202,16 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
     elif not has_schedule and own.method == SCHEDULED_METHOD and own.schedule != Schedule():
         tell(f"--method {search.method}: the study's schedule, of {SCHEDULED_METHOD}, is not used")
     return with_goals(replace(study, search=search), args)
+
+
+def _on_mounts(study: Study) -> Study:
+    """Return a study with its sensors on their mounts; those that moved are told."""
+    placed = study.on_mounts()
+    for sensor in placed.rig:
+        if sensor.pose != study.rig[sensor.name].pose:
+            at = ", ".join(f"{value:g}" for value in sensor.pose.position)
+            tell(f"{sensor.name}: put on its mount, at ({at}) m")
+    return placed
 
 
 def with_goals(study: Study, args: argparse.Namespace) -> Study:

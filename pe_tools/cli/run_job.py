@@ -82,9 +82,12 @@ def run_study(
     """Score or optimize a study, as `args.kind` says, and return what is printed. Results go to the
     folder of ``--output``; with ``--resume`` a search or a front goes on in that folder. `host` has
     versions of the host program, `more` its files, and `notes` its warnings about the study.
-    `InputError`, before the work, where a folder cannot take the results, or holds the search of
-    another study."""
+    `InputError`, before the work, where a search has nowhere to keep its result, or a folder cannot
+    take the results, or holds the search of another study."""
     searches, folder = args.kind == "optimize", args.output
+    if searches and not (folder or args.resume or args.json):
+        expected = "-o DIR, a folder for what the search finds, or --json"
+        raise InputError("command line", "output", expected, "neither")
     is_front = searches and jobs.has_front(study)
     if searches and args.review:
         more = (*more, *(front_pages if is_front else pages))

@@ -139,7 +139,7 @@ def _add_plugin_verbs(point: EntryPoint, verbs: Any) -> None:
 
 def _study(path: str, args: argparse.Namespace) -> Study:
     """Read a study, with the changes of the options; what they do not find in it names its file."""
-    study = load_study(path)
+    study = load_study(path, starts_anywhere=getattr(args, "snap", False))
     try:
         return with_options(study, args)
     except InputError as error:

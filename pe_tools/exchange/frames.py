@@ -17,6 +17,8 @@ from pe_core.base.errors import InputError
 from pe_core.base.files import is_reserved
 from pe_core.base.values import vector
 from pe_core.geometry.poses import METRES, Pose, rpy_from_matrix
+from pe_core.geometry.poses import checked_rotation as checked_rotation
+from pe_core.geometry.poses import from_quaternion as from_quaternion
 from pe_core.scene.vehicle_description import Reference
 
 from .foreign_values import MAX_FRAMES, FileTexts, require_at_most
@@ -34,7 +36,6 @@ BODY_FROM_RIGHT_FORWARD = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0
 
 GROUND, REAR_AXLE_GROUND, REAR_AXLE = "ground", "rear axle on the ground", "rear axle"
 """Origins: of the ground frame; the middle of the rear axle on the ground; the middle itself."""
-PROPER_WITHIN = 1e-6  # Maximum deviation of a matrix from a rotation
 ASKING = "calibration"  # Source of messages on poses that a program hands over
 OPTICAL = "_optical"  # Suffix of the name of a camera's optical frame
 ILLEGAL, ILLEGAL_IN_TF = (re.compile(f"[^A-Za-z0-9_{more}]+") for more in ("", "/"))
@@ -77,31 +78,6 @@ def quaternion(rotation: Floats) -> Quaternion:
     sign = -1.0 if halves[0] < 0.0 else 1.0
     w, x, y, z = (sign * value for value in halves)
     return w, x, y, z
-
-
-def from_quaternion(source: object, field: str, values: Sequence[float]) -> Floats:
-    """Return the (3, 3) rotation of a quaternion (w, x, y, z), or raise `InputError`."""
-    norm = math.sqrt(sum(v * v for v in values))
-    if not 0.5 < norm < 2.0:
-        raise InputError(source, field, "a quaternion of length 1", f"one of length {norm:g}")
-    w, x, y, z = (v / norm for v in values)
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
-
-
-def checked_rotation(source: object, field: str, rotation: Floats) -> Floats:
-    """Return a (3, 3) rotation; raise `InputError` if it is not a rotation, or if it mirrors."""
-    off = np.abs(product(rotation, rotation.T) - np.eye(3)).max()
-    if not off < PROPER_WITHIN * 100:
-        raise InputError(source, field, "a rotation", f"rows off by {off:.2g} from right angles")
-    if np.linalg.det(rotation) < 0.0:
-        raise InputError(source, field, "a right-handed rotation", "a rotation that mirrors")
-    return rotation
 
 
 def pose_of(rotation: Floats, position: Sequence[float]) -> Pose:

@@ -16,9 +16,11 @@ from pe_core.search import (
     DesignSearch,
     EvaluatedRig,
     Journal,
+    KeyFigures,
     Objective,
     Picks,
     Stop,
+    Wanted,
     above_front,
     pareto_front,
 )
@@ -40,7 +42,7 @@ from .front_objectives import (
     spread,
     weights_of,
 )
-from .job import Job, Progress
+from .job import Job, Progress, ProgressSteps
 from .score_and_optimize import OptimizeJob
 from .trade_off import Design, TradeOff, design_names, design_study
 
@@ -399,6 +401,15 @@ class _DesignJob(OptimizeJob):
 
     def _evaluator_of(self, samples: int) -> RigEvaluator:
         return self.evaluators.searching(samples)
+
+    def _figures(
+        self, rigs: Sequence[Rig], waiting: Progress
+    ) -> ProgressSteps[tuple[KeyFigures, ...]]:
+        """Return the key figures only where some are wanted: a design shows its objectives."""
+        goals = self.study.search.goals
+        if goals.keep or goals.wanted != Wanted():
+            return (yield from super()._figures(rigs, waiting))
+        return ()
 
     def _candidate_workers(self) -> AbstractContextManager[ExecutorSource]:
         return nullcontext(self._parent.helpers(self._objectives))

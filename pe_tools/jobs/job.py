@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
-from pe_core.base.errors import InputError
+from pe_core.base.errors import InputError, require_kind
 from pe_core.base.lazy_threads import threads
 from pe_core.base.notebook import Tabular
 from pe_core.base.plugins import optional_package
@@ -300,6 +300,7 @@ class Job:
     kept: tuple[str, ...] = ()  # Attributes that a new job of the same study resumes from
 
     def __init__(self, study: Study, workers: int | None = None) -> None:
+        require_kind("job", "study", study, Study)
         self.study, self.workers = study, workers
         self.outcome: Outcome | None = None
         self.inputs: dict[str, Any] | None = None

@@ -1,6 +1,6 @@
 """The table of a sweep, one row for each run: as CSV, as JSON and for the terminal."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -8,6 +8,8 @@ from typing import Any
 from pe_core.base.errors import InputError
 from pe_core.base.files import csv_text, read_bytes
 from pe_core.base.table_reader import dump_json, finite, parse_json
+from pe_core.search.build_figures import BUILD_FIGURES
+from pe_core.search.key_figures import KEPT, KEY_FIGURES, NO_FIGURE, REQUIREMENTS, KeyFigures
 from pe_core.study import RESULT
 from pe_core.study.study import EXPECTED_AP
 from pe_core.version import __version__
@@ -20,6 +22,9 @@ SWEEP_CSV, SWEEP_JSON = "sweep.csv", "sweep.json"
 WAITING, BEGUN, DONE, FAILED = "waiting", "begun", "done", "failed"
 UNWRITTEN = "not written"  # The status of a run whose results could not be written
 BEST = "*"
+BEFORE = "_before"
+"""Ends the name of a column of the given study, beside that of the result."""
+OVER_FRAMES, CHECKED = "entropy_over_frames", "requirements_checked"
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +32,8 @@ class SweepRow:
     """The state of a run. One that is "begun" may have a checkpoint of its search in its folder,
     one that is "done" has its results there. Entropies are those of the given study and of the
     result [nats]; `message` is why the run failed or was not written, or where its results are. APs
-    are expected ones in traffic, of a search by them."""
+    are expected ones in traffic, of a search by them. `figures` are the key figures of the given
+    study and of the result; `met` tells how many of how many requirements the result meets."""
 
     run: SweepRun
     status: str = WAITING
@@ -37,6 +43,13 @@ class SweepRow:
     message: str = ""
     ap_before: float | None = None
     ap: float | None = None
+    figures: tuple[KeyFigures, KeyFigures] | None = None
+    met: tuple[int, int] | None = None
+
+    @property
+    def figures_after(self) -> KeyFigures | None:
+        """The key figures of the result, if they are known."""
+        return None if self.figures is None else self.figures[1]
 
 
 def row_of(
@@ -46,8 +59,20 @@ def row_of(
     if isinstance(result, InputError):
         return SweepRow(run, FAILED, message=str(result))
     before, after = result.before, result.after
-    aps = (None, None) if result.in_traffic is None else tuple(o.ap for o in result.in_traffic)
-    return SweepRow(run, status, before.entropy, after.entropy, after.coverage, message, *aps)
+    ap_before, ap = (o.ap for o in result.in_traffic) if result.in_traffic else (None, None)
+    met = [verdict.met for verdict in result.verdicts]
+    return SweepRow(
+        run,
+        status,
+        before.entropy,
+        after.entropy,
+        after.coverage,
+        message,
+        ap_before,
+        ap,
+        figures=result.figures,
+        met=(sum(met), len(met)) if met else None,
+    )
 
 
 def row_of_result(run: SweepRun, folder: Path, kind: str) -> SweepRow | None:
@@ -61,15 +86,36 @@ def row_of_result(run: SweepRun, folder: Path, kind: str) -> SweepRow | None:
             return None
         before, entropy = float(data["before"]["entropy"]), float(data["entropy"])
         found = data.get(EXPECTED_AP)
-        aps = () if found is None else [float(found[k]["ap"]) for k in ("before", "after")]
-        return SweepRow(run, DONE, before, entropy, float(data["coverage"]), "", *aps)
-    except (KeyError, TypeError, ValueError):
+        ends = ("before", "after")
+        aps = [None if found is None else float(found[end]["ap"]) for end in ends]
+        met = [bool(verdict["met"]) for verdict in data.get("requirements", ())]
+        return SweepRow(
+            run,
+            DONE,
+            before,
+            entropy,
+            float(data["coverage"]),
+            "",
+            aps[0],
+            aps[1],
+            figures=_read_figures(data.get("figures")),
+            met=(sum(met), len(met)) if met else None,
+        )
+    except (AttributeError, KeyError, TypeError, ValueError):
         return None
+
+
+def _read_figures(data: Mapping[str, Any] | None) -> tuple[KeyFigures, KeyFigures] | None:
+    """Return the key figures of a result's data, if it has them."""
+    if data is None:
+        return None
+    return KeyFigures.from_dict(data["before"]), KeyFigures.from_dict(data["after"])
 
 
 def table_data(rows: Sequence[SweepRow], kind: str) -> dict[str, Any]:
     """Return what sweep.json holds."""
-    return {"kind": f"sweep of {kind}", "version": __version__, "runs": [_dict(r) for r in rows]}
+    runs = [_dict(row, kind) for row in rows]
+    return {"kind": f"sweep of {kind}", "version": __version__, "runs": runs}
 
 
 def write_table(rows: Sequence[SweepRow], kind: str, folder: Path) -> dict[str, Any]:
@@ -77,19 +123,23 @@ def write_table(rows: Sequence[SweepRow], kind: str, folder: Path) -> dict[str, 
     folder cannot be written, or one of the files is of another program."""
     data = table_data(rows, kind)
     with FileSet(prepare_folder(folder)) as files:
-        files.add(SWEEP_CSV, csv_text(_table(rows)).encode(errors="backslashreplace"))
+        files.add(SWEEP_CSV, csv_text(_table(rows, kind)).encode(errors="backslashreplace"))
         files.add(SWEEP_JSON, dump_json(finite(data)).encode(errors="backslashreplace"))
     return data
 
 
 def table_lines(rows: Sequence[SweepRow], kind: str) -> list[str]:
-    """Return the lines of the table for the terminal; lowest entropy and highest AP are marked."""
+    """Return the lines of the table for the terminal: key figures are those of the results. Lowest
+    entropy and highest AP are marked."""
     keys, several = _keys(rows), len({row.run.study_name for row in rows}) > 1
     heads = [*["study"] * several, *keys, *["start"] * (kind != "score"), "entropy", "coverage"]
     lowest = min((r.entropy for r in rows if r.entropy is not None), default=None)
     highest = max((r.ap for r in rows if r.ap is not None), default=None)
     texts = len(heads) - 2 - (kind != "score")
     heads += ["start", "expected AP"] * (highest is not None)
+    known = [key for key in KEPT if any(_value(key, row.figures_after) is not None for row in rows)]
+    checked = any(row.met for row in rows)
+    heads += [KEY_FIGURES[key].name for key in known] + [REQUIREMENTS] * checked
     table = [heads]
     for row in rows:
         before = [_figure(row.before)] if kind != "score" else []
@@ -99,7 +149,9 @@ def table_lines(rows: Sequence[SweepRow], kind: str) -> list[str]:
         named = [*[row.run.study_name] * several, *(row.run.changes.get(k, "") for k in keys)]
         best = BEST if row.ap is not None and row.ap == highest else " "
         aps = [_figure(row.ap_before), f"{_figure(row.ap)}{best}"] * (highest is not None)
-        table.append([*named, *before, entropy, coverage, *aps])
+        met = [NO_FIGURE if row.met is None else f"{row.met[0]} of {row.met[1]} met"] * checked
+        cells = [_cell(key, row.figures_after) for key in known]
+        table.append([*named, *before, entropy, coverage, *aps, *cells, *met])
     return aligned(table, range(texts, len(table[0])))
 
 
@@ -107,11 +159,35 @@ def _figure(value: float | None) -> str:
     return "-" if value is None else f"{value:.3f}"
 
 
+def _value(key: str, figures: KeyFigures | None) -> float | None:
+    return KEY_FIGURES[key].value(figures)
+
+
+def _cell(key: str, figures: KeyFigures | None) -> str:
+    """Return a key figure with its unit, as the dashboard has it."""
+    row = KEY_FIGURES[key]
+    return row.text(row.value(figures), figures is not None and row.is_cut(figures))
+
+
 def _keys(rows: Sequence[SweepRow]) -> list[str]:
     return list(dict.fromkeys(key for row in rows for key in row.run.changes))
 
 
-def _dict(row: SweepRow) -> dict[str, Any]:
+def _key_figures(figures: KeyFigures | None) -> dict[str, float | None]:
+    """Return the figures by the names of their columns; what can be built is the last."""
+    found = {key: _value(key, figures) for key in KEPT}
+    found[OVER_FRAMES] = None if figures is None else figures.over_frames
+    return found | {key: figures.built.get(key) if figures else None for key in BUILD_FIGURES}
+
+
+def _dict(row: SweepRow, kind: str) -> dict[str, Any]:
+    """Return a run as plain data; figures that are not known are left out."""
+    before, after = row.figures or (None, None)
+    columns = {f"{EXPECTED_AP}{BEFORE}": row.ap_before, EXPECTED_AP: row.ap, **_key_figures(after)}
+    if kind != "score":
+        columns |= {f"{key}{BEFORE}": value for key, value in _key_figures(before).items()}
+    if row.met is not None:
+        columns |= {REQUIREMENTS: row.met[0], CHECKED: row.met[1]}
     return {
         "run": row.run.name,
         "study": row.run.study_name,
@@ -121,19 +197,18 @@ def _dict(row: SweepRow) -> dict[str, Any]:
         "entropy": row.entropy,
         "coverage": row.coverage,
         "message": row.message,
-        **({} if row.ap is None else {f"{EXPECTED_AP}_before": row.ap_before, EXPECTED_AP: row.ap}),
+        **{key: value for key, value in columns.items() if value is not None},
     }
 
 
-def _table(rows: Sequence[SweepRow]) -> list[list[object]]:
+def _table(rows: Sequence[SweepRow], kind: str) -> list[list[object]]:
     """Return the table: the names of its columns, and a line for each run."""
-    keys = _keys(rows)
-    figures = ["status", "entropy_before", "entropy", "coverage", "message"]
-    if any(row.ap is not None for row in rows):
-        figures += [f"{EXPECTED_AP}_before", EXPECTED_AP]
+    keys, runs = _keys(rows), [_dict(row, kind) for row in rows]
+    own = ("run", "study", "changes")
+    figures = list(dict.fromkeys(name for data in runs for name in data if name not in own))
     lines: list[list[object]] = [["run", "study", *keys, *figures]]
-    for row in rows:
-        data, changes = _dict(row), row.run.changes
+    for row, data in zip(rows, runs, strict=True):
+        changes = row.run.changes
         named = [data["run"], data["study"], *(changes.get(key, "") for key in keys)]
         lines.append([*named, *(data.get(f) for f in figures)])
     return lines

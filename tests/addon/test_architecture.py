@@ -29,8 +29,8 @@ signals:
 choices:
 sensor_kinds: engine
 view_settings: choices engine
-translation_context:
-language: choices engine translation_context
+english:
+panel_text: choices
 own_catalog: engine
 properties: bridge choices engine sensor_kinds signals view_settings
 bridge: choices engine sensor_kinds
@@ -43,7 +43,7 @@ engine_process: analysis_calls engine overlay
 vehicle_cache: bridge engine
 change_events: sensor_cache signals vehicle_cache
 consistency: bridge sensor_cache
-viewport: language
+viewport: panel_text
 result_staleness: bridge sensor_cache signals vehicle_cache
 diagnostics: analysis_calls bridge engine engine_process sensor_cache signals vehicle_cache
 location_query: bridge engine engine_process sensor_cache signals vehicle_cache
@@ -51,9 +51,8 @@ body_query: analysis_calls bridge choices engine engine_process sensor_cache veh
 where_map: bridge engine signals
 housing: engine sensor_cache sensor_kinds
 library:
-preferences_panel: engine language library own_catalog properties
-    signals translation_context
-live: analysis_calls bridge change_events choices engine engine_calls engine_process language
+preferences_panel: engine library own_catalog panel_text properties signals
+live: analysis_calls bridge change_events choices engine engine_calls engine_process panel_text
     sensor_cache signals vehicle_cache viewport
 best_so_far: engine
 variant_pictures:
@@ -63,13 +62,13 @@ overlay.snapshot: best_so_far bridge choices engine live location_query overlay 
 overlay.scheduler: analysis_calls engine engine_process overlay overlay.snapshot sensor_cache
     viewport
 overlay.surroundings: engine overlay viewport
-overlay.draw_handler: body_query bridge engine engine_process language overlay
-    overlay.scheduler overlay.surroundings vehicle_cache viewport
+overlay.draw_handler: body_query bridge engine engine_process overlay overlay.scheduler
+    overlay.surroundings panel_text vehicle_cache viewport
 operators: best_so_far body_query bridge choices diagnostics engine engine_calls engine_process
-    film housing language library live location_query overlay overlay.scheduler
-    overlay.surroundings own_jobs properties result_staleness sensor_cache sensor_kinds signals
-    translation_context variant_pictures vehicle_cache view_settings viewport where_map
-panels: body_query bridge choices diagnostics engine language live location_query operators
+    english film housing library live location_query overlay overlay.scheduler
+    overlay.surroundings own_jobs panel_text properties result_staleness sensor_cache sensor_kinds
+    signals variant_pictures vehicle_cache view_settings viewport where_map
+panels: body_query bridge choices diagnostics engine live location_query operators panel_text
     properties sensor_cache sensor_kinds where_map
 commands: bridge engine film result_staleness
 wiring: body_query bridge change_events consistency diagnostics engine_process housing live
@@ -77,8 +76,8 @@ wiring: body_query bridge change_events consistency diagnostics engine_process h
     signals variant_pictures vehicle_cache viewport where_map
 __main__: __init__ commands engine
 __init__: best_so_far body_query change_events commands consistency diagnostics engine_process
-    language library live location_query operators overlay.draw_handler panels preferences_panel
-    properties sensor_cache translation_context variant_pictures vehicle_cache where_map wiring
+    english library live location_query operators overlay.draw_handler panels preferences_panel
+    properties sensor_cache variant_pictures vehicle_cache where_map wiring
 """
 """What each module or package may import. What stands below a package is part of it, unless it has
 a line of its own."""

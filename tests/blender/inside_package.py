@@ -7,10 +7,9 @@ from pathlib import Path
 import addon_utils
 import bpy
 from bl_ext.user_default import perception_entropy
-from bl_ext.user_default.perception_entropy import language, translation_context
+from bl_ext.user_default.perception_entropy import english
 
 ADDON = "bl_ext.user_default.perception_entropy"
-CONTEXT = translation_context.CONTEXT
 OPERATORS = ("add_sensor", "score", "optimize", "export_study", "render_review")
 
 
@@ -49,30 +48,30 @@ def state() -> dict[str, list[str]]:
 
 
 def names() -> set[str]:
-    """Return the names of all that is registered."""
-    names_of = translation_context.names_of
-    return {text for cls in perception_entropy.CLASSES for text in names_of(cls)} - {""}
+    """Return the labels of all classes, and the names of their properties and items of menus."""
+    texts = {getattr(cls, "bl_label", "") for cls in perception_entropy.CLASSES}
+    for cls in perception_entropy.CLASSES:
+        for declared in english.own_properties(cls).values():
+            items = declared.keywords.get("items", ())
+            texts |= {declared.keywords.get("name", "")}
+            texts |= set() if callable(items) else {item[1] for item in items}
+    return texts - {""}
 
 
-def shown(code: str) -> dict[str, object]:
-    """Return what differs from our catalogue in a language, and what the same words are else."""
-    locale = next(each for each in bpy.app.translations.locales if each.startswith(code))
-    view.language = locale
-    catalog, gettext = language.catalog(code), bpy.app.translations
-    iface = gettext.pgettext_iface
-    words = {each: iface(each, CONTEXT) for each in names()}
-    own = {each: catalog.get(each, each) for each in words}
-    others = {each: iface(each) for each in words if iface(each) not in (each, own[each])}
+def translated(code: str) -> dict[str, object]:
+    """Return our names that Blender translates in a language: in our context, and in its own."""
+    view.language = next(each for each in bpy.app.translations.locales if each.startswith(code))
+    iface = bpy.app.translations.pgettext_iface
     return {
-        "names": len(words),
-        "wrong_names": {each: word for each, word in words.items() if word != own[each]},
-        "other_words_of_blender": others,
+        "names": len(names()),
+        "in_our_context": [each for each in names() if iface(each, english.CONTEXT) != each],
+        "in_blender_s": [each for each in names() if iface(each) != each],
     }
 
 
 view = bpy.context.preferences.view
 view.use_translate_interface = view.use_translate_tooltips = True
-report = {"languages": {code: shown(code) for code in language.LANGUAGES}}
+report = {"translated": {code: translated(code) for code in ("de", "ja", "zh")}}
 view.language = "en_US"
 report["registered"] = state()
 addon_utils.disable(ADDON)

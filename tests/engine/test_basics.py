@@ -25,6 +25,63 @@ def test_angles_come_back_from_the_matrix():
         assert rpy_from_matrix(pose.ground_from_sensor) == pytest.approx(rpy, abs=1e-9)
 
 
+def test_a_pose_is_the_same_from_a_matrix_and_from_a_quaternion():
+    """A quarter turn to the left, by hand: x becomes y, and (w, x, y, z) is (1, 0, 0, 1) / sqrt 2;
+    turns about y and x likewise, and any rotation there and back."""
+    half = math.sqrt(0.5)
+    turns = (
+        ((0, 0, 90), (half, 0, 0, half)),
+        ((0, 90, 0), (half, 0, half, 0)),
+        ((90, 0, 0), (half, half, 0, 0)),
+    )
+    for degrees, wxyz in turns:
+        wanted = pe.Pose.from_degrees((1, 2, 3), degrees)
+        found = pe.Pose.from_quaternion((1, 2, 3), wxyz)
+        assert np.allclose(found.matrix, wanted.matrix, atol=1e-12)
+    by_hand = [[0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]
+    left = pe.Pose.from_matrix(by_hand)
+    assert left.position == (1, 2, 3) and left.rotation_deg == pytest.approx((0, 0, 90))
+    rng = np.random.default_rng(1)
+    for _ in range(50):
+        pose = pe.Pose(rng.uniform(-9, 9, 3), rng.uniform(-1, 1, 3) * (math.pi, 1.5, math.pi))
+        single = np.float32(pose.matrix)
+        for given in (pose.matrix, pose.matrix[:3], pose.matrix.tolist(), single):
+            back = pe.Pose.from_matrix(given)
+            assert np.allclose(back.matrix, pose.matrix, atol=1e-5 if given is single else 1e-12)
+
+
+MATRIX = np.eye(4)
+MATRIX[:3, 3] = (1.0, 2.0, 3.0)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        MATRIX.T,  # of row vectors
+        MATRIX * (1, 1, -1, 1),  # mirrors
+        MATRIX * (2, 2, 2, 1),  # scales
+        np.add(MATRIX, [[0, 0.1, 0, 0], *np.zeros((3, 4))]),  # shears
+        MATRIX[:3, :3],
+        np.full((4, 4), np.nan),
+        np.diag([1, 1, 1, np.inf]),
+        "matrix",
+        [[1, 0], [0]],
+        None,
+    ],
+)
+def test_a_matrix_that_is_no_pose_is_refused(wrong):
+    with pytest.raises(pe.InputError, match="pose: matrix"):
+        pe.Pose.from_matrix(wrong)
+
+
+@pytest.mark.parametrize(
+    "wrong", [(0, 0, 0, 0), (1, 0, 0), "wxyz", (np.nan, 0, 0, 1), (5, 0, 0, 0)]
+)
+def test_a_quaternion_that_is_no_rotation_is_refused(wrong):
+    with pytest.raises(pe.InputError, match="pose: wxyz"):
+        pe.Pose.from_quaternion((0, 0, 0), wrong)
+
+
 def test_every_entry_of_the_catalogue_loads_and_says_its_source():
     for name in pe.catalog.names():
         model = pe.catalog.load(name)

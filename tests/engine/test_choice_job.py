@@ -9,7 +9,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.search import EvaluatedRig
+from pe_core.search import EvaluatedRig, KeyFigures
 from pe_core.study import SEARCH
 from pe_tools import advice, jobs
 from pe_tools.cli import run_job, verbs
@@ -88,6 +88,22 @@ def test_more_designs_are_looked_at_first_and_the_front_is_the_same(monkeypatch)
     assert found.searched < every.searched == 5
     assert [(d.name, d.entropy) for d in found.front] == [(d.name, d.entropy) for d in every.front]
     assert found.is_complete
+
+
+@pytest.mark.parametrize("keep", [(), ("blind_ground",)])
+def test_key_figures_of_designs_are_computed_only_where_some_are_wanted(monkeypatch, keep):
+    """A front shows its objectives alone; the other figures took most of the time of a search."""
+    computed = []
+
+    def of_rig(*_):
+        computed.append(1)
+        raise pe.InputError("space", "z", "the ground", "none")
+
+    monkeypatch.setattr(KeyFigures, "of_rig", of_rig)
+    given = study([pe.Choice(options(), ["roof"])], free=())
+    goals = pe.Goals(keep=keep)
+    found = front_of(replace(given, search=replace(given.search, goals=goals)))
+    assert len(found.designs) == 3 and bool(computed) == bool(keep)
 
 
 def test_a_stop_keeps_the_front_so_far():

@@ -27,6 +27,20 @@ def test_json_is_one_document_and_nothing_else(study, capsys):
     assert data["after"] == loaded.evaluator().score(loaded.rig).to_dict()
 
 
+def test_a_search_that_would_keep_nothing_is_refused_before_it_begins(study, capsys, tmp_path):
+    """It once searched for minutes and printed the result alone. With --json stdout has all."""
+    before = set(tmp_path.rglob("*"))
+    assert main(["optimize", str(study), "--evaluations", "1000000"]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("pe: command line: output: expected -o DIR") and "--json" in line
+    few = ("--evaluations", "2", "--sensitivity", "off", "--no-review")
+    assert main(["optimize", str(study), "--method", "portfolio", *few, "--json"]) == 0
+    assert "placements" in json.loads(capsys.readouterr().out)
+    assert set(tmp_path.rglob("*")) == before
+    with pytest.raises(SystemExit):  # a sweep asks for its folder likewise
+        main(["sweep", str(study)])
+
+
 def test_a_schedule_of_another_method_is_refused_and_one_that_is_left_out_is_told(
     study, tmp_path, capsys
 ):

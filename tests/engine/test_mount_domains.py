@@ -224,3 +224,49 @@ def test_of_two_slots_with_one_pose_the_start_is_in_the_first():
     poses = [pe.Pose((1.0, 0.0, 1.6)), pe.Pose.from_degrees(ON_ROOF), pe.Pose.from_degrees(ON_ROOF)]
     slots = pe.SlotMount([pe.Slot(name, pose) for name, pose in zip("abc", poses, strict=True)])
     assert coded(can(), mount={"roof": slots}).start.vector == (0.5,)
+
+
+SLAB = (
+    shapes.box((-2.0, -0.9, 0.2), (2.0, 0.9, 1.2)),
+    shapes.box((-1.2, -0.7, 1.3), (0.8, 0.7, 1.4)),
+)
+"""A body, and a roof 0.1 m thick that floats 0.1 m above it."""
+
+
+def slab(turned):
+    """The body and the closed roof; `turned` faces of the roof have their corners the other way."""
+    roof_faces = np.where(turned[:, None, None], SLAB[1][:, ::-1], SLAB[1])
+    parts = np.repeat(np.arange(2, dtype=np.int32), [len(SLAB[0]), len(roof_faces)])
+    return pe.Vehicle(np.concatenate([SLAB[0], roof_faces]), parts, ("body", "roof"))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_an_upright_sensor_stands_on_top_of_a_slab_whichever_way_its_faces_turn(seed):
+    """Every place of the space is projected onto the top, 1.4 m high: no side, no underside."""
+    rng = np.random.default_rng(seed)
+    turned = rng.random(len(SLAB[1])) < (0.0, 1.0, 0.5, 0.2, 0.8, 0.5)[seed]
+    model = shapes.small_lidar(4, 90)  # its housing is not known: nothing else would keep it off
+    start = pe.Sensor("roof", model, pe.Pose((0.0, 0.0, 1.44)))
+    rig, space = mounting.space(start, mount={"roof": roof()}, vehicle=slab(turned))
+    coding = Parametrization(rig, space)
+    for point in rng.uniform((-3.0, -2.0, 0.0), (3.0, 2.0, 2.0), (200, 3)):
+        x, y, z = coding.candidate((*point, 0.0)).rig["roof"].pose.position
+        assert z == pytest.approx(1.44, abs=1e-5), point
+        assert -1.2 <= x <= 0.8 and -0.7 <= y <= 0.7, point
+
+
+def test_a_slope_says_which_faces_an_upright_sensor_may_have():
+    """A wall slopes by 90 degrees: it is refused by default, with the slope to ask for."""
+    start = pe.Sensor("front", shapes.small_lidar(4, 90), pe.Pose((2.34, 0.0, 0.6)))
+    for slope in (60.0, 89.0):
+        mount = pe.SurfaceMount(["front"], 0.04, max_slope=np.radians(slope))
+        with pytest.raises(pe.InputError, match=f"max_slope: .* {slope:g} deg"):
+            Parametrization(*mounting.space(start, mount={"front": mount}))
+    mount = pe.SurfaceMount(["front"], 0.04, max_slope=np.radians(90.0))
+    coding = Parametrization(*mounting.space(start, mount={"front": mount}))
+    pose = coding.candidate((2.3, 0.3, 0.5, 0.0)).rig["front"].pose
+    assert pose.position == pytest.approx((2.34, 0.3, 0.5)) and pose.rpy == (0.0, 0.0, 0.0)
+    for turned in ("normal", "facing"):  # such a sensor turns with the face
+        where = start if turned == "normal" else start.moved(pe.Pose((2.34, 0.0, 0.6)))
+        whole = pe.SurfaceMount(["front"], 0.04, turned)
+        assert snap_to_mount(where, whole, mounting.car()).position[0] == pytest.approx(2.34)

@@ -146,7 +146,7 @@ def test_a_sweep_leaves_each_run_and_a_table(study, out, capsys):
     argv = ["sweep", str(study), "--set", "sensor.roof.position.2=1.7,1.9", "--optimize"]
     assert main([*argv, "-o", str(out), "--workers", "1"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0].split() == ["sensor.roof.position.2", "start", "entropy", "coverage"]
+    assert lines[0].split()[:4] == ["sensor.roof.position.2", "start", "entropy", "coverage"]
     assert sum("*" in line for line in lines[1:]) == 1 and len(lines) == 3
     data = json.loads((out / "sweep.json").read_text())
     for row, told in zip(table(out), data["runs"], strict=True):
@@ -178,6 +178,34 @@ def test_a_sweep_goes_on_and_does_nothing_twice(study, out, capsys):
     (out / "car,samples=0" / "study.toml").unlink()
     assert main([*argv, "samples=1024", "--seed", "9"]) == 0
     assert "already" not in capsys.readouterr().err, "of another study"
+
+
+def test_the_table_has_all_figures_that_were_computed(study, out, capsys):
+    """Those of the dashboard of each run's result, before a search as well; the same after the
+    same command has read them again."""
+    text = study.read_text().replace(
+        "[optimize]", '[[requirement]]\nname = "behind"\npreset = "r158_detection"\n[optimize]', 1
+    )
+    study.write_text(text)
+    argv = ["sweep", str(study), "--optimize", "--set", "optimize.seed=1,2", "-o", str(out)]
+    assert main([*argv, "--workers", "1"]) == 0
+    first, shown = table(out), capsys.readouterr().out
+    known = 0
+    for row in first:
+        result = json.loads((out / row["run"] / "result.json").read_text())
+        for each in result["dashboard"]:
+            key, value = each["figure"], each["value"]
+            assert float(row[key]) == value if value is not None else key not in row, key
+            known += value is not None
+        before = result["figures"]["before"]
+        assert float(row["blind_ground_before"]) == before["blind_m2"]
+        assert row["requirements_checked"] == "1"
+        built = result["figures"]["after"]["built"]
+        assert built and all(float(row[key]) == value for key, value in built.items())
+    assert known > 8
+    assert "blind ground" in shown and " of 1 met" in shown
+    assert main(argv) == 0
+    assert table(out) == first and capsys.readouterr().out == shown
 
 
 def test_a_run_that_fails_is_named_and_the_others_are_kept(study, out, capsys):

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from ...base.errors import InputError, shown
+from ...base.errors import InputError, require_kind, shown
 from ...base.notebook import ShortRepr
 from ...base.setting import FLAG, NAMES, Panel, check_settings, setting, settings_of
 from ...base.values import A_NAME, A_TEXT, SHARE, Number, Whole
@@ -203,9 +203,7 @@ class Requirement(ShortRepr):
         who = f"requirement {self.name!r}"
         put(self, "bodies", tuple(self.bodies))
         for key, kind in (("zone", Zone), ("criterion", Criterion), ("under", Under)):
-            if not isinstance(getattr(self, key), kind):
-                found = type(getattr(self, key)).__name__
-                raise InputError(who, key, f"a {kind.__name__}", found)
+            require_kind(who, key, getattr(self, key), kind)
         for key in ("source", "check"):
             if getattr(self, key):
                 A_TEXT.checked(who, key, getattr(self, key))

@@ -19,6 +19,7 @@ from ...prior.prior import ClassDensity, Prior
 from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
 from ...sensors import PerceptionModel
+from ..checks import require_scene
 from ..evaluator import Evaluator
 from ..sampling import CENTERED, Shift, VoxelSample, draw
 from ..scenarios import fused_early
@@ -96,6 +97,7 @@ class Sight:
         samples: int = 0,
         shift: Shift = CENTERED,
     ) -> None:
+        require_scene("sight", space, prior, vehicle)
         self.space, self.prior, self.vehicle = space, prior, vehicle
         self.frames = frames or Frames()
         self.targets = targets or TargetRule()

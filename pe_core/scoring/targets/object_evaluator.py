@@ -16,6 +16,7 @@ from ...prior.prior import Prior
 from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
 from ...sensors import ObjectMeasurementCache, PerceptionModel, kind_of
+from ..checks import require_scene
 from ..scenarios import Scenarios
 from ..score import ObjectScore, Score, ScoreProgress, SensorScore, TrafficAp, Watch
 from .object_metric import FusedObjects, LoneObjects, ObjectSums
@@ -54,6 +55,7 @@ class ObjectEvaluator:
         model: PerceptionModel | None = None,
         shift: float = CENTERED,
     ) -> None:
+        require_scene("evaluator", space, prior, vehicle)
         self.space, self.prior, self.vehicle = space, prior, vehicle
         self.targets = targets or TargetRule(OBJECTS)
         self._model, self._shift = model or PerceptionModel(), shift

@@ -2,7 +2,7 @@
 
 const RISE = 26, GAP = 3, LONGEST = 28;
 
-let texts = {};  // of the page's language; all views of a page have the same
+let texts = {};  // of the page; all views of a page have the same
 
 function textWith(key, name) {
   return texts[key].replace("{name}", () => name);

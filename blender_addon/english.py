@@ -1,24 +1,23 @@
-"""The context in which Blender looks our texts up.
+"""Names of the panel stay English, whatever the language of Blender's interface.
 
-A text of Blender's own contexts is looked up in Blender's catalogue first: where that has the same
-word, its translation wins, be it of another meaning: "Range" of numbers, or "Key" of an animation.
-No catalogue but ours has this context.
+Blender looks names up in its own catalogue: "Range" would become a German word beside names that
+the catalogue lacks. In a context that no catalogue has, Blender finds no word and shows the name.
 """
 
-from collections.abc import Iterator
 from inspect import get_annotations
 from typing import Any, get_type_hints
 
 import bpy
 
 CONTEXT = "Perception Entropy"
+"""The context of our names. No catalogue has it."""
 DEFERRED = type(bpy.props.BoolProperty())
 """What a declared property is until its class is registered."""
 LABELLED = (bpy.types.Operator, bpy.types.Panel, bpy.types.Menu)
 """Classes with labels of their own."""
 
 
-def in_own_context(cls: type) -> None:
+def keep_english(cls: type) -> None:
     """Put the label of a class and the names of its properties into our context."""
     if issubclass(cls, LABELLED):
         cls.bl_translation_context = CONTEXT
@@ -38,18 +37,3 @@ def own_properties(cls: type) -> dict[str, Any]:
         for name, each in declared.items()
         if name in names and isinstance(each, DEFERRED)
     }
-
-
-def names_of(cls: type) -> Iterator[str]:
-    """Yield the texts of a class that Blender looks up: its label, names and items of menus."""
-    if issubclass(cls, LABELLED):
-        yield getattr(cls, "bl_label", "")
-    for declared in own_properties(cls).values():
-        yield declared.keywords.get("name", "")
-        yield from (item[1] for item in _items(declared))
-
-
-def _items(declared: Any) -> tuple[tuple[Any, ...], ...]:
-    """Return the items of a menu that are known beforehand."""
-    items = declared.keywords.get("items", ())
-    return () if callable(items) else tuple(items)

@@ -1,4 +1,4 @@
-"""The interface in other languages: names that fit, and where Blender looks them up."""
+"""The panel is English in a Blender of any language: nothing is looked up in its catalogue."""
 
 import ast
 from pathlib import Path
@@ -6,26 +6,8 @@ from pathlib import Path
 import bpy
 
 import blender_addon
-from blender_addon import language, translation_context
-from blender_addon.panels import main
-from blender_addon.translation_context import CONTEXT
-from tests.addon import layouts, scenes
-
-
-def test_the_panel_is_in_the_language_of_the_interface(addon, monkeypatch):
-    """Labels are translated; a text without a translation is English."""
-    monkeypatch.setattr(language, "current", lambda: "de")
-    scenes.add_car(bpy.context.scene)
-    shown = layouts.drawn(main.main, **vars(layouts.Window(bpy.context.scene)))
-    assert "Noch keine Sensoren" in shown.texts("label")
-    assert language.shown("Added roof: 4 sensors") == "Added roof: 4 sensors"
-
-
-def test_locales_of_blender_have_their_languages():
-    of = language.language_of_locale
-    assert [of(x) for x in ("de_DE", "ja_JP", "zh_HANS", "zh_HANT", "en_US", "")] == [
-        *("de", "ja", "zh", "", "", "")
-    ]
+from blender_addon import english
+from blender_addon.english import CONTEXT
 
 
 def rna_of(cls):
@@ -36,14 +18,14 @@ def rna_of(cls):
 
 
 def test_every_name_is_looked_up_in_our_context_where_blender_has_no_word(addon):
-    """In contexts of its own Blender has "Range" and "Key" of other meanings, and these win."""
-    labelled = [c for c in blender_addon.CLASSES if issubclass(c, translation_context.LABELLED)]
+    """In contexts of its own Blender translates "Range" and "Key"."""
+    labelled = [c for c in blender_addon.CLASSES if issubclass(c, english.LABELLED)]
     assert len(labelled) > 90
     assert {cls.bl_translation_context for cls in labelled} == {CONTEXT}
     operators = [cls for cls in labelled if issubclass(cls, bpy.types.Operator)]
     assert {rna_of(cls).translation_context for cls in operators} == {CONTEXT}
     for cls in blender_addon.CLASSES:
-        declared = translation_context.own_properties(cls).keys() - {"name"}  # Blender's own name
+        declared = english.own_properties(cls).keys() - {"name"}  # Blender's own name
         contexts = {each: rna_of(cls).properties[each].translation_context for each in declared}
         assert set(contexts.values()) <= {CONTEXT}, (cls, contexts)
 
@@ -77,7 +59,7 @@ def left_to_blender(tree):
 
 
 def test_no_text_is_left_to_blender_s_own_catalogue():
-    """It would win, and also translate a sensor that is named Front."""
+    """It would also translate a sensor that is named Front."""
     found = left_to_blender(ast.parse('layout.label(text="Range"); row.operator("a", text=name)'))
     assert len(list(found)) == 2
     package = Path(blender_addon.__file__).parent

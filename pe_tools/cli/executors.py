@@ -75,8 +75,8 @@ class ExecutorWorkers(LocalWorkers):
 
     def __init__(self, named: str, count: int) -> None:
         module, function = named.split(":")
-        if "" not in sys.path:
-            sys.path.insert(0, "")  # as for `python -m`: modules beside the study
+        if os.getcwd() not in sys.path:
+            sys.path.append(os.getcwd())  # last: a file beside the study replaces no other module
         try:
             made = getattr(importlib.import_module(module), function)()
         except Exception as error:  # whatever a module of the user's raises

@@ -17,7 +17,7 @@ from pe_core.base.spawning import (
     beginning,
     packages_around,
     pipe_errors,
-    signals_blocked,
+    starting_processes,
     without_main,
 )
 
@@ -291,7 +291,7 @@ class EngineProcess:
         with there:
             process = context.Process(target=exec, args=(code, {"arguments": (there,)}))
             try:
-                with without_main(), signals_blocked(), pipe_errors():
+                with without_main(), starting_processes(), pipe_errors():
                     process.start()
             except BaseException:
                 here.close()

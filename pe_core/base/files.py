@@ -19,6 +19,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from .errors import InputError, require_memory, size_text
+from .input_files import note_input, refuse_input
 
 MESH_BYTES = 2 << 30
 LABEL_BYTES = 2 << 30
@@ -62,6 +63,7 @@ def read_bytes(path: Path, max_bytes: int = TEXT_BYTES) -> bytes:
     """
     try:
         _require_regular(path, os.stat(path), "a readable file")
+        note_input(path)
         return _read(path, max_bytes)
     except FileNotFoundError as error:
         raise InputError(str(path), "", "", "no such file") from error
@@ -83,29 +85,20 @@ def named_path(source: object, field: str, text: str) -> Path:
     return Path(text)
 
 
-def require_new(path: Path, *, replace: bool, inputs: Iterable[Path] = ()) -> None:
+def require_new(path: Path, *, replace: bool) -> None:
     """Refuse an output that would replace a file unasked: the one rule for files that a user names.
 
     Whatever has the name counts, a link that leads nowhere, too. (A folder of results has
     `FileSet`, which also replaces what this program wrote there.)
 
     `replace`: Whether the user has agreed to replace a file of that name.
-    `inputs`: Files that the output is made from; none of them is ever replaced.
 
-    `InputError` when there is something of that name, or it is an input.
+    `InputError` when there is something of that name, or the command has read it.
     """
-    if any(_is_same(path, given) for given in inputs):
-        raise InputError(path, "file", "another file than the input", "the input")
+    refuse_input(path)
     if os.path.lexists(path) and not replace:
         found = "an existing file" if os.path.exists(path) else "a link that leads nowhere"
         raise InputError(path, "file", "a new file, or --replace", found)
-
-
-def _is_same(path: Path, other: Path) -> bool:
-    try:
-        return os.path.samefile(path, other)
-    except (OSError, ValueError):
-        return False
 
 
 def write_bytes(path: Path, data: bytes) -> None:
@@ -171,8 +164,10 @@ def put_in_place(moves: Mapping[Path, Path]) -> None:
 
     The files are on the disk, each in the folder of its new name. Where the file system has no hard
     links, a rename that fails leaves the earlier ones. `InputError` when one of them cannot be
-    renamed: the old files are back then.
+    renamed, or would replace an input: the old files are back then.
     """
+    for path in moves.values():
+        refuse_input(path)
     old: dict[Path, Path] = {}
     new: list[Path] = []
     try:

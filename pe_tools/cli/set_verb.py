@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from pe_core.base.errors import InputError, shown
 from pe_core.base.files import decode_text, read_bytes, write_bytes
+from pe_core.base.input_files import not_noting_inputs
 from pe_core.base.table_reader import dotted, inline, load_toml
 from pe_core.study import study_from_dict
 
@@ -28,6 +29,7 @@ def add_set_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("changes", nargs="+", metavar="KEY=VALUE", help=about)
 
 
+@not_noting_inputs()
 def set_keys(args: argparse.Namespace) -> Answer:
     """Change keys of a study file, all or none; the changed study is checked before it is written.
     `InputError` when a key or a value does not fit the study, or stands where only an editor can

@@ -10,6 +10,7 @@ from typing import Any
 
 from pe_core.base.errors import InputError, shown
 from pe_core.base.files import read_bytes
+from pe_core.base.input_files import not_noting_inputs
 from pe_core.base.table_reader import load_toml, parse_json
 from pe_core.search import EvaluatedRig, Journal
 from pe_core.study.file_names import SEARCH, STUDY
@@ -70,6 +71,7 @@ class BegunSearch:
         return Journal(self.of_study(study).evaluated, str(self.path))
 
 
+@not_noting_inputs()
 def read_search(folder: str | Path) -> BegunSearch:
     """Read the state of a search, or of those of a front, from the folder of its results.
     `InputError` if there is no state, it is damaged or of another version, or a mesh or boxes

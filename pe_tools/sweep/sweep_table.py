@@ -7,6 +7,7 @@ from typing import Any
 
 from pe_core.base.errors import InputError
 from pe_core.base.files import csv_text, read_bytes
+from pe_core.base.input_files import not_noting_inputs
 from pe_core.base.table_reader import dump_json, finite, parse_json
 from pe_core.study import RESULT
 from pe_core.study.study import EXPECTED_AP
@@ -50,6 +51,7 @@ def row_of(
     return SweepRow(run, status, before.entropy, after.entropy, after.coverage, message, *aps)
 
 
+@not_noting_inputs()
 def row_of_result(run: SweepRun, folder: Path, kind: str) -> SweepRow | None:
     """Return the row of a run whose result is in its folder already; None otherwise. The result
     must be complete, of this study and kind, and of this version."""

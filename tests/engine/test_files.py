@@ -16,12 +16,14 @@ from pe_core.base.files import (
     csv_text,
     file_stem,
     is_reserved,
+    put_in_place,
     read_bytes,
     require_new,
     unmarked,
     write_all_bytes,
     write_bytes,
 )
+from pe_core.base.input_files import not_noting_inputs, noting_inputs
 
 resource = pytest.importorskip("resource")
 
@@ -173,7 +175,7 @@ def test_a_file_is_on_the_disk_before_its_name_counts_and_its_folder_after(tmp_p
 def test_the_rule_for_outputs(tmp_path):
     """A name that is free, or one that the user gives away; a link counts, an input never goes."""
     path, link, loop = (tmp_path / name for name in ("mine", "link", "loop"))
-    require_new(path, replace=False, inputs=[path])
+    require_new(path, replace=False)
     path.write_bytes(b"mine")
     link.symlink_to("nowhere")
     loop.symlink_to("loop")
@@ -183,7 +185,30 @@ def test_the_rule_for_outputs(tmp_path):
         require_new(each, replace=True)
     (tmp_path / "also").symlink_to("mine")
     with pytest.raises(InputError, match="another file than the input"):
-        require_new(tmp_path / "also", replace=True, inputs=[path])
+        with noting_inputs():
+            read_bytes(path)
+            require_new(tmp_path / "also", replace=True)
+
+
+def test_no_writer_replaces_what_a_command_has_read(tmp_path):
+    """Under any of its names; files that are read to be changed are none of its inputs."""
+    path, other, link = (tmp_path / name for name in ("mine", "other", "link"))
+    path.write_bytes(b"mine")
+    link.hardlink_to(path)
+    with noting_inputs():
+        read_bytes(path)
+        for name in (path, link):
+            with pytest.raises(InputError, match="another file than the input"):
+                write_all_bytes({other: b"new", name: b"new"})
+            with pytest.raises(InputError, match="another file than the input"):
+                put_in_place({other: name})
+        assert not other.exists() and path.read_bytes() == b"mine"
+        write_bytes(other, b"made")
+        with not_noting_inputs():
+            read_bytes(other)
+        write_bytes(other, b"changed")
+    write_bytes(path, b"changed")
+    assert (path.read_bytes(), other.read_bytes()) == (b"changed", b"changed")
 
 
 FORMULAS = ('=HYPERLINK("http://a.b","c")', "+cmd", "-1+A1", "@SUM(A1)", "'=1", "\t=1", "＝1")

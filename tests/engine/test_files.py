@@ -184,10 +184,9 @@ def test_the_rule_for_outputs(tmp_path):
             require_new(each, replace=False)
         require_new(each, replace=True)
     (tmp_path / "also").symlink_to("mine")
-    with pytest.raises(InputError, match="another file than the input"):
-        with noting_inputs():
-            read_bytes(path)
-            require_new(tmp_path / "also", replace=True)
+    with pytest.raises(InputError, match="another file than the input"), noting_inputs():
+        read_bytes(path)
+        require_new(tmp_path / "also", replace=True)
 
 
 def test_no_writer_replaces_what_a_command_has_read(tmp_path):

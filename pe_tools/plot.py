@@ -119,7 +119,9 @@ def rig(
         start = np.asarray(sensor.pose.position)
         end = start + BORESIGHT_M * sensor.pose.ground_from_sensor[:, 0]
         axes.plot(*zip(start[[right, up]], end[[right, up]], strict=True), color=color, lw=2)
-        axes.plot(start[right], start[up], "o", color=color, mec="white", ms=8, label=sensor.name)
+        axes.plot(
+            start[right], start[up], "o", color=color, mec="white", ms=8, label=_plain(sensor.name)
+        )
     axes.set(xlabel=LABELS[right], ylabel=LABELS[up], aspect="equal")
     axes.margins(0.08)
     return _with_legend(axes)
@@ -149,11 +151,11 @@ def beams(study: Study, sensor: str | Sensor, *, axes: Axes | None = None) -> Ax
     groups.append((np.isin(part, by_size[len(PALETTE) - 1 :]), "other parts", GREY))
     for member, name, color in groups:
         if member.any():
-            label = f"{name}, {100.0 * member.mean():.2g} %"
+            label = f"{_plain(name)}, {100.0 * member.mean():.2g} %"
             axes.plot(azimuth[member], elevation[member], ".", ms=1.6, color=color, label=label)
     axes.set(xlabel="azimuth, to the left [deg]", ylabel="elevation [deg]", xlim=(180, -180))
     axes.set_xticks(range(-180, 181, 60))
-    axes.set_title(f"{sensor.name}: {sensor.model.name}", loc="left", fontsize="medium")
+    axes.set_title(_plain(f"{sensor.name}: {sensor.model.name}"), loc="left", fontsize="medium")
     return _with_legend(axes, markerscale=6)
 
 
@@ -190,8 +192,10 @@ def compare(scores: Mapping[str, Score], *, axes: Axes | None = None) -> Axes:
     axes.hlines(rows, low, high, color=GREY, lw=1.5, alpha=0.6, zorder=1)
     for number, (name, row) in enumerate(zip(scores, values, strict=True)):
         color = PALETTE[number % len(PALETTE)]
-        axes.plot(row, rows, "o", color=color, mec="white", ms=8, label=name)
-    axes.set(yticks=rows, yticklabels=names, xlabel="entropy [nats], lower is better")
+        axes.plot(row, rows, "o", color=color, mec="white", ms=8, label=_plain(name))
+    axes.set(
+        yticks=rows, yticklabels=[*map(_plain, names)], xlabel="entropy [nats], lower is better"
+    )
     axes.invert_yaxis()
     axes.grid(axis="x", alpha=0.3)
     return _with_legend(axes)
@@ -201,6 +205,11 @@ def _entropies(score: Score) -> dict[str, float]:
     """Return entropies by row: of the rig, its zones and classes [nats]."""
     parts: dict[str, PartScore] = {**score.per_zone, **score.per_class}
     return {"rig": score.entropy, **{name: part.entropy for name, part in parts.items()}}
+
+
+def _plain(name: str) -> str:
+    """Return a name as a text that matplotlib does not take for mathematics."""
+    return name.replace("$", r"\$")
 
 
 def _axes(axes: Axes | None, size: tuple[float, float]) -> Axes:

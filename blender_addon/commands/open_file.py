@@ -12,7 +12,7 @@ from typing import TextIO
 import bpy
 
 from .. import bridge, result_staleness
-from ..engine import app, jobs, pe, studies
+from ..engine import app, jobs, pe, studies, text
 
 
 def opened_study(variant: str | None = None) -> pe.Study:
@@ -43,6 +43,8 @@ def opened_scene() -> bpy.types.Scene:
     if not path:
         expected = "an existing .blend file before --command"
         raise pe.InputError("blender", "file", expected, "none opened")
+    for file in (path, *bpy.utils.blend_paths(absolute=True)):  # linked files, pictures
+        text.note_input(file)
     if scene.perception_entropy.vehicle is None and not bridge.sensor_objects(scene):
         expected = "a vehicle collection and sensors, set in the tab Perception"
         raise pe.InputError(path, f"scene {scene.name!r}", expected, "neither")

@@ -63,8 +63,8 @@ def drive_by_scene(args: argparse.Namespace) -> app.Answer:
     args.story += args.stories
     if path.suffix not in film.FORMATS:
         return app.drive_by_study(study, args)
-    text.require_new(path, replace=args.replace)
     story, *others = app.chosen_stories(study, args.story)
+    text.require_new(path, replace=args.replace)
     if others:
         raise pe.InputError("drive-by", "story", "one for a film", 1 + len(others))
     args.output = None

@@ -3,6 +3,7 @@
 from .arrays import Flags, Floats, Ints, Singles
 from .errors import available_bytes, require_memory
 from .files import csv_text, decode_text, named_path, read_bytes, require_new, write_bytes
+from .input_files import note_input
 from .recent_cache import RecentCache
 from .table_reader import Table, dump_json, dumps, parse_json
 from .values import Name, Number

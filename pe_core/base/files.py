@@ -17,9 +17,11 @@ import time
 import unicodedata
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from difflib import SequenceMatcher
 from pathlib import Path
 
 from .errors import InputError, require_memory, size_text
+from .input_files import note_input, refuse_input
 
 MESH_BYTES = 2 << 30
 LABEL_BYTES = 2 << 30
@@ -46,6 +48,8 @@ END_WAIT_S, END_POLL_S = 5.0, 0.01
 """How long a process that ends at once waits for a file that a thread is writing."""
 NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 """Each digit can match in one way only: otherwise the time would grow with the square of a text."""
+LINES = re.compile(r"[^\r\n]*(?:\r\n|\r|\n)|[^\r\n]+")
+"""Lines with their ends; at other characters, as U+2028, no file of ours has lines."""
 MAX_QUOTE = 40
 MARK = "'"
 _FORMULA = re.compile(rf"{MARK}*[#=+\-@\t\r\uff1d\uff0b\uff0d\uff20]")
@@ -65,6 +69,7 @@ def read_bytes(path: Path, max_bytes: int = TEXT_BYTES) -> bytes:
     """
     try:
         _require_regular(path, os.stat(path), "a readable file")
+        note_input(path)
         return _read(path, max_bytes)
     except FileNotFoundError as error:
         raise InputError(str(path), "", "", "no such file") from error
@@ -86,29 +91,20 @@ def named_path(source: object, field: str, text: str) -> Path:
     return Path(text)
 
 
-def require_new(path: Path, *, replace: bool, inputs: Iterable[Path] = ()) -> None:
+def require_new(path: Path, *, replace: bool) -> None:
     """Refuse an output that would replace a file unasked: the one rule for files that a user names.
 
     Whatever has the name counts, a link that leads nowhere, too. (A folder of results has
     `FileSet`, which also replaces what this program wrote there.)
 
     `replace`: Whether the user has agreed to replace a file of that name.
-    `inputs`: Files that the output is made from; none of them is ever replaced.
 
-    `InputError` when there is something of that name, or it is an input.
+    `InputError` when there is something of that name, or the command has read it.
     """
-    if any(_is_same(path, given) for given in inputs):
-        raise InputError(path, "file", "another file than the input", "the input")
+    refuse_input(path)
     if os.path.lexists(path) and not replace:
         found = "an existing file" if os.path.exists(path) else "a link that leads nowhere"
         raise InputError(path, "file", "a new file, or --replace", found)
-
-
-def _is_same(path: Path, other: Path) -> bool:
-    try:
-        return os.path.samefile(path, other)
-    except (OSError, ValueError):
-        return False
 
 
 def write_bytes(path: Path, data: bytes) -> None:
@@ -125,12 +121,13 @@ def write_bytes(path: Path, data: bytes) -> None:
 def write_all_bytes(files: Mapping[Path, bytes]) -> None:
     """Write several files; if one of them cannot be written, all old files stay as they were.
 
-    A folder, pipe or device of such a name is refused, not replaced. All files are on the disk when
-    the function returns.
+    A folder, pipe or device of such a name is refused, not replaced. A link to a file stays: the
+    file that it leads to is written. All files are on the disk when the function returns.
 
     `InputError` for the first file that cannot be written.
     """
     # Not the tempfile module: only the owner may read its files, and os.replace keeps that mode.
+    files = {_followed(path): data for path, data in files.items()}
     token = secrets.token_hex(4)
     temporaries = {p: p.with_name(f".{token}{number}.tmp") for number, p in enumerate(files)}
     with _before_the_end():
@@ -145,6 +142,11 @@ def write_all_bytes(files: Mapping[Path, bytes]) -> None:
             for temporary in temporaries.values():
                 with suppress(OSError, ValueError):
                     temporary.unlink(missing_ok=True)
+
+
+def _followed(path: Path) -> Path:
+    """Return the file that a link leads to; any other path unchanged."""
+    return path.resolve() if path.is_symlink() and path.is_file() else path
 
 
 def finish_writing() -> None:
@@ -170,12 +172,15 @@ def _before_the_end() -> Iterator[None]:
 
 
 def put_in_place(moves: Mapping[Path, Path]) -> None:
-    """Rename whole files, final by temporary path, all of them or none, and wait for the disk.
+    """Rename whole files, final by temporary path, all of them or none, and wait for the disk. Each
+    keeps the permissions of the file that it replaces.
 
     The files are on the disk, each in the folder of its new name. Where the file system has no hard
     links, a rename that fails leaves the earlier ones. `InputError` when one of them cannot be
-    renamed: the old files are back then.
+    renamed, or would replace an input: the old files are back then.
     """
+    for path in moves.values():
+        refuse_input(path)
     old: dict[Path, Path] = {}
     new: list[Path] = []
     try:
@@ -186,6 +191,7 @@ def put_in_place(moves: Mapping[Path, Path]) -> None:
                 with suppress(OSError):
                     os.link(path, old[path], follow_symlinks=False)
             with _writing(path):
+                _keep_mode(temporary, path)
                 os.replace(temporary, path)
             new += [path] if is_new else []
     except BaseException:  # Ctrl-C, too
@@ -202,6 +208,14 @@ def put_in_place(moves: Mapping[Path, Path]) -> None:
                 kept.unlink(missing_ok=True)
     for folder in {path.parent for path in moves.values()}:
         sync_folder(folder)
+
+
+def _keep_mode(temporary: Path, path: Path) -> None:
+    """Give a file the permissions of the one that it is to replace; a new one has the user's."""
+    with suppress(FileNotFoundError):
+        status = os.lstat(path)
+        if stat.S_ISREG(status.st_mode):
+            os.chmod(temporary, stat.S_IMODE(status.st_mode))
 
 
 def write_synced(path: Path, data: bytes) -> None:
@@ -259,12 +273,37 @@ def is_binary(data: bytes) -> bool:
 def decode_text(data: bytes) -> str:
     """Decode UTF-16 with its mark, UTF-8, or else Latin-1, with every line ending turned into a
     newline."""
+    return _decoded(data).replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _decoded(data: bytes) -> str:
     encoding = "utf-16" if data.startswith(UTF_16_MARKS) else "utf-8-sig"
     try:
-        text = data.decode(encoding)
+        return data.decode(encoding)
     except UnicodeDecodeError:
-        text = data.decode("latin-1")
-    return text.replace("\r\n", "\n").replace("\r", "\n")
+        return data.decode("latin-1")
+
+
+def encode_like(text: str, old: bytes) -> bytes:
+    """Encode a changed text as UTF-8 with the byte order mark and the line ends of its old file:
+    each line that is as before keeps its own, others get those of most lines."""
+    before = [_line_and_end(line) for line in LINES.findall(_decoded(old))]
+    after = [_line_and_end(line) for line in LINES.findall(text)]
+    ends = [end for _, end in before if end]
+    usual = max([*ends, "\n"], key=ends.count)
+    lines = [line + (end and usual) for line, end in after]
+    pairs = [line for line, _ in before], [line for line, _ in after]
+    for block in SequenceMatcher(None, *pairs, autojunk=False).get_matching_blocks():
+        for number in range(block.size):
+            line, end = after[block.b + number]
+            lines[block.b + number] = line + (end and (before[block.a + number][1] or usual))
+    mark = codecs.BOM_UTF8 if old.startswith(codecs.BOM_UTF8) else b""
+    return mark + "".join(lines).encode()
+
+
+def _line_and_end(line: str) -> tuple[str, str]:
+    text = line.rstrip("\r\n")
+    return text, line[len(text) :]
 
 
 def _require_regular(path: Path, status: os.stat_result, expected: str) -> None:

@@ -7,6 +7,7 @@ import signal
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
+from functools import cache
 from importlib import import_module
 from multiprocessing import resource_tracker
 from types import ModuleType
@@ -21,6 +22,9 @@ TERMINAL_SIGNALS = ("SIGINT", "SIGHUP")
 SIGTERM is not among them: a pool in which one process died ends the others by it, and waits until
 they are gone."""
 
+SAFE_PATH = "PYTHONSAFEPATH"
+"""Variable that keeps the folder of the script, or the current one, out of `sys.path`; as ``-P``.
+(Inside Blender, Python runs isolated and has its processes run so, too.)"""
 BEGINNING = """
 import sys, types
 for name, folder in {packages!r}:
@@ -82,6 +86,38 @@ def signals_blocked() -> Iterator[None]:
             yield
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def starting_processes() -> Iterator[None]:
+    """Start processes here: signals are held back as in `signals_blocked`, and the processes import
+    no module from the current folder, which may be a stranger's."""
+    with _safe_path(), signals_blocked():
+        yield
+
+
+@contextmanager
+def _safe_path() -> Iterator[None]:
+    """Keep the current folder out of `sys.path` of processes that are started meanwhile.
+
+    Python starts them, and the one that tracks semaphores, with ``-c``: without `SAFE_PATH` a file
+    ``pickle.py`` of the current folder would be run in place of Python's own module. One thread at
+    a time: another one's end must not take the variable away."""
+    with _environment_lock():
+        before = os.environ.get(SAFE_PATH)
+        os.environ[SAFE_PATH] = "1"
+        try:
+            yield
+        finally:
+            if before is None:
+                del os.environ[SAFE_PATH]
+            else:
+                os.environ[SAFE_PATH] = before
+
+
+@cache
+def _environment_lock() -> Any:
+    return threads().RLock()
 
 
 @contextmanager

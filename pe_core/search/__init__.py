@@ -12,7 +12,7 @@ from .domains import (
     standoff_point,
 )
 from .goals import Front, Goals, Start, Stop
-from .journal import EvaluatedRig, Journal
+from .journal import EvaluatedRig, Journal, checked_entries
 from .key_figures import (
     ENTROPY,
     KEPT,

@@ -8,7 +8,7 @@ from typing import Any
 from ..base.errors import InputError, shown
 from ..base.values import Whole, real
 from ..scene.rig import Rig
-from .journal import BATCH, EvaluatedRig, Journal
+from .journal import BATCH, EvaluatedRig, Journal, checked_entries
 from .methods import METHODS, Given, checked_method
 from .parametrization import Parametrization, feasible_start
 from .search_space import Schedule, SearchSpace
@@ -55,7 +55,7 @@ class SearchRun:
         name = checked_method("search_run", method, schedule is not None)
         self._options: tuple[Any, ...] = seed, schedule or Schedule(), 1, BATCH, evaluations
         self._coding, self._ask = Parametrization(rig, search_space), METHODS[name].ask
-        self._journal = Journal([EvaluatedRig(*entry) for entry in journal])
+        self._journal = Journal(checked_entries(journal, "search_run", "journal"), "search_run")
         self.best: Rig | None = None
         self.value, self.evaluations, self.is_done = math.inf, 0, False
         self._batches = self._questions()
@@ -63,6 +63,8 @@ class SearchRun:
         self._told: dict[int, float] = {}
         self._values: list[float] = []
         self._advance()
+        if self.is_done:
+            self._journal.require_used()
 
     @property
     def journal(self) -> tuple[EvaluatedRig, ...]:
@@ -80,19 +82,26 @@ class SearchRun:
         return self._batch[first : self._given]
 
     def tell(self, rigs: Sequence[Rig], values: Sequence[float]) -> None:
-        """Take the value of each placement, in any order; lower is better.
+        """Take the value of each placement, in any order; lower is better. All of them, or none.
 
-        `InputError` when a placement was not asked for, or was told before; or a value is no
-        number.
+        `InputError` when a placement was not asked for, or was told before; when there are more or
+        fewer values than placements; or a value is no number.
         """
+        rigs, values = list(rigs), list(values)
+        if len(rigs) != len(values):
+            expected = f"{len(rigs)}, one for each rig"
+            raise InputError("search_run", "values", expected, len(values))
+        told = dict(self._told)
         for rig, value in zip(rigs, values, strict=True):
             waiting = range(len(self._values), self._given)
-            found = [k for k in waiting if self._batch[k] is rig and k not in self._told]
+            found = [k for k in waiting if self._batch[k] is rig and k not in told]
             if not found:
                 raise InputError("search_run", "rig", "one that `ask` returned, once", "another")
-            if math.isnan(number := real(value)):
-                raise InputError("search_run", "value", "a number for each rig", shown(value))
-            self._told[found[0]] = number
+            if not (number := real(value)) > -math.inf:
+                expected = "a number above -inf for each rig"
+                raise InputError("search_run", "value", expected, shown(value))
+            told[found[0]] = number
+        self._told = told
         self._advance()
 
     def _advance(self) -> None:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import Any, NamedTuple, TypeVar
 
-from ..base.errors import InputError
+from ..base.errors import InputError, shown
 from ..scene.rig import Rig
 from ..scoring.score import Objective
 from .payload import PackedPayload, Unreadable, send_payload, unpickled
@@ -69,9 +69,14 @@ def run_tasks(
         order.setdefault(item, len(order))
         function, arguments = call_of(item)
         try:
-            running[executor.submit(_replied, function, *arguments)] = item
+            future = executor.submit(_replied, function, *arguments)
         except (RuntimeError, OSError) as error:  # the executor is broken, or was shut down
             died[item] = type(error).__name__
+            return
+        if not isinstance(future, Future):
+            expected = "an executor whose submit returns a concurrent.futures.Future"
+            raise InputError("executor", "submit", expected, shown(type(future).__name__))
+        running[future] = item
 
     def taken(future: Future[_Reply]) -> Iterator[tuple[TaskKey, Any]]:
         item = running.pop(future)

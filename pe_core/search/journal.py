@@ -7,11 +7,12 @@ bits as one that was never interrupted.
 
 import hashlib
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from ..base.errors import InputError
+from ..base.errors import InputError, shown
+from ..base.values import real
 from ..scene.rig import Rig
 from ..scoring.score import Objective
 from .dispatch import evaluate_all
@@ -28,6 +29,21 @@ class EvaluatedRig(NamedTuple):
 
     entropy: float
     digest: str
+
+
+def checked_entries(rows: Any, source: object, field: str) -> tuple[EvaluatedRig, ...]:
+    """Return the entries of a journal from anybody's file: pairs of a value, which may be inf, and
+    a digest. `InputError` for anything else."""
+    entries = []
+    is_listing = isinstance(rows, Iterable) and not isinstance(rows, str | Mapping)
+    for number, row in enumerate(rows if is_listing else [rows]):
+        entry = tuple(row) if isinstance(row, list | tuple) else ()
+        value = real(entry[0]) if len(entry) == len(EvaluatedRig._fields) else math.nan
+        if not value > -math.inf or not isinstance(entry[1], str):
+            found = shown(row)
+            raise InputError(source, f"{field}[{number}]", "an entropy, a digest", found)
+        entries.append(EvaluatedRig(value, entry[1]))
+    return tuple(entries)
 
 
 class Journal:
@@ -65,6 +81,12 @@ class Journal:
             raise InputError(self._source, field, expected, "another")
         self._position += 1
         return entry.entropy
+
+    def require_used(self) -> None:
+        """Raise `InputError` where entries are left: call it when the search has ended."""
+        if left := len(self._entries) - self._position:
+            expected = "no more entries, as the search has ended"
+            raise InputError(self._source, f"evaluated[{self._position}]", expected, f"{left} more")
 
     def record(self, rig: Rig, level: int, value: float) -> None:
         """Append the value of a placement that is not in the journal yet."""

@@ -14,7 +14,7 @@ from ..base.spawning import (
     beginning,
     belong_to_parent,
     packages_around,
-    signals_blocked,
+    starting_processes,
     without_main,
 )
 from .payload import Unreadable, keep_freed_memory, receive, send_payload
@@ -42,7 +42,7 @@ class Processes(Executor):
     def _new_pool(self) -> ProcessPoolExecutor:
         context = multiprocessing.get_context("spawn")
         begun = beginning(__name__, "begin_worker", packages_around())
-        with signals_blocked():
+        with starting_processes():
             try:
                 return ProcessPoolExecutor(
                     self._count, context, exec, (begun, {"arguments": self._payload or ()})
@@ -62,7 +62,7 @@ class Processes(Executor):
 
     def submit(self, fn: Callable[..., T], /, *args: Any, **kwargs: Any) -> Future[T]:
         """Call a function in a process; start new processes if the pool is broken."""
-        with self._lock, without_main(), signals_blocked():
+        with self._lock, without_main(), starting_processes():
             try:
                 return self._pool.submit(fn, *args, **kwargs)
             except BrokenExecutor:

@@ -3,7 +3,6 @@
 import argparse
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 from pe_core.base import dump_json
@@ -71,18 +70,17 @@ def check(args: argparse.Namespace) -> Answer:
     """Hold a study file to its requirements; the exit status says whether all are met."""
     study = load_study(args.study)
     try:
-        return check_study(study, args, [Path(args.study)])
+        return check_study(study, args)
     except InputError as error:
         if not error.source.startswith("requirement "):
             raise
         raise error.within(args.study) from None
 
 
-def check_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] = ()) -> Answer:
+def check_study(study: Study, args: argparse.Namespace) -> Answer:
     """Hold a study to its requirements and to the presets that are named. After Ctrl-C the verdicts
-    that were found are printed, and written to the CSV file. `inputs` are files that no output
-    replaces."""
-    table = output_file(args.csv, args, inputs)
+    that were found are printed, and written to the CSV file."""
+    table = output_file(args.csv, args)
     study, unchecked = with_presets(with_curves(study, args), args.preset)
     if not (study.requirements or study.stories):
         expected = "[[requirement]] or [[story]] in the study, or --preset ID"

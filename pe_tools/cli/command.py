@@ -13,6 +13,7 @@ from typing import Any, NoReturn, TextIO
 from pe_core import catalog
 from pe_core.base.errors import InputError, one_of
 from pe_core.base.files import named_path, quoted, reason_of
+from pe_core.base.input_files import noting_inputs
 from pe_core.search import Schedule
 from pe_core.search.goals import FULL, OFF, Front, Start
 from pe_core.search.goals import OBJECTIVES as GOALS
@@ -299,7 +300,7 @@ def run(main: Callable[[], Answer], out: TextIO | None = None) -> int:
     line on stderr and status 1; a signal that ends the command is 128 and its number: 130 for
     Ctrl-C, 143 for SIGTERM, 129 for SIGHUP."""
     try:
-        with signals_interrupt():
+        with signals_interrupt(), noting_inputs():
             text, status = main()
         return print_answer(text, status, out or sys.stdout)
     except InputError as error:

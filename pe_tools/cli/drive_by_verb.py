@@ -43,14 +43,13 @@ def drive_by(args: argparse.Namespace) -> Answer:
         return "\n".join(aligned([[n, s.title, s.source] for n, s in stories().items()])), DONE
     if args.study is None:
         args.usage_error("expected STUDY, or --list")
-    return drive_by_study(load_study(args.study), args, [Path(args.study)])
+    return drive_by_study(load_study(args.study), args)
 
 
-def drive_by_study(study: Study, args: argparse.Namespace, inputs: Sequence[Path] = ()) -> Answer:
-    """Drive stories by a study's rig: those that are named, else the study's own. `inputs` are
-    files that no output replaces."""
-    output = output_file(args.output, args, inputs)
+def drive_by_study(study: Study, args: argparse.Namespace) -> Answer:
+    """Drive stories by a study's rig: those that are named, else the study's own."""
     chosen = chosen_stories(study, args.story)
+    output = output_file(args.output, args)
     print_vehicle(study)
     driven = [study.drive_by(story) for story in chosen]
     met = all(each.is_met for each in driven)

@@ -9,6 +9,7 @@ from typing import Any
 from pe_core import catalog
 from pe_core.base.errors import InputError
 from pe_core.base.files import quoted, require_new
+from pe_core.base.input_files import refuse_input
 from pe_core.catalog import KnownRig, RigTemplate
 from pe_core.scene import Pose, Reference, Rig, Vehicle, guessed_reference, named_places
 from pe_core.scoring.sampling import FIRST_SAMPLES
@@ -167,9 +168,8 @@ def export(study: Study, args: argparse.Namespace) -> Answer:
     args.to = format_of_file(Path(args.output), FILE_NAMES, args.to)
     if args.range is not None and args.to not in _ranged():
         raise InputError("--range", "option", f"one of {', '.join(_ranged())}", args.to)
-    given = [Path(args.study)] if hasattr(args, "study") else []
-    require_new(Path(args.output), replace=True, inputs=given)
     reference = _reference(args, study.reference, study.vehicle, args.to)
+    refuse_input(Path(args.output))
     where, options = (args.to, args.output), {"replace": args.replace}
     if args.to in scene_outputs():
         study = replace(study, reference=reference)
@@ -184,14 +184,12 @@ def export(study: Study, args: argparse.Namespace) -> Answer:
 
 def new_study(args: argparse.Namespace) -> tuple[Path, Vehicle | None]:
     """Return the path of the new study, after checks, and the vehicle if there is a mesh."""
-    output = Path(args.output)
-    inputs = [Path(args.file)] if hasattr(args, "file") else []
-    inputs += [] if args.mesh is None else [output.parent / args.mesh]
-    require_new(output, replace=args.replace, inputs=inputs)
-    if args.mesh is None:
-        return output, None
-    mesh = read_mesh(output.parent / args.mesh)
-    return output, Vehicle(mesh.triangles, mesh.parts, mesh.part_names)
+    output, vehicle = Path(args.output), None
+    if args.mesh is not None:
+        mesh = read_mesh(output.parent / args.mesh)
+        vehicle = Vehicle(mesh.triangles, mesh.parts, mesh.part_names)
+    require_new(output, replace=args.replace)
+    return output, vehicle
 
 
 def import_study(args: argparse.Namespace) -> Answer:
@@ -209,6 +207,7 @@ def import_study(args: argparse.Namespace) -> Answer:
         reference=reference,
         passthrough=found.passthrough,
     )
+    require_new(output, replace=args.replace)  # all inputs are read
     save_study(study, output)
     for line in found.lines:
         tell(line)

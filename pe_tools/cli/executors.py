@@ -1,13 +1,15 @@
 """Executors of runs and of candidates: processes here, a Dask cluster, or any other executor."""
 
+import asyncio
 import importlib
 import logging
 import os
 import re
 import sys
-from collections.abc import Iterator
-from concurrent.futures import Executor
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future
 from contextlib import closing, contextmanager, suppress
+from threading import Thread
 from typing import Any
 
 from pe_core.base.errors import InputError, shown
@@ -23,6 +25,7 @@ FUNCTION = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_]\w*")
 """Name of a function in a module; no address has one, as its port is a number."""
 ADDRESS = re.compile(r"((tcp|tls)://)?[^/@\s]+:[0-9]{1,5}")
 """Address with a protocol that Dask supports without further libraries."""
+NO_SCHEDULER = "a peer that is no scheduler"
 CONNECT_S = 5.0  # Time limit for the scheduler's answer [s]
 
 
@@ -75,14 +78,14 @@ class ExecutorWorkers(LocalWorkers):
 
     def __init__(self, named: str, count: int) -> None:
         module, function = named.split(":")
-        if "" not in sys.path:
-            sys.path.insert(0, "")  # as for `python -m`: modules beside the study
+        if os.getcwd() not in sys.path:
+            sys.path.append(os.getcwd())  # last: a file beside the study replaces no other module
         try:
             made = getattr(importlib.import_module(module), function)()
         except Exception as error:  # whatever a module of the user's raises
             told = " ".join(f"{type(error).__name__}: {error}".split())
             raise InputError("command line", "executor", f"{named} to return one", told) from None
-        if not isinstance(made, Executor) and not callable(getattr(made, "submit", None)):
+        if not isinstance(made, Executor):
             expected = "a function that returns a concurrent.futures.Executor"
             raise InputError("command line", "executor", expected, shown(type(made).__name__))
         self.executor, self._count = made, count
@@ -143,8 +146,40 @@ def _client_of(address: str) -> Any:
         if name.partition(".")[0] == "distributed":
             logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
+        _within(CONNECT_S, lambda: asyncio.run(_asked_scheduler(distributed, address)))
         return distributed.Client(address, timeout=CONNECT_S, set_as_default=False)
     except Exception as error:  # an unknown name, a closed port, tls without certificates
         told = str(error).splitlines() or [type(error).__name__]
         expected = f"a scheduler that answers within {CONNECT_S:g} s"
         raise InputError(address, "scheduler", expected, told[0]) from None
+
+
+async def _asked_scheduler(distributed: Any, address: str) -> None:
+    """Ask a peer what it is; raise where it is no scheduler. A client of Dask that finds none keeps
+    the process from ending, and reports that itself."""
+    options = distributed.Security().get_connection_args("client")
+    comm = await distributed.core.connect(address, timeout=CONNECT_S, **options)
+    try:
+        peer = await distributed.core.send_recv(comm, op="identity", reply=True)
+    finally:
+        comm.abort()
+    if not isinstance(peer, dict) or peer.get("type") != "Scheduler":
+        raise TimeoutError(NO_SCHEDULER)
+
+
+def _within(limit_s: float, call: Callable[[], Any]) -> Any:
+    """Return what a function returns; `TimeoutError` where it takes longer. Dask's own limit does
+    not hold where a peer takes the connection and says nothing that a scheduler says."""
+    answer: Future[Any] = Future()
+
+    def run() -> None:
+        try:
+            answer.set_result(call())
+        except BaseException as error:
+            answer.set_exception(error)
+
+    Thread(target=run, daemon=True).start()  # nobody waits for it at the end
+    try:
+        return answer.result(limit_s)
+    except TimeoutError as error:
+        raise TimeoutError(str(error) or NO_SCHEDULER) from None

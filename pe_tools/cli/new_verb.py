@@ -59,10 +59,10 @@ def add_new_verb(verbs: Any) -> None:
 def new_study(args: argparse.Namespace) -> Answer:
     """Write the study of a mesh, and tell what was found in the mesh."""
     mesh_path, output = Path(args.file), Path(args.output)
-    require_new(output, replace=args.replace, inputs=[mesh_path])
     area_path = output.parent / f"{output.stem}_roof.npz"
     model = catalog.load(args.sensor)
     mesh, scale, unit = read_in_metres(mesh_path, args.up, args.forward, args.scale)
+    require_new(output, replace=args.replace)
     glass = tuple(name for name in mesh.part_names if is_called(name, GLASS, NO_GLASS))
     vehicle = Vehicle(mesh.triangles, mesh.parts, mesh.part_names, glass)
     show(
@@ -77,7 +77,7 @@ def new_study(args: argparse.Namespace) -> Answer:
     first = FirstStudy(full.as_posix(), output.name, vehicle, mesh.axes, scale, unit, roof)
     written = [output]
     if roof.mount is not None and roof.mount.area is not None:  # no part of the vehicle
-        require_new(area_path, replace=args.replace, inputs=[mesh_path])
+        require_new(area_path, replace=args.replace)
         faces = roof.mount.area.triangles
         write_mesh(area_path, Mesh(faces, np.zeros(len(faces), np.int32), (MOUNT,)))
         written.append(area_path)

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple, TextIO
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
 from pe_core.base.files import require_new, write_bytes
+from pe_core.base.input_files import refuse_input
 from pe_core.study import STUDY, Study
 
 from .. import jobs
@@ -31,12 +32,12 @@ def written(write: Callable[[Path], object], folder: Path) -> bool:
     return True
 
 
-def output_file(name: str | None, args: argparse.Namespace, inputs: Sequence[Path]) -> Path | None:
+def output_file(name: str | None, args: argparse.Namespace) -> Path | None:
     """Return the file that a verb is to write, if it has one; `InputError`, before the work, where
-    it cannot be written. `inputs` are files that it must not replace."""
+    it cannot be written. To be called when all inputs are read: it must not replace one."""
     if name is None:
         return None
-    require_new(path := Path(name), replace=args.replace, inputs=inputs)
+    require_new(path := Path(name), replace=args.replace)
     if not path.parent.is_dir():
         raise InputError(path, "file", "a file in a folder that exists", "no such folder")
     return path
@@ -102,10 +103,11 @@ def run_study(
             tell(f"going on after {count:,} placements")
     job.notes = notes
     if folder is not None:
-        if not is_front and getattr(args, "study", None) is not None:
-            refuse_own_folder(Path(args.study), Path(folder))
         own = jobs.FRONT_NAMES if is_front else jobs.result_names(study, args.kind)
-        jobs.prepare_folder(folder, [*own, *(name for each in more for name in each.names)])
+        added = [name for each in more for name in each.names]
+        for name in added if is_front else (STUDY, *added):
+            refuse_input(Path(folder) / name)
+        jobs.prepare_folder(folder, [*own, *added])
     output = None if folder is None else Path(folder)
     return _carried_out(job, output, args, host, more)
 
@@ -141,17 +143,6 @@ def _data_of(found: Found, host: dict[str, str] | None) -> Data:
     if isinstance(found, jobs.TradeOff):
         return jobs.front_dict(found, host)
     return jobs.result_dict(found, host)
-
-
-def refuse_own_folder(study: Path, output: Path) -> None:
-    """Raise `InputError` when the results would replace the study that is read."""
-    try:
-        is_same = (output / STUDY).samefile(study)
-    except (OSError, ValueError):
-        return
-    if is_same:
-        found = f"the study's folder: {STUDY} would be overwritten"
-        raise InputError(study, "output", "another folder than the study's folder", found)
 
 
 def print_vehicle(study: Study) -> None:

@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from pe_core.base.errors import InputError, shown
-from pe_core.base.files import decode_text, read_bytes, write_bytes
+from pe_core.base.files import decode_text, encode_like, read_bytes, write_bytes
+from pe_core.base.input_files import not_noting_inputs
 from pe_core.base.table_reader import dotted, inline, load_toml
 from pe_core.study import study_from_dict
 
@@ -28,26 +29,32 @@ def add_set_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("changes", nargs="+", metavar="KEY=VALUE", help=about)
 
 
+@not_noting_inputs()
 def set_keys(args: argparse.Namespace) -> Answer:
     """Change keys of a study file, all or none; the changed study is checked before it is written.
     `InputError` when a key or a value does not fit the study, or stands where only an editor can
     change it."""
     path = Path(args.study)
-    text, lines, typed = decode_text(read_bytes(path)), [], dict[TomlPath, Sequence[str]]()
+    old = read_bytes(path)
+    text = decode_text(old)
+    lines: list[str] = []
+    typed: dict[TomlPath, Sequence[str]] = {}
     for setting in read_settings(args.changes):
         if len(setting.values) > 1:
             raise InputError("set", setting.key, "one value", shown(", ".join(setting.values)))
         (value,) = setting.values.values()
         data = load_toml(path, "study", text)
         wanted = copy.deepcopy(data)
-        where, old = set_value(wanted, setting, value, str(path))
+        where, known = set_value(wanted, setting, value, str(path))
         text = _changed(text, where, wanted)
         if _loaded(text) != wanted:
             of_table = "a key of this table", inline(value)
             of_line = "a key in a line of its own", "another form"
-            is_table = isinstance(old, dict) or (isinstance(old, list) and dict in map(type, old))
+            is_table = isinstance(known, dict) or (
+                isinstance(known, list) and dict in map(type, known)
+            )
             raise InputError(path, setting.key, *(of_table if is_table else of_line))
-        told = "no value" if old is None else inline(old)
+        told = "no value" if known is None else inline(known)
         lines.append(f"{path}: {setting.key}: {told} -> {inline(value)}")
         typed[where] = [*map(dotted, setting.path)]
     try:
@@ -55,7 +62,7 @@ def set_keys(args: argparse.Namespace) -> Answer:
     except InputError as error:
         field = _as_typed(error.field, typed)
         raise InputError(error.source, field, error.expected, error.found) from None
-    write_bytes(path, text.encode())
+    write_bytes(path, encode_like(text, old))
     return "\n".join(lines), DONE
 
 

@@ -9,7 +9,8 @@ from typing import Any
 
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
-from pe_core.study import SEARCH
+from pe_core.base.input_files import refuse_input
+from pe_core.study import SEARCH, STUDY
 
 from .. import jobs
 from ..advice import curve_note, hardware_note
@@ -22,7 +23,6 @@ from .command import add_executor_option, add_score_options, add_search_options,
 from .executors import workplace
 from .interrupts import Interrupted, Received, stop_at_first
 from .progress_line import Reporter
-from .run_job import refuse_own_folder
 from .terminal import is_terminal, one_line, show, tell
 
 MAX_PARTS = 1_000_000
@@ -61,7 +61,7 @@ def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal
     names = [table.SWEEP_CSV, table.SWEEP_JSON]
     folder = jobs.prepare_folder(args.output, names)
     for run in runs:  # before the work
-        refuse_own_folder(Path(files[run.study_name]), folder / run.name)
+        refuse_input(folder / run.name / STUDY)
         jobs.check_files(folder / run.name, jobs.result_names(run.study, kind))
     work = _SweepVerb(runs, kind, folder, args.part is None)
     received = work.run(args)

@@ -6,7 +6,6 @@ import sys
 from collections.abc import Callable, Sequence
 from functools import partial
 from importlib.metadata import EntryPoint
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -183,7 +182,7 @@ VERBS = (
         "score one more sensor all over the vehicle's surface",
         add_where_options,
         ONE,
-        lambda args: where(load_study(args.study), args, [Path(args.study)]),
+        lambda args: where(load_study(args.study), args),
     ),
     Verb(
         "drive-by",

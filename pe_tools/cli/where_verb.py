@@ -1,8 +1,6 @@
 """`pe where`: one more sensor scored all over the vehicle's surface."""
 
 import argparse
-from collections.abc import Sequence
-from pathlib import Path
 
 from pe_core import catalog
 from pe_core.base import dump_json
@@ -40,10 +38,9 @@ def add_where_options(parser: argparse.ArgumentParser) -> None:
     add_curve_option(parser)
 
 
-def where(study: Study, args: argparse.Namespace, inputs: Sequence[Path] = ()) -> Answer:
-    """Score one more sensor all over the vehicle's surface, and tell the best places. `inputs` are
-    files that no output replaces."""
-    table = output_file(args.output, args, inputs)
+def where(study: Study, args: argparse.Namespace) -> Answer:
+    """Score one more sensor all over the vehicle's surface, and tell the best places."""
+    table = output_file(args.output, args)
     study = with_curves(study, args)
     models = {each.model.name: each.model for each in study.rig}
     model = models.get(args.model) or catalog.load(args.model)

@@ -17,7 +17,7 @@ from pe_core.base.spawning import (
     beginning,
     packages_around,
     pipe_errors,
-    signals_blocked,
+    starting_processes,
     without_main,
 )
 
@@ -29,8 +29,8 @@ from .messages import (
     STEP,
     PackedObject,
     Request,
+    Writer,
     packed,
-    send,
     steps_of,
     unpacked,
 )
@@ -39,6 +39,8 @@ FOLLOWS_MOUSE, BEHIND = "mouse", "behind"
 """Lanes: one that never waits for what takes long, and one for all else."""
 END_S = 1.0
 """A process that has not ended by itself after this time is killed; one that begins, at once."""
+SEND_S = 0.002
+"""How long a large request may keep the caller busy each time that results are asked for [s]."""
 Take = Callable[[Any], None]
 EngineCall = tuple[Callable[..., Any], tuple[Any, ...]]
 
@@ -134,7 +136,8 @@ class EngineProcess:
         self._shared_types, self._setup, self._packages = shared, setup, packages
         self._set_up: EngineCall | None = None
         self._process: Any = None
-        self._connection: Any = None
+        self._answers: Any = None
+        self._writer: Any = None
         self._awaited: dict[str, list[_Awaited]] = {}
         self._come: list[tuple[int, str, str, bytes]] = []
         """Number, topic, kind and content of answers that are not delivered yet."""
@@ -195,14 +198,16 @@ class EngineProcess:
         return None if self._process is None else self._process.pid
 
     def deliver_all(self, *beginnings: str) -> bool:
-        """Deliver what has come; return whether more is awaited. With `beginnings` of topics,
-        others wait for the next call without, which also finds out whether the process was
-        killed."""
+        """Send what waits, and deliver what has come; return whether either is left.
+
+        With `beginnings` of topics, others wait for the next call without, which also finds out
+        whether the process was killed."""
         killed = False
+        self._flush()
         try:
-            while self._connection is not None and self._connection.poll():
-                head = pickle.loads(self._connection.recv_bytes())
-                self._come.append((*head, self._connection.recv_bytes()))
+            while self._answers is not None and self._answers.poll():
+                head = pickle.loads(self._answers.recv_bytes())
+                self._come.append((*head, self._answers.recv_bytes()))
                 self._is_up = True
         except (EOFError, OSError):
             killed = True
@@ -211,7 +216,7 @@ class EngineProcess:
             self._deliver(*each)
         if killed and not beginnings:
             self._ask_again()
-        return bool(self._awaited)
+        return bool(self._awaited) or (self._writer is not None and self._writer.is_waiting)
 
     def stop(self) -> None:
         """Drop everything, and end the process."""
@@ -256,12 +261,13 @@ class EngineProcess:
                     self._send((CANCEL, (topic, False)))
 
     def _end_process(self, patience_s: float) -> None:
-        self._connection.close()  # for the process the sign to end
+        self._writer.close()  # for the process the sign to end
+        self._answers.close()
         self._process.join(patience_s)
         if self._process.is_alive():
             self._process.kill()
             self._process.join()
-        self._process = self._connection = None
+        self._process = self._answers = self._writer = None
 
     def _send_request(self, topic: str, each: _Awaited) -> None:
         try:
@@ -278,7 +284,12 @@ class EngineProcess:
     def _send(self, message: object) -> None:
         # Where the process was killed, `deliver_all` finds that out.
         with suppress(OSError), pipe_errors():
-            send(self._connection, message)
+            self._writer.put(message)
+
+    def _flush(self) -> None:
+        if self._writer is not None and self._writer.is_waiting:
+            with suppress(OSError), pipe_errors():
+                self._writer.flush(SEND_S)
 
     def _start(self) -> None:
         context = multiprocessing.get_context("spawn")
@@ -287,16 +298,20 @@ class EngineProcess:
         own = [(name, sys.modules[name].__path__[0]) for name in self._packages]
         module = f"{__package__}.server"
         code = beginning(module, "serve", [*packages_around(), *own])
-        here, there = context.Pipe()
-        with there:
-            process = context.Process(target=exec, args=(code, {"arguments": (there,)}))
+        requests, writing = context.Pipe(duplex=False)
+        reading, answers = context.Pipe(duplex=False)
+        with requests, answers:
+            process = context.Process(target=exec, args=(code, {"arguments": (requests, answers)}))
             try:
-                with without_main(), signals_blocked(), pipe_errors():
+                with without_main(), starting_processes(), pipe_errors():
                     process.start()
             except BaseException:
-                here.close()
+                writing.close()
+                reading.close()
                 raise
-        self._process, self._connection = process, here
+        self._process = process
+        self._answers = reading
+        self._writer = Writer(writing)
 
 
 def call_here(

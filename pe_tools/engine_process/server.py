@@ -83,10 +83,12 @@ class _Lane(threading.Thread):
 
 
 class _Server:
-    """This side of the connection."""
+    """This side of the connections: requests come by one, answers go by the other."""
 
-    def __init__(self, connection: Connection) -> None:
-        self._connection, self._sending = connection, threading.Lock()
+    def __init__(self, requests: Connection, answers: Connection) -> None:
+        self._requests = requests
+        self._answers = answers
+        self._sending = threading.Lock()
         self._shared: dict[int, Any] = {}
         self._inside: dict[int, dict[int, int]] = {}
         """The numbers of the shared objects in a shared object, by their `id`."""
@@ -96,7 +98,7 @@ class _Server:
         """Take messages until the other side is gone."""
         while True:
             try:
-                message = received(self._connection)
+                message = received(self._requests)
             except (EOFError, OSError):
                 return
             if isinstance(message, Request):
@@ -149,14 +151,14 @@ class _Server:
         header = pickle.dumps((call.number, call.topic, kind))
         try:
             with self._sending:
-                self._connection.send_bytes(header)
-                self._connection.send_bytes(data)
+                self._answers.send_bytes(header)
+                self._answers.send_bytes(data)
         except OSError:
             end_process()
 
 
-def serve(connection: Connection) -> None:
-    """Serve the other side of a connection; the process ends when that is gone."""
+def serve(requests: Connection, answers: Connection) -> None:
+    """Serve the other side of two connections; the process ends when that is gone."""
     belong_to_parent()
-    _Server(connection).serve()
+    _Server(requests, answers).serve()
     end_process()

@@ -7,6 +7,7 @@ from pathlib import Path
 from pe_core import catalog
 from pe_core.base.errors import InputError
 from pe_core.base.files import require_new, write_all_bytes
+from pe_core.base.input_files import not_noting_inputs
 from pe_core.scene.rig import Rig, Sensor
 from pe_core.scene.vehicle_description import Reference
 from pe_core.study.passthrough import Passthrough
@@ -132,7 +133,8 @@ def export_rig(
     row, output, existing = rig_format(name), Path(output), None
     # The last of a format's files tells whether the folder already holds this format.
     if replace and len(row.files) > 1 and (output / row.files[-1]).is_file():
-        existing = row.source(output)
+        with not_noting_inputs():
+            existing = row.source(output)
     files, lines = rig_files(rig, name, reference, passthrough, existing)
     return write_files(files, output, inside=len(row.files) > 1, replace=replace), lines
 

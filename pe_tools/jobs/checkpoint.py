@@ -10,8 +10,9 @@ from typing import Any
 
 from pe_core.base.errors import InputError, shown
 from pe_core.base.files import read_bytes
+from pe_core.base.input_files import not_noting_inputs
 from pe_core.base.table_reader import load_toml, parse_json
-from pe_core.search import EvaluatedRig, Journal
+from pe_core.search import EvaluatedRig, Journal, checked_entries
 from pe_core.study.file_names import SEARCH, STUDY
 from pe_core.study.study import Study
 from pe_core.study.study_file import study_from_dict
@@ -30,16 +31,6 @@ STATE_BYTES = 1 << 30  # Maximum size of a state file: about thirty million eval
 SAVE_EVERY_S = 10.0
 """Interval of saving [s]: a round may take hours, so its intermediate results are saved, too."""
 KEYS = {"version": str, "study_sha256": str, "study": str, "inputs": dict, "journals": dict}
-
-
-def _entries_of(path: Path, field: str, rows: Any) -> tuple[EvaluatedRig, ...]:
-    rows = rows if isinstance(rows, list) else [rows]
-    for number, row in enumerate(rows):
-        kinds = [type(value) for value in row] if isinstance(row, list) else []
-        if kinds != [float, str]:
-            expected = "an entropy, a digest"
-            raise InputError(path, f"{field}[{number}]", expected, shown(row))
-    return tuple(EvaluatedRig(*row) for row in rows)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +61,7 @@ class BegunSearch:
         return Journal(self.of_study(study).evaluated, str(self.path))
 
 
+@not_noting_inputs()
 def read_search(folder: str | Path) -> BegunSearch:
     """Read the state of a search, or of those of a front, from the folder of its results.
     `InputError` if there is no state, it is damaged or of another version, or a mesh or boxes
@@ -85,7 +77,8 @@ def read_search(folder: str | Path) -> BegunSearch:
     if data["version"] != __version__:
         expected = f"{__version__}, the version of this program"
         raise InputError(path, "version", expected, shown(data["version"]))
-    journals = {n: _entries_of(path, n or "evaluated", r) for n, r in data["journals"].items()}
+    rows_of = data["journals"].items()
+    journals = {n: checked_entries(rows, path, n or "evaluated") for n, rows in rows_of}
     study = study_from_dict(load_toml(path, "study", data["study"]), str(path), path.parent)
     if fingerprint(study) != data["study_sha256"]:
         raise InputError(path, "study", "unchanged files beside the study", "changed files")
@@ -180,6 +173,8 @@ def resume(job: OptimizeJob | FrontJob, folder: Path) -> int:
     job.inputs = begun.inputs
     if isinstance(job, FrontJob):
         job.journals = FrontJournals(begun.journals)
+    elif extra := [name for name in begun.journals if name]:
+        raise InputError(begun.path, "journals", "the journal of one search", shown(extra[0]))
     else:
         job.journal = begun.journal_of(job.study)
     return sum(map(len, begun.journals.values()))

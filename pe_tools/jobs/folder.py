@@ -23,6 +23,7 @@ from pe_core.base.files import (
     write_bytes,
     write_synced,
 )
+from pe_core.base.input_files import not_noting_inputs
 from pe_core.base.table_reader import dump_json, parse_json
 
 try:
@@ -190,6 +191,7 @@ def our_files(folder: Path) -> dict[str, str]:
     return {name: digest for name, (digest, listed) in pairs.items() if digest in listed}
 
 
+@not_noting_inputs()
 def _listed(folder: Path) -> Listed:
     """Return the digests of all files that this program wrote to a folder, by name."""
     path = folder / LISTING

@@ -7,7 +7,7 @@ from contextlib import AbstractContextManager, ExitStack, nullcontext
 from dataclasses import replace
 from functools import cached_property
 
-from pe_core.base.errors import InputError
+from pe_core.base.errors import InputError, shown
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigEvaluator
 from pe_core.scoring.sampling import CENTERED, SEARCHED, Shift
@@ -73,6 +73,15 @@ class FrontJournals:
         """Return the journal of a search that begins; it continues a known one."""
         self._journals[name] = Journal(self._known.get(name, ()), SEARCH)
         return self._journals[name]
+
+    def require_used(self) -> None:
+        """Raise `InputError` where a search has entries left, or was not begun: call it at the end
+        of the front."""
+        for name in self._known:
+            if name not in self._journals:
+                expected = "journals of the searches of this front"
+                raise InputError(SEARCH, "journals", expected, shown(name))
+            self._journals[name].require_used()
 
     @property
     def count(self) -> int:
@@ -217,6 +226,8 @@ class FrontJob(Job):
                 yield from self._kept(picks, search(picks, *share))
         if not self._found and self._errors:
             raise next(iter(self._errors.values()))
+        if not self.stopped and self.study.search.goals.stop.seconds is None:
+            self.journals.require_used()
         self.is_done = True
         yield Progress("done", 1.0, evaluations=self.evaluations)
 

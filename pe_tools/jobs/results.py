@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from pe_core.base.files import csv_text, read_bytes
+from pe_core.base.input_files import not_noting_inputs
 from pe_core.base.table_reader import dump_json, finite, parse_json
 from pe_core.scene.rig import Rig
 from pe_core.search import AXES, EvaluatedRig
@@ -187,6 +188,7 @@ def add_to_result(
     data["run"] = run
 
 
+@not_noting_inputs()
 def files_of_other_runs(folder: Path) -> list[str]:
     """Return names of result files in a folder that do not belong to the run of its result.json.
     They were written by an earlier run or an interrupted later run, or were changed by hand."""

@@ -204,6 +204,8 @@ class OptimizeJob(Job):
         if first is None:
             return
         yield from self._search()
+        if not self.stopped and self.study.search.goals.stop.seconds is None:
+            self.journal.require_used()
         yield self._progress  # a driver keeps the best so far before it is scored
         stopped, self.parts_left = self.stopped, min(self.parts_left, 1)
         self.stopped = self.parts_left < 1

@@ -7,6 +7,7 @@ from typing import Any
 
 from pe_core.base.errors import InputError
 from pe_core.base.files import csv_text, read_bytes
+from pe_core.base.input_files import not_noting_inputs
 from pe_core.base.table_reader import dump_json, finite, parse_json
 from pe_core.search.build_figures import BUILD_FIGURES
 from pe_core.search.key_figures import KEPT, KEY_FIGURES, NO_FIGURE, REQUIREMENTS, KeyFigures
@@ -75,6 +76,7 @@ def row_of(
     )
 
 
+@not_noting_inputs()
 def row_of_result(run: SweepRun, folder: Path, kind: str) -> SweepRow | None:
     """Return the row of a run whose result is in its folder already; None otherwise. The result
     must be complete, of this study and kind, and of this version."""

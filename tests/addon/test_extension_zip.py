@@ -72,7 +72,7 @@ def test_the_zip_installs_and_scores_the_sedan_as_the_engine_does(archive, tmp_p
 
 # What extensions.blender.org asks for, held over the files that are in the zip.
 MAX_ZIP_BYTES, MAX_UNPACKED_BYTES = 4_000_000, 8_000_000
-PERMISSIONS, MAX_PERMISSION_LETTERS, MAX_TAGLINE_LETTERS = {"files"}, 64, 64
+PERMISSIONS, MAX_PERMISSION_LETTERS, MAX_TAGLINE_LETTERS = {"files", "clipboard"}, 64, 64
 NETWORK = {"socket", "ssl", "urllib", "http", "ftplib", "smtplib", "requests", "webbrowser"}
 RUNS_TEXT = {"exec", "eval", "compile", "__import__"}
 
@@ -99,6 +99,8 @@ def test_the_manifest_says_what_the_platform_asks_for(contents):
     tagline = manifest["tagline"]
     assert len(tagline) <= MAX_TAGLINE_LETTERS and tagline[-1].isalnum()
     assert set(manifest["permissions"]) == PERMISSIONS
+    sources = [data for name, data in contents.items() if name.endswith(".py")]
+    assert any(b".clipboard" in data for data in sources), "what is asked for is used"
     for why in manifest["permissions"].values():
         assert len(why) <= MAX_PERMISSION_LETTERS and not why.endswith(".")
 

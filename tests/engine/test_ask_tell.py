@@ -99,6 +99,60 @@ def test_what_a_run_cannot_take_is_told():
         problem().search_run(journal=told(problem(seed=4).search_run()).journal)
 
 
+@pytest.mark.parametrize("wrong", [float("nan"), "low", None, float("-inf")])
+def test_of_wrong_values_none_is_taken(wrong):
+    """Also those before the wrong one: what was refused can be told again, and as it was."""
+    run = problem().search_run()
+    run.tell(run.ask(), [1.0])
+    first, second, third = run.ask(3)
+    before = run.journal, run.evaluations
+    for rigs, values in (
+        ([first, second, third], [0.5, wrong, 0.7]),
+        ([first, second, first], [0.5, 0.6, 0.7]),
+        ([first, second], [0.5]),
+    ):
+        with pytest.raises(pe.InputError):
+            run.tell(rigs, values)
+        assert (run.journal, run.evaluations) == before
+    run.tell([first, second, third], iter([0.1, 0.2, 0.3]))
+    assert run.evaluations == before[1] + 3 and run.value == 0.1
+
+
+@pytest.mark.parametrize(
+    ("journal", "found"),
+    [
+        (3, "3"),
+        (None, "None"),
+        ("ab", "ab"),
+        ({"a": 1}, "a"),
+        ([1.0], "1.0"),
+        ([[1.0]], "[1.0]"),
+        ([[1.0, "a", 2]], "[1.0, 'a', 2]"),
+        ([["a", 1.0]], "['a', 1.0]"),
+        ([[True, "a"]], "[True, 'a']"),
+        ([[float("nan"), "a"]], "nan"),
+        ([[float("-inf"), "a"]], "-inf"),
+        ([[1.0, 2]], "[1.0, 2]"),
+        ([None], "None"),
+    ],
+)
+def test_a_journal_of_a_wrong_shape_is_one_line(journal, found):
+    with pytest.raises(
+        pe.InputError, match=r"journal\[0\]: expected an entropy, a digest"
+    ) as error:
+        problem().search_run(journal=journal)
+    assert found in str(error.value) and "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("more", [1, 40, None], ids=["one more", "40 more", "doubled"])
+def test_a_journal_that_is_longer_than_its_search_is_refused(more):
+    """It is another search's, or damaged: it would be written back as it is."""
+    whole = told(problem().search_run()).journal
+    with pytest.raises(pe.InputError, match=r"evaluated\[90\]: expected no more entries"):
+        problem().search_run(journal=[*whole, *whole[:more]])
+    assert problem().search_run(journal=whole).is_done
+
+
 def test_a_search_without_anything_free_asks_for_its_start_alone():
     one = study()
     fixed = replace(one, search=replace(one.search, free={"roof": ()}))

@@ -7,9 +7,11 @@ import os
 import pickle
 import signal
 import sys
+import threading
 import time
 from operator import itemgetter
 
+import numpy as np
 import psutil
 import pytest
 
@@ -18,6 +20,10 @@ from pe_tools.engine_process import FOLLOWS_MOUSE, EngineEnded, EngineProcess, c
 from pe_tools.jobs import JobRun, OptimizeJob, WatchedJob
 from tests.engine import shapes
 from tests.limits import HANG_S
+
+
+def vehicle_sum(vehicle):
+    return float(vehicle.triangles.sum())
 
 
 def own_sensors():
@@ -84,6 +90,33 @@ def test_some_topics_are_delivered_before_the_others(engine):
     assert engine.deliver_all("score") and engine.pid == pid and not again
     settled(engine)
     assert again == [None] and engine.pid != pid
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="its pipes have no mode that does not wait")
+def test_no_request_waits_for_the_engine(engine):
+    """A process that reads nothing, as it has been stopped: a large request and many small ones are
+    taken at once, cancelled and dropped. Without the writer's queue the test hangs until the timer
+    lets the process go on."""
+    ask(engine, "begin", math.factorial, 3)
+    settled(engine)
+    process, late = psutil.Process(engine.pid), []
+    process.suspend()
+    timer = threading.Timer(HANG_S, lambda: (late.append(True), process.resume()))
+    timer.start()
+    try:
+        faces = np.random.default_rng(0).uniform(-1.0, 1.0, (200_000, 3, 3))
+        large = ask(engine, "large", vehicle_sum, pe.Vehicle(faces))
+        dropped = ask(engine, "dropped", bytes, 3_000_000)
+        small = [ask(engine, f"small {n}", len, "x" * 1000) for n in range(500)]
+        engine.cancel("small 0")
+        engine.drop("dropped")
+        assert all(engine.deliver_all() for _ in range(20))
+        assert not late and not large and not any(small)
+    finally:
+        timer.cancel()
+        process.resume()
+    settled(engine)
+    assert large == [float(faces.sum())] and small == [[1000]] * 500 and not dropped
 
 
 def test_what_cannot_be_sent_fails_at_once_and_harms_nothing(engine):

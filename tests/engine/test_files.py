@@ -4,24 +4,31 @@ import csv
 import errno
 import os
 import re
+import stat
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis.strategies import lists, sampled_from
 
 from pe_core.base import errors, files
 from pe_core.base.errors import InputError, available_bytes, require_memory
 from pe_core.base.files import (
     csv_text,
+    decode_text,
+    encode_like,
     file_stem,
     is_reserved,
+    put_in_place,
     read_bytes,
     require_new,
     unmarked,
     write_all_bytes,
     write_bytes,
 )
+from pe_core.base.input_files import not_noting_inputs, noting_inputs
 
 resource = pytest.importorskip("resource")
 
@@ -173,7 +180,7 @@ def test_a_file_is_on_the_disk_before_its_name_counts_and_its_folder_after(tmp_p
 def test_the_rule_for_outputs(tmp_path):
     """A name that is free, or one that the user gives away; a link counts, an input never goes."""
     path, link, loop = (tmp_path / name for name in ("mine", "link", "loop"))
-    require_new(path, replace=False, inputs=[path])
+    require_new(path, replace=False)
     path.write_bytes(b"mine")
     link.symlink_to("nowhere")
     loop.symlink_to("loop")
@@ -182,8 +189,66 @@ def test_the_rule_for_outputs(tmp_path):
             require_new(each, replace=False)
         require_new(each, replace=True)
     (tmp_path / "also").symlink_to("mine")
-    with pytest.raises(InputError, match="another file than the input"):
-        require_new(tmp_path / "also", replace=True, inputs=[path])
+    with pytest.raises(InputError, match="another file than the input"), noting_inputs():
+        read_bytes(path)
+        require_new(tmp_path / "also", replace=True)
+
+
+def test_no_writer_replaces_what_a_command_has_read(tmp_path):
+    """Under any of its names; files that are read to be changed are none of its inputs."""
+    path, other, link = (tmp_path / name for name in ("mine", "other", "link"))
+    path.write_bytes(b"mine")
+    link.hardlink_to(path)
+    with noting_inputs():
+        read_bytes(path)
+        for name in (path, link):
+            with pytest.raises(InputError, match="another file than the input"):
+                write_all_bytes({other: b"new", name: b"new"})
+            with pytest.raises(InputError, match="another file than the input"):
+                put_in_place({other: name})
+        assert not other.exists() and path.read_bytes() == b"mine"
+        write_bytes(other, b"made")
+        with not_noting_inputs():
+            read_bytes(other)
+        write_bytes(other, b"changed")
+    write_bytes(path, b"changed")
+    assert (path.read_bytes(), other.read_bytes()) == (b"changed", b"changed")
+
+
+@pytest.mark.parametrize("mode", [0o600, 0o640, 0o755])
+def test_a_file_that_is_replaced_keeps_its_permissions_and_a_link_to_it_stays(tmp_path, mode):
+    """By each of the two ways in which files are written: a link is followed, as by an editor."""
+    path, link, second = (tmp_path / name for name in ("mine", "link", "second"))
+    for each in (path, second):
+        each.write_bytes(b"old")
+        each.chmod(mode)
+    link.symlink_to("mine")
+    write_all_bytes({link: b"new", tmp_path / "fresh": b"new"})
+    (tmp_path / "made").write_bytes(b"new")
+    put_in_place({tmp_path / "made": second})
+    assert link.is_symlink() and path.read_bytes() == second.read_bytes() == b"new"
+    assert [stat.S_IMODE(each.stat().st_mode) for each in (path, second)] == [mode, mode]
+    (tmp_path / "other").write_bytes(b"")
+    fresh = [(tmp_path / name).stat().st_mode for name in ("fresh", "other")]
+    assert fresh[0] == fresh[1], "a new file has the permissions of the user's other new files"
+
+
+@given(
+    old=lists(sampled_from(["a", "", "b # c", "\u2028", "\x0b"]), max_size=8),
+    ends=lists(sampled_from(["\n", "\r\n", "\r"]), min_size=8, max_size=8),
+    mark=sampled_from([b"", b"\xef\xbb\xbf"]),
+    last=sampled_from(["", "\n", "\r\n"]),
+)
+def test_a_text_that_is_not_changed_has_its_old_bytes(old, ends, mark, last):
+    ends[len(old) - 1 :] = [last]
+    data = mark + "".join(a + b for a, b in zip(old, ends, strict=False)).encode()
+    assert encode_like(decode_text(data), data) == data
+
+
+def test_a_changed_line_has_the_end_of_most_lines():
+    old = b"a\r\nb\r\nc\nd\r\n"
+    assert encode_like("a\nB\nc\nnew\nd\n", old) == b"a\r\nB\r\nc\nnew\r\nd\r\n"
+    assert encode_like("a\nb", b"a") == b"a\nb"
 
 
 FORMULAS = ('=HYPERLINK("http://a.b","c")', "+cmd", "-1+A1", "@SUM(A1)", "'=1", "\t=1", "＝1")

@@ -171,6 +171,17 @@ def test_a_front_that_resumes_is_the_same(whole):
     assert {**one, "run": 0} == {**other, "run": 0}
 
 
+def test_journals_that_are_not_of_this_front_are_refused(whole):
+    """Entries that are left at the end, and the journal of a search that was never begun."""
+    entries = whole.journals.entries()
+    first = next(iter(entries))
+    for wrong in ({first: entries[first] * 2}, {"of another front": entries[first]}):
+        job = FrontJob(study(), 1)
+        job.journals = FrontJournals(entries | wrong)
+        with pytest.raises(pe.InputError, match=r"journals|no more entries"):
+            list(job)
+
+
 class Counted(ThreadPoolExecutor):
     """Two threads as workers, which unpickle what they are sent; `tasks` counts them."""
 

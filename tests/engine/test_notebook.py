@@ -2,7 +2,7 @@
 
 import inspect
 import sys
-from dataclasses import is_dataclass
+from dataclasses import is_dataclass, replace
 
 import numpy as np
 import pytest
@@ -186,6 +186,25 @@ def test_without_a_package_a_line_says_what_to_install(monkeypatch, values, pack
     with pytest.raises(pe.InputError, match=r"pip install .perception-entropy") as told:
         values[1].to_pandas() if package == "pandas" else pt.plot.ground(values[0])
     assert told.value.field == package
+
+
+@pytest.mark.parametrize("name", ["$$", "$x", "a$b$c", r"$\frac$", r"\$", "100 $"])
+def test_names_of_anybody_s_file_are_no_mathematics(name):
+    import matplotlib.pyplot as plt
+
+    one = study()
+    (sensor,) = one.rig
+    parts = one.vehicle.parts
+    vehicle = pe.Vehicle(one.vehicle.triangles, parts, [name + p for p in one.vehicle.part_names])
+    named = replace(one, vehicle=vehicle).with_rig(pe.Rig([replace(sensor, name=name)]))
+    figure, (top, low, last) = plt.subplots(3)
+    pt.plot.rig(named, axes=top)
+    pt.plot.beams(named, name, axes=low)
+    pt.plot.compare({name: named.evaluator().score(named.rig)}, axes=last)
+    figure.canvas.draw()
+    texts = [each.get_text() for each in top.get_legend().get_texts()]
+    assert [text.replace(r"\$", "$") for text in texts] == [name]
+    plt.close(figure)
 
 
 def test_plots_draw_on_given_axes_and_refuse_what_is_none():

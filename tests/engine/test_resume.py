@@ -157,6 +157,10 @@ def begun_in(folder, **changes):
         ({"journals": {"": [[1.0, "\ud800"]]}}, "file: expected valid JSON, found half a"),
         ({"inputs": {"study": "\udfff"}}, "file: expected valid JSON, found half a surrogate"),
         ({"journals": {"": None}}, "evaluated[0]: expected an entropy, a digest, found None"),
+        ({"journals": {"": {"a": 1}}}, "evaluated[0]: expected an entropy, a digest, found"),
+        ({"journals": {"": [[-math.inf, "a"]]}}, "evaluated[0]: expected an entropy, a digest"),
+        ({"journals": {"": [[1.0, "a", "b"]]}}, "evaluated[0]: expected an entropy, a digest"),
+        ({"journals": {"": [], "other": []}}, "journals: expected the journal of one search"),
     ],
 )
 def test_a_state_that_is_none_is_refused_in_one_line(out, changes, complaint, capsys):
@@ -164,6 +168,19 @@ def test_a_state_that_is_none_is_refused_in_one_line(out, changes, complaint, ca
     assert main(["optimize", "--resume", str(out)]) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"pe: {out / SEARCH}: {complaint}")
+
+
+def test_a_journal_that_is_longer_than_its_search_is_refused():
+    """A journal that was doubled by hand, or by a tool that merges files."""
+    study = a_study()
+    job = pt.OptimizeJob(study, 1)
+    outcome_of(job)
+    known = job.journal.entries
+    with pytest.raises(
+        pe.InputError, match=rf"evaluated\[{len(known)}\]: expected no more entries"
+    ):
+        outcome_of(pt.OptimizeJob(study, 1, journal=Journal(known * 2)))
+    assert outcome_of(pt.OptimizeJob(study, 1, journal=Journal(known))).evaluated == known
 
 
 def test_a_fingerprint_tells_studies_apart_by_what_they_are(tmp_path):

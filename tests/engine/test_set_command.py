@@ -111,6 +111,18 @@ def leaves(data, path=()):
         yield path, data
 
 
+def test_the_file_keeps_its_permissions_its_link_and_its_line_ends(path, capsys):
+    """0600 became 0644, a link a file of its own, and CRLF became LF."""
+    data = path.read_bytes().replace(b"\n", b"\r\n")
+    path.write_bytes(data)
+    path.chmod(0o600)
+    link = path.with_name("link.toml")
+    link.symlink_to(path.name)
+    assert main(["set", str(link), "samples=2048"]) == 0
+    assert link.is_symlink() and path.stat().st_mode & 0o777 == 0o600
+    assert path.read_bytes() == data.replace(b"samples = 1024 ", b"samples = 2048 ")
+
+
 @pytest.mark.parametrize("path", [*STUDIES[::5], None], ids=lambda p: p and p.parent.name)
 def test_each_key_of_an_example_can_be_changed_alone(path):
     """A text with one key changed is the data with that key changed, and no comment is lost."""

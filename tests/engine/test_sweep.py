@@ -4,8 +4,10 @@ import csv
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
+import threading
 import time
 from concurrent.futures import BrokenExecutor, Executor, Future
 from dataclasses import replace
@@ -117,6 +119,79 @@ def test_sweeps_that_cannot_be_are_one_line(study, out, more, complaint, capsys,
     assert main(["sweep", str(study), "-o", str(out), *more]) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"pe: {complaint}"), line
+
+
+GREETINGS = {
+    "silent": None,
+    "web server": b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n",
+    "noise": b"\xff" * 4096,
+    "zeros": bytes(64),
+    "closed": b"",
+}
+"""What a peer that is no scheduler sends; nothing, and it closes the connection."""
+
+
+@pytest.mark.parametrize("protocol", ["tcp", "tls"])
+@pytest.mark.parametrize("greeting", GREETINGS.values(), ids=GREETINGS)
+def test_a_peer_that_is_no_scheduler_is_one_line(
+    study, out, greeting, protocol, capsys, monkeypatch
+):
+    """Also TLS without certificates."""
+    monkeypatch.setattr("pe_tools.cli.executors.CONNECT_S", 0.5)
+    with socket.socket() as peer:
+        peer.bind(("127.0.0.1", 0))
+        peer.listen()
+        taken = []
+
+        def greet():
+            taken.append(peer.accept()[0])
+            if greeting:
+                taken[0].sendall(greeting)
+            if greeting == b"":
+                taken[0].close()
+
+        threading.Thread(target=greet, daemon=True).start()
+        address = f"{protocol}://127.0.0.1:{peer.getsockname()[1]}"
+        assert main(["sweep", str(study), "-o", str(out), "--executor", address]) == 1
+        (line,) = capsys.readouterr().err.splitlines()
+        assert line.startswith(f"pe: {address}: scheduler: expected a scheduler that answers")
+        for each in taken:
+            each.close()
+
+
+OWN_EXECUTORS = """
+from concurrent.futures import Executor
+
+
+class NoShutdown:
+    def submit(self, function, *arguments):
+        return None
+
+
+class NoFutures(Executor):
+    def submit(self, function, *arguments):
+        return None
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "complaint"),
+    [
+        ("NoShutdown", "command line: executor: expected a function that returns a"),
+        ("NoFutures", "executor: submit: expected an executor whose submit returns a"),
+    ],
+)
+@pytest.mark.parametrize("verb", ["sweep", "optimize"])
+def test_an_executor_that_is_none_is_one_line(
+    study, out, verb, name, complaint, tmp_path, capsys, monkeypatch
+):
+    (tmp_path / f"own_{verb}_{name}.py").write_text(OWN_EXECUTORS)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    named = ["--executor", f"own_{verb}_{name}:{name}"]
+    assert main([verb, str(study), "-o", str(out), *named]) == 1
+    line = [each for each in capsys.readouterr().err.splitlines() if each.startswith("pe: ")][-1]
+    assert line.startswith(f"pe: {complaint}")
 
 
 def test_files_of_somebody_s_own_are_refused_before_the_work(study, out, capsys):

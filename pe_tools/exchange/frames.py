@@ -23,6 +23,7 @@ from .foreign_values import MAX_FRAMES, FileTexts, require_at_most
 from .passthrough import pose_of_entry
 from .portable import ORIGIN, PortableSensor
 from .portable_kinds import CAMERA
+from .sensor_names import said_kind
 
 Quaternion = tuple[float, float, float, float]
 
@@ -37,6 +38,9 @@ GROUND, REAR_AXLE_GROUND, REAR_AXLE = "ground", "rear axle on the ground", "rear
 PROPER_WITHIN = 1e-6  # Maximum deviation of a matrix from a rotation
 ASKING = "calibration"  # Source of messages on poses that a program hands over
 OPTICAL = "_optical"  # Suffix of the name of a camera's optical frame
+OPTICAL_NAME = re.compile("[_/]?optical(_frame|_link)?$")  # End of such names in foreign files
+OPTICAL_ROLL = math.radians(10.0)
+"""A camera whose roll is nearer than this to 90 degrees has the axes of an optical frame [rad]."""
 ILLEGAL, ILLEGAL_IN_TF = (re.compile(f"[^A-Za-z0-9_{more}]+") for more in ("", "/"))
 AXES = (
     "x forward, y left, z up; metres, radians. NAME_optical looks along z, x right, y down (REP "
@@ -125,6 +129,62 @@ def seen_from(outer: Pose, inner: Pose) -> Pose:
         return Pose((x, y, z), inner.rpy)
     back = outer.ground_from_sensor.T
     return pose_of(product(back, inner.ground_from_sensor), turned(back, (x, y, z)))
+
+
+def is_optical(name: str, pose: Pose) -> bool:
+    """Whether a camera's frame has optical axes: its name says so, or z is level and x is not
+    forward: the roll is near 90 degrees. `pose` is that on the vehicle."""
+    return bool(OPTICAL_NAME.search(name)) or abs(abs(pose.rpy[0]) - math.pi / 2.0) <= OPTICAL_ROLL
+
+
+def body_of_optical(pose: Pose) -> Pose:
+    """Return the pose of a camera, which looks along x, from that of its optical frame."""
+    return pose_of(product(pose.ground_from_sensor, BODY_FROM_OPTICAL.T), pose.position)
+
+
+TURNED = "a frame of this name or roll (near 90 deg) is optical: z is taken as forward"
+TURNED_APART = "its optical frame looks elsewhere than its link, by {:.3g} deg; it is followed"
+APART = math.radians(1.0)  # Optical axes nearer than this to the x axis of the link are along it
+
+
+def with_body_axes(sensor: PortableSensor) -> PortableSensor:
+    """Return a sensor; a camera whose frame is an optical one is turned, and has a note on it."""
+    kind = sensor.kind or said_kind(sensor.name)
+    if kind != CAMERA or sensor.told or not is_optical(sensor.name, sensor.pose):
+        return sensor
+    return replace(sensor, kind=kind, pose=body_of_optical(sensor.pose), told=TURNED)
+
+
+def as_camera(sensor: PortableSensor, optical: Pose) -> PortableSensor:
+    """Return the camera of an optical frame, with a note if its link looks elsewhere."""
+    pose = body_of_optical(optical)
+    axes = (each.ground_from_sensor[:, 0] for each in (sensor.pose, pose))
+    apart = math.acos(min(1.0, max(-1.0, sum(a * b for a, b in zip(*axes, strict=True)))))
+    is_own = sensor.pose == optical
+    told = TURNED_APART.format(math.degrees(apart)) if apart > APART else ""
+    return replace(sensor, kind=CAMERA, pose=pose, told=TURNED if is_own else told)
+
+
+def camera_frames(parents: Mapping[str, str]) -> dict[str, str]:
+    """Return the name of the camera of each optical frame: that of its parent, if this is not the
+    root, no frame of the vehicle, and has no other optical frame; else its own without the suffix.
+    `parents` are names of parents by that of the frame."""
+    optical = [name for name in parents if OPTICAL_NAME.search(name)]
+    of_parent: dict[str, list[str]] = {}
+    for name in optical:
+        of_parent.setdefault(parents[name], []).append(name)
+    result = {}
+    for name in optical:
+        parent = parents[name]
+        is_link = parent in parents and said_kind(parent) in (CAMERA, None)
+        stem = OPTICAL_NAME.sub("", name) or name
+        result[name] = parent if is_link and len(of_parent[parent]) == 1 else stem
+    return result
+
+
+def optical_of_body(pose: Pose) -> Pose:
+    """Return the pose of a camera's optical frame from that of the camera."""
+    return pose_of(product(pose.ground_from_sensor, BODY_FROM_OPTICAL), pose.position)
 
 
 def origin_in_ground(

@@ -1,5 +1,6 @@
 """Import of a rig from the files of another program."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,15 +12,19 @@ from pe_core.base.values import A_NAME
 from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig, Sensor, SensorModel
 from pe_core.scene.vehicle_description import Reference
+from pe_core.sensors import KINDS
 from pe_core.study.passthrough import Passthrough, SourceSensor
 
 from . import portable_kinds
 from .foreign_values import MAX_SENSORS, require_at_most
 from .frames import composed, origin_in_ground, shifted
 from .lens_pictures import alike
-from .passthrough import NO_WORD, listed_kinds, model_text, parted
+from .passthrough import listed_kinds, model_text, parted
 from .portable import PortableSensor, merged_lines, named_apart
 from .rig_formats import RigFormat, detect_format, rig_format
+from .sensor_names import model_by_name, said_kind
+
+NO_WORD = re.compile("[^a-z0-9]+")  # What two spellings of a model's name may differ in
 
 
 class Modelled(NamedTuple):
@@ -130,16 +135,19 @@ def _imported(
     hint = f"; an export to {row.title} has them again" if row.passes_through else ""
     left_out_lines = [f"left out: {left_out_names}{hint}"] if left_out else []
     notes = merged_lines(((m.sensor.name, m.sensor.told) for m in modelled), len(modelled))
-    lines = (*left_out_lines, *renamed, *notes, *(m.line for m in modelled if m.line))
+    remarks = row.remarks(path)
+    lines = (*left_out_lines, *renamed, *remarks, *notes, *(m.line for m in modelled if m.line))
     to_choose = tuple(m.sensor.name for m in modelled if m.stands_in)
     return ImportedRig(Rig(rig), to_choose, lines, passthrough if passthrough.holds else None)
 
 
 def _with_model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> Modelled:
     """Return a sensor with its kind resolved, its model, and a message about the model."""
-    sensor = replace(sensor, kind=sensor.kind or portable_kinds.kind_by_name(sensor.name))
+    said = said_kind(sensor.name)
+    sensor = replace(sensor, kind=sensor.kind or (said if said in KINDS else portable_kinds.LIDAR))
     modelled = Modelled(sensor, catalog.load(chosen), "") if chosen else _modelled(sensor, row)
-    return modelled._replace(sensor=row.settled(replace(sensor, model=modelled.model.name)))
+    known = replace(sensor, model=modelled.model.name, is_stand_in=modelled.stands_in)
+    return modelled._replace(sensor=row.settled(known))
 
 
 def _modelled(sensor: PortableSensor, row: RigFormat) -> Modelled:
@@ -157,10 +165,16 @@ def _modelled(sensor: PortableSensor, row: RigFormat) -> Modelled:
         return Modelled(sensor, portable_kinds.with_ranges(model, sensor), line)
     if (own := portable_kinds.portable_kind(sensor.kind).model(sensor, row.usual_size)) is not None:
         return Modelled(sensor, *own)
+    for text in filter(None, (sensor.model, sensor.name)):
+        if named := model_by_name(text, sensor.kind):
+            model = portable_kinds.with_ranges(catalog.load(named), sensor)
+            return Modelled(sensor, model, f"{sensor.name}: {named}, as {shown(text)} says")
     stand_in = portable_kinds.stand_in_of(sensor.kind or "")
     assert stand_in is not None, "`parted` has left it out"
     reason = (
         f"no {shown(sensor.model)} in the catalogue" if sensor.model else "no model in the file"
     )
+    if said_kind(sensor.name) is None and sensor.kind == portable_kinds.LIDAR:
+        reason += ", and no kind in its name"
     line = f"{sensor.name}: {reason}; {stand_in} stands in: choose its model"
     return Modelled(sensor, catalog.load(stand_in), line, True)

@@ -41,13 +41,11 @@ class PortableKind:
     """How the exchange model expresses the sensors of a kind. `figures` returns the fields of
     `PortableSensor` that describe a model. `model` returns the model of a sensor's figures, by the
     usual image size of the format; None without figures of the kind. `stand_in` is the catalogue
-    name of the model that stands in where a file names none, `name_parts` are parts of a name that
-    identify the kind, if a file does not state it."""
+    name of the model that stands in where a file names none."""
 
     figures: Callable[[Any], Mapping[str, Any]]
     model: Callable[[PortableSensor, Size | None], OwnModel | None]
     stand_in: str | None = None
-    name_parts: tuple[str, ...] = ()
 
 
 def portable_kind(name: str | None) -> PortableKind:
@@ -66,13 +64,6 @@ def has_model(sensor: PortableSensor) -> bool:
     """Whether a sensor's kind is known, and the file or the catalogue has a model for it."""
     kind = sensor.kind or ""
     return kind in KINDS and (sensor.has_figures or stand_in_of(kind) is not None)
-
-
-def kind_by_name(name: str) -> str:
-    """Return the kind of a sensor by its name; a LiDAR where nothing in it identifies one."""
-    lowered = name.lower()
-    rows = PORTABLE_KINDS.items()
-    return next((k for k, row in rows if any(p in lowered for p in row.name_parts)), LIDAR)
 
 
 def portable_sensors(rig: Rig) -> PortableRig:
@@ -206,15 +197,10 @@ PORTABLE_KINDS: dict[str, PortableKind] = {
         "Velodyne VLP-16 Puck",
     ),
     CAMERA: PortableKind(
-        lambda model: {"picture": picture_of(model)},
-        _camera_model,
-        "nuScenes front",
-        ("cam", "fisheye", "rgb", "image"),
+        lambda model: {"picture": picture_of(model)}, _camera_model, "nuScenes front"
     ),
-    RADAR: PortableKind(_with_field, _model_by_field, "Continental ARS408-21", ("radar",)),
-    ULTRASONIC: PortableKind(
-        _with_field, _model_by_field, "Bosch Ultrasonic 3.1", ("ultrasonic", "uss")
-    ),
+    RADAR: PortableKind(_with_field, _model_by_field, "Continental ARS408-21"),
+    ULTRASONIC: PortableKind(_with_field, _model_by_field, "Bosch Ultrasonic 3.1"),
 }  # Rows by kind; other kinds are expressed by `OTHER`
 OTHER = PortableKind(
     lambda model: {"parameters": json_entry(catalog.to_table(model))}, _model_by_table

@@ -144,25 +144,36 @@ def body_of_optical(pose: Pose) -> Pose:
 
 TURNED = "a frame of this name or roll (near 90 deg) is optical: z is taken as forward"
 TURNED_APART = "its optical frame looks elsewhere than its link, by {:.3g} deg; it is followed"
+NOT_TURNED = "its optical frame is turned as its own frame: x is taken as forward"
 APART = math.radians(1.0)  # Optical axes nearer than this to the x axis of the link are along it
 
 
-def with_body_axes(sensor: PortableSensor) -> PortableSensor:
-    """Return a sensor; a camera whose frame is an optical one is turned, and has a note on it."""
+def with_body_axes(sensor: PortableSensor, frame: str = "") -> PortableSensor:
+    """Return a sensor; a camera whose frame is an optical one is turned, and has a note on it.
+    `frame` is the name of the frame, if it is not the sensor's."""
     kind = sensor.kind or said_kind(sensor.name)
-    if kind != CAMERA or sensor.told or not is_optical(sensor.name, sensor.pose):
+    if kind != CAMERA or not is_optical(frame or sensor.name, sensor.pose):
         return sensor
     return replace(sensor, kind=kind, pose=body_of_optical(sensor.pose), told=TURNED)
 
 
 def as_camera(sensor: PortableSensor, optical: Pose) -> PortableSensor:
-    """Return the camera of an optical frame, with a note if its link looks elsewhere."""
+    """Return the camera of an optical frame below its own: it is there and looks along its z axis.
+    A note says so where its own frame looks elsewhere. An optical frame that is turned as its own
+    frame is, is one only if the roll says so, too."""
+    own_rotation = sensor.pose.ground_from_sensor
+    camera = replace(sensor, kind=CAMERA, pose=Pose(optical.position, sensor.pose.rpy))
+    if np.abs(optical.ground_from_sensor - own_rotation).max() < PROPER_WITHIN:
+        turned_camera = with_body_axes(camera)
+        return turned_camera if turned_camera.told else replace(camera, told=NOT_TURNED)
     pose = body_of_optical(optical)
-    axes = (each.ground_from_sensor[:, 0] for each in (sensor.pose, pose))
-    apart = math.acos(min(1.0, max(-1.0, sum(a * b for a, b in zip(*axes, strict=True)))))
-    is_own = sensor.pose == optical
+    rotation = pose.ground_from_sensor
+    if np.abs(rotation - own_rotation).max() < PROPER_WITHIN:  # but for the file's rounding
+        return camera
+    cosine = float(rotation[:, 0] @ own_rotation[:, 0])
+    apart = math.acos(min(1.0, max(-1.0, cosine)))
     told = TURNED_APART.format(math.degrees(apart)) if apart > APART else ""
-    return replace(sensor, kind=CAMERA, pose=pose, told=TURNED if is_own else told)
+    return replace(camera, pose=pose, told=told)
 
 
 def camera_frames(parents: Mapping[str, str]) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""Sensors of Gazebo's ``<sensor>`` elements, in a URDF or an SDF: kinds, poses, several of a link."""
+"""Sensors of Gazebo, in a URDF or an SDF: their kinds, their poses, several of a link."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -18,10 +18,11 @@ from .portable import ORIGIN, PortableSensor
 from .portable_kinds import CAMERA, LIDAR, has_model
 
 RANGES = {"min_range": values.MIN_RANGE, "max_range": values.FARTHEST}
+TAG = CAMERA  # Tag of a camera in a sensor
 OWN = "perception_entropy"  # Tag of the element that an export adds
 KIND_BY_TYPE = {
-    **dict.fromkeys(("lidar", "gpu_lidar", "ray", "gpu_ray"), LIDAR),
-    **dict.fromkeys(("camera", "multicamera", "wideanglecamera", "wide_angle_camera"), CAMERA),
+    **dict.fromkeys((LIDAR, "gpu_lidar", "ray", "gpu_ray"), LIDAR),
+    **dict.fromkeys((CAMERA, "multicamera", "wideanglecamera", "wide_angle_camera"), CAMERA),
     **dict.fromkeys(("depth", "depth_camera", "rgbd", "rgbd_camera"), CAMERA),
     **dict.fromkeys(("thermal", "thermal_camera", "stereo"), CAMERA),
 }
@@ -44,7 +45,7 @@ def sensor_elements(blocks: Iterable[Element]) -> list[Element]:
     """Return the sensors of blocks; a sensor with several cameras is one for each."""
     result = []
     for sensor in (each for block in blocks for each in block.findall("sensor")):
-        cameras = sensor.findall("camera")
+        cameras = sensor.findall(TAG)
         if len(cameras) < 2:
             result.append(sensor)
             continue
@@ -111,7 +112,7 @@ def _pose_of(
     path: Path, field: str, link: Pose, element: Element, poses: Mapping[str, Pose]
 ) -> Pose:
     """Return the pose of a sensor: its own on its link, then that of its camera on it."""
-    camera = element.find("camera")
+    camera = element.find(TAG)
     pose = link
     for holder in (element, camera):
         inner = None if holder is None else holder.find("pose")

@@ -12,7 +12,7 @@ from pe_core.base.values import A_NAME
 from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig, Sensor, SensorModel
 from pe_core.scene.vehicle_description import Reference
-from pe_core.sensors import KINDS
+from pe_core.sensors import KINDS, coinciding
 from pe_core.study.passthrough import Passthrough, SourceSensor
 
 from . import portable_kinds
@@ -137,6 +137,10 @@ def _imported(
     notes = merged_lines(((m.sensor.name, m.sensor.told) for m in modelled), len(modelled))
     remarks = row.remarks(path)
     lines = (*left_out_lines, *renamed, *remarks, *notes, *(m.line for m in modelled if m.line))
+    lines += tuple(
+        f"{', '.join(sensor.name for sensor in group)}: at the same place, within 1 cm; each counts"
+        for group in coinciding(rig)
+    )
     to_choose = tuple(m.sensor.name for m in modelled if m.stands_in)
     return ImportedRig(Rig(rig), to_choose, lines, passthrough if passthrough.holds else None)
 

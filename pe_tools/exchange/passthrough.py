@@ -20,7 +20,7 @@ from pe_core.study.passthrough import Passthrough, json_entry
 
 from .foreign_values import pose_from
 from .portable import ORIGIN, PortableRig, PortableSensor
-from .portable_kinds import has_model
+from .portable_kinds import RADAR, ULTRASONIC, has_model
 from .sensor_names import FRAME, NO_SENSOR_WORDS, said_kind
 
 UNMOVED_M, UNTURNED = 2e-5, 4e-6
@@ -143,7 +143,7 @@ def pose_of_entry(sensor: PortableSensor) -> Pose:
 
 
 SENSORS = frozenset(["gnss", "gps", "imu", "ins", "collision", "sonar", "lane_invasion"])
-NOUNS = frozenset({"radar", "ultrasonic", "link", FRAME}) | (NO_SENSOR_WORDS - SENSORS)
+NOUNS = frozenset({RADAR, ULTRASONIC, "link", FRAME}) | (NO_SENSOR_WORDS - SENSORS)
 """Kinds that are nouns; of others one says sensor."""
 
 

@@ -62,7 +62,7 @@ def sensor_links(tree: LinkTree) -> tuple[list[SensorLink], list[str]]:
     for name in tree.links[1:]:
         if name in owners:
             if owners[name] not in said:
-                result.append(SensorLink(owners[name], name, CAMERA, name))
+                result.append(SensorLink(owners[name], name, CAMERA))
             continue
         kind = said[name]
         may_be = name not in on_them and name not in tree.heavy and name not in tree.moving

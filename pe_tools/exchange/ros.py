@@ -96,12 +96,15 @@ def read(path: Path) -> PortableRig:
     optical_of = {owner: name for name, owner in owners.items() if owner in links}
     sensors = []
     for name in links:
-        if name in owners and owners[name] in links:
+        owner = owners.get(name)
+        if owner in links:
             continue
-        optical = name if name in owners else optical_of.get(name)
-        sensor = PortableSensor(owners.get(name, name), poses[name])
-        sensors.append(sensor if optical is None else frames.as_camera(sensor, poses[optical]))
-    return with_info(path.parent, [frames.with_body_axes(sensor) for sensor in sensors])
+        sensor = PortableSensor(owner or name, poses[name], CAMERA if owner else None)
+        if name in optical_of:
+            sensors.append(frames.as_camera(sensor, poses[optical_of[name]]))
+        else:
+            sensors.append(frames.with_body_axes(sensor, name))
+    return with_info(path.parent, sensors)
 
 
 def _links(path: Path) -> dict[str, tuple[str, Pose]]:

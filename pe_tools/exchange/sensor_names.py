@@ -62,75 +62,26 @@ KIND_WORDS = {
     ULTRASONIC: "ultrasonic uss",
 }
 """Words of names by the kind that they say."""
-NO_SENSOR_WORDS = frozenset(
-    [
-        "sonar",
-        "gnss",
-        "gps",
-        "imu",
-        "ins",
-        "gyro",
-        "accel",
-        "odom",
-        "odometry",
-        "magnetometer",
-        "collision",
-        "antenna",
-        "marker",
-        "wheel",
-        "tire",
-        "tyre",
-        "mount",
-        "bracket",
-        "pole",
-        "mast",
-        "plate",
-        "bumper",
-        "hitch",
-        "steering",
-        "knuckle",
-        "axle",
-        "shock",
-        "hinge",
-        "rotor",
-        "caster",
-        "motor",
-        "gripper",
-        "inertia",
-        "microphone",
-        "speaker",
-        "lamp",
-    ]
+_OTHER_WORDS = (
+    "sonar gnss gps imu ins gyro accel odom odometry magnetometer collision",
+    "antenna marker wheel tire tyre mount bracket pole mast plate bumper hitch steering knuckle",
+    "axle shock hinge rotor caster motor gripper inertia microphone speaker lamp",
 )
+NO_SENSOR_WORDS = frozenset(word for words in _OTHER_WORDS for word in words.split())
 """Words of names of things that are neither of these kinds."""
 NAME_PARTS = {
     CAMERA: ("cam", "fisheye", "rgb", "image"),
-    LIDAR: ("lidar", "laser"),
-    RADAR: ("radar",),
-    ULTRASONIC: ("ultrasonic", "uss"),
+    LIDAR: (LIDAR, "laser"),
+    RADAR: (RADAR,),
+    ULTRASONIC: (ULTRASONIC, "uss"),
 }
 """Parts of a word by the kind that they say, where no whole word says one."""
 FRAME = "frame"  # What a frame of `FRAME_NAMES` is
-FRAME_NAMES = frozenset(
-    [
-        "base",
-        "base_link",
-        "base_frame",
-        "base_footprint",
-        "sensor_kit",
-        "sensor_kit_base_link",
-        "chassis",
-        "chassis_link",
-        "body",
-        "body_link",
-        "vehicle",
-        "vehicle_link",
-        "ego_vehicle",
-        "car",
-        "map",
-        "world",
-    ]
+_FRAMES = (
+    "base base_link base_frame base_footprint sensor_kit sensor_kit_base_link chassis",
+    "chassis_link body body_link vehicle vehicle_link ego_vehicle car map world",
 )
+FRAME_NAMES = frozenset(name for names in _FRAMES for name in names.split())
 """Frames of a vehicle that no sensor has."""
 HUMP = re.compile("(?<=[a-z])(?=[A-Z])")  # Between the words of lidarTop
 

@@ -191,9 +191,9 @@ def _tree(robot: Element, in_root: Mapping[str, Pose]) -> LinkTree:
 
 def _sensor_of_link(link: SensorLink, poses: Mapping[str, Pose]) -> PortableSensor:
     sensor = PortableSensor(link.name, poses[link.frame], link.kind)
-    if link.optical is not None:
+    if link.optical is not None and link.optical != link.frame:
         return frames.as_camera(sensor, poses[link.optical])
-    return frames.with_body_axes(sensor)
+    return frames.with_body_axes(sensor, link.frame)
 
 
 def _description(path: Path) -> Element:

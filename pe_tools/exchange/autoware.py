@@ -28,7 +28,7 @@ from .frames import (
     is_optical,
     optical_of_body,
     seen_from,
-    with_body_axes,
+    turned_to_body,
     with_legal_frames,
 )
 from .lens_pictures import alike
@@ -45,8 +45,8 @@ FRAMES = {CAMERA: "/camera_link", LIDAR: "_base_link", RADAR: "/radar_link"}
 HEAD = "# Metres and radians; R = Rz(yaw) Ry(pitch) Rx(roll); x forward, y left, z up.\n"
 NO_INFO = "the kit has no camera_info of it; its lens is not written"
 ODD_INFO = "its camera_info has a lens that is not read; it is kept"
-BODY_AXES = "x forward"
-"""Comment of a camera's frame that is turned as an optical one, and is none."""
+BODY_AXES, OPTICAL_AXES = "x forward", "z forward"
+"""Comments of a camera's frame whose name and roll would say the other."""
 AT_FRAME = "no model is known: its frame is taken as the centre of its scan"
 
 
@@ -138,14 +138,29 @@ def remarks(path: Path) -> list[str]:
 def _models(unit: Unit) -> dict[str, str]:
     """Return catalogue model names by frame, from the comments that `write` adds to frames."""
     catalogued = catalog.entries()
-    models = {path[-1]: text.split("; ")[0] for path, text in unit.text.comments().items()}
-    return {frame: model for frame, model in models.items() if model in catalogued}
+    return {frame: text for frame, (text, _) in _comments(unit).items() if text in catalogued}
 
 
-def _body_frames(unit: Unit) -> set[str]:
-    """Return the frames whose comment says that their axes are no optical ones."""
-    comments = unit.text.comments().items()
-    return {path[-1] for path, text in comments if text.split("; ")[-1] == BODY_AXES}
+def _comments(unit: Unit) -> dict[str, tuple[str, str]]:
+    """Return the comments of frames: the model, or any text, and the axes; empty texts if none."""
+    found = {}
+    for path, comment in unit.text.comments().items():
+        *texts, last = comment.split("; ")
+        axes = last if last in (BODY_AXES, OPTICAL_AXES) else ""
+        found[path[-1]] = ("; ".join(texts) if axes else comment, axes)
+    return found
+
+
+def _is_optical_here(frame: str, pose: Pose, axes: str) -> bool:
+    """Whether a camera's frame is an optical one: by the comment on its axes, else by itself."""
+    return axes == OPTICAL_AXES if axes else is_optical(frame, pose)
+
+
+def _axes_comment(frame: str, pose: Pose, *, optical: bool) -> str:
+    """Return the comment on the axes of a camera's frame; empty if the frame itself says them."""
+    if is_optical(frame, pose) == optical:
+        return ""
+    return OPTICAL_AXES if optical else BODY_AXES
 
 
 def _kind_of(frame: str) -> str | None:
@@ -176,12 +191,13 @@ def read(path: Path) -> PortableRig:
     parents = {unit.parent for unit in units}
     poses |= {name: pose for name, pose in base.frames.items() if name not in parents}
     models = {frame: model for unit in (base, *units) for frame, model in _models(unit).items()}
-    in_body_axes = {frame for unit in (base, *units) for frame in _body_frames(unit)}
+    comments = {frame: both for unit in (base, *units) for frame, both in _comments(unit).items()}
     sensors = []
     for frame, pose in poses.items():
         sensor = PortableSensor(frame, pose, _kind_of(frame), models.get(frame))
-        if frame not in in_body_axes:
-            sensor = with_body_axes(sensor)
+        _, axes = comments.get(frame, ("", ""))
+        if sensor.kind == CAMERA and _is_optical_here(frame, pose, axes):
+            sensor = turned_to_body(sensor)
         sensors.append(replace(sensor, name=frame.removesuffix(_suffix_of(frame))))
     return with_info(folder, sensors)
 
@@ -227,15 +243,11 @@ def _base_frame(sensor: PortableSensor) -> Pose:
 def _frame_lines(sensor: PortableSensor, unit: Pose) -> list[str]:
     """Return the YAML lines of a sensor's frame on a unit; the model name becomes a comment."""
     frame = _frame_of(sensor)
-    comment = _comment_of(sensor, frame, sensor.known_model or "")
+    on_vehicle = _base_frame(sensor)
+    axes = _axes_comment(frame, on_vehicle, optical=False) if sensor.kind == CAMERA else ""
+    comment = "; ".join(filter(None, [sensor.known_model, axes]))
     head = f"{frame}:  # {comment}" if comment else f"{frame}:"
-    return _lines_of(head, seen_from(unit, _base_frame(sensor)))
-
-
-def _comment_of(sensor: PortableSensor, frame: str, model: str) -> str:
-    """Return the comment of a frame: its model, and its axes where they could be mistaken."""
-    mistaken = sensor.kind == CAMERA and is_optical(frame, sensor.pose)
-    return "; ".join(filter(None, [model, BODY_AXES if mistaken else ""]))
+    return _lines_of(head, seen_from(unit, on_vehicle))
 
 
 def _lines_of(head: str, pose: Pose) -> list[str]:
@@ -331,36 +343,35 @@ def _patched(
     `pose` is that of the unit on base_link."""
     values: dict[KeyPath, str] = {}
     comments: dict[KeyPath, str] = {}
-    models, in_body_axes = _models(unit), _body_frames(unit)
+    old_comments = _comments(unit)
     for frame in unit.frames.keys() & by_frame.keys():
         sensor, old = by_frame[frame], unit.frames[frame]
-        was_optical = sensor.kind == CAMERA and frame not in in_body_axes
-        was_optical = was_optical and is_optical(frame, composed(pose, old))
-        on_vehicle = optical_of_body(sensor.pose) if was_optical else _base_frame(sensor)
+        text, axes = old_comments.get(frame, ("", ""))
+        optical = sensor.kind == CAMERA and _is_optical_here(frame, composed(pose, old), axes)
+        on_vehicle = optical_of_body(sensor.pose) if optical else _base_frame(sensor)
         now = seen_from(pose, on_vehicle)
         moved = zip(XYZ, old.position, now.position, strict=True)
         changed = [key for key, a, b in moved if not is_there(a, b)]
         changed += [] if is_turned_so(old, now) else RPY
         numbers = foreign.pose_numbers(now)
         values |= {(unit.parent, frame, key): plain_number(numbers[key]) for key in changed}
-        comment = _new_comment(sensor, frame, models.get(frame), was_optical=was_optical)
-        if comment is not None and (frame in models or frame not in in_body_axes):
-            comments[unit.parent, frame] = comment
+        new_axes = axes
+        if sensor.kind == CAMERA and changed:
+            new_axes = _axes_comment(frame, on_vehicle, optical=optical)
+        new_text = _new_text(sensor, text)
+        if (new_text, new_axes) != (text, axes):
+            comments[unit.parent, frame] = "; ".join(filter(None, [new_text, new_axes]))
     return unit.text.edited(values, comments, ((unit.parent,), added))
 
 
-def _new_comment(
-    sensor: PortableSensor, frame: str, known: str | None, *, was_optical: bool
-) -> str | None:
-    """Return the comment of a frame of a kit; None if its comment stays. `known` is the model that
-    the comment names."""
+def _new_text(sensor: PortableSensor, text: str) -> str:
+    """Return the comment of a frame of a kit: its model if the comment was one, else the same."""
+    if text not in catalog.entries():
+        return text
     model = sensor.known_model or ""
-    if known is not None and model not in catalog.entries():
-        model = known if sensor.kind == CAMERA else ""  # its camera_info describes a camera
-    comment = "" if was_optical else _comment_of(sensor, frame, "")
-    if known is None:
-        return comment or None
-    return "; ".join(filter(None, [model, comment]))
+    if model in catalog.entries():
+        return model
+    return text if sensor.kind == CAMERA else ""  # its camera_info describes a camera
 
 
 def _infos(

@@ -39,8 +39,9 @@ PROPER_WITHIN = 1e-6  # Maximum deviation of a matrix from a rotation
 ASKING = "calibration"  # Source of messages on poses that a program hands over
 OPTICAL = "_optical"  # Suffix of the name of a camera's optical frame
 OPTICAL_NAME = re.compile("[_/]?optical(_frame|_link)?$")  # End of such names in foreign files
-OPTICAL_ROLL = math.radians(10.0)
-"""A camera whose roll is nearer than this to 90 degrees has the axes of an optical frame [rad]."""
+OPTICAL_TILT = math.radians(45.0)
+"""A camera has optical axes if its y axis is nearer than this to the vertical [rad].
+If it looks ahead, its roll is then 45 to 135 degrees."""
 ILLEGAL, ILLEGAL_IN_TF = (re.compile(f"[^A-Za-z0-9_{more}]+") for more in ("", "/"))
 AXES = (
     "x forward, y left, z up; metres, radians. NAME_optical looks along z, x right, y down (REP "
@@ -132,9 +133,10 @@ def seen_from(outer: Pose, inner: Pose) -> Pose:
 
 
 def is_optical(name: str, pose: Pose) -> bool:
-    """Whether a camera's frame has optical axes: its name says so, or z is level and x is not
-    forward: the roll is near 90 degrees. `pose` is that on the vehicle."""
-    return bool(OPTICAL_NAME.search(name)) or abs(abs(pose.rpy[0]) - math.pi / 2.0) <= OPTICAL_ROLL
+    """Whether a camera's frame has optical axes: its name says so, or y is the vertical axis, and
+    not z. `pose` is that on the vehicle."""
+    vertical = abs(float(pose.ground_from_sensor[2, 1]))
+    return bool(OPTICAL_NAME.search(name)) or vertical > math.cos(OPTICAL_TILT)
 
 
 def body_of_optical(pose: Pose) -> Pose:
@@ -142,7 +144,7 @@ def body_of_optical(pose: Pose) -> Pose:
     return pose_of(product(pose.ground_from_sensor, BODY_FROM_OPTICAL.T), pose.position)
 
 
-TURNED = "a frame of this name or roll (near 90 deg) is optical: z is taken as forward"
+TURNED = "a frame of this name, or whose y axis is vertical, is optical: z is taken as forward"
 TURNED_APART = "its optical frame looks elsewhere than its link, by {:.3g} deg; it is followed"
 NOT_TURNED = "its optical frame is turned as its own frame: x is taken as forward"
 APART = math.radians(1.0)  # Optical axes nearer than this to the x axis of the link are along it
@@ -154,7 +156,12 @@ def with_body_axes(sensor: PortableSensor, frame: str = "") -> PortableSensor:
     kind = sensor.kind or said_kind(sensor.name)
     if kind != CAMERA or not is_optical(frame or sensor.name, sensor.pose):
         return sensor
-    return replace(sensor, kind=kind, pose=body_of_optical(sensor.pose), told=TURNED)
+    return turned_to_body(replace(sensor, kind=kind))
+
+
+def turned_to_body(sensor: PortableSensor) -> PortableSensor:
+    """Return the camera whose pose is that of its optical frame, with a note on it."""
+    return replace(sensor, pose=body_of_optical(sensor.pose), told=TURNED)
 
 
 def as_camera(sensor: PortableSensor, optical: Pose) -> PortableSensor:

@@ -253,6 +253,9 @@ def test_yaml_with_tags_anchors_and_braces_is_read_and_edited_where_it_can_be():
     assert yaml.data == {"a": [1.0, "b", -5.0], "c": {"d": 2.0, "e": "no"}}
     edited = yaml.edited({("c", "d"): "7.25"}, {})
     assert edited == text.replace("&y 2", "7.25")
+    assert yaml.comments() == {("c",): "kept"}
+    edited = yaml.edited({}, {("c",): "new", ("a",): "seen"})
+    assert edited == text.replace("kept", "new").replace(".5e1]", ".5e1]  # seen")
     with pytest.raises(pe.InputError) as error:
         yaml.edited({}, {}, (("c",), ["f: 1"]))
     assert error.value.field == "c"

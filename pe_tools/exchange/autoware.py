@@ -206,7 +206,9 @@ def source(path: Path) -> dict[str, str]:
     """Return the texts of a kit's calibration and camera_info files by file name."""
     folder = path if path.is_dir() else path.parent
     texts = kit_texts(folder)
-    for unit in _units(folder, texts).values():
+    units = _units(folder, texts)
+    texts = {name: texts[name] for name in units}
+    for unit in units.values():
         for frame in unit.frames:
             name = info_name(frame.removesuffix(_suffix_of(frame)))
             if (folder / name).is_file():

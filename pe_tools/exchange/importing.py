@@ -155,30 +155,51 @@ def _with_model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> M
 
 
 def _modelled(sensor: PortableSensor, row: RigFormat) -> Modelled:
-    """Return a sensor with the catalogue's model, one of the file's figures, or a stand-in. A
+    """Return a sensor with the catalogue's model, one of the file's figures, the one that its name
+    says, or a stand-in."""
+    if (named := _catalogued(sensor, row)) is not None:
+        return named
+    reason = ""
+    try:
+        own = portable_kinds.portable_kind(sensor.kind).model(sensor, row.usual_size)
+    except InputError as error:
+        if sensor.picture is None:
+            raise
+        own = None
+        reason = f"its lens is left out, {error.at('')}"
+    if own is not None:
+        return Modelled(sensor, *own)
+    for text in filter(None, (sensor.model, sensor.name)):
+        if name := model_by_name(text, sensor.kind):
+            model = portable_kinds.with_ranges(catalog.load(name), sensor)
+            return Modelled(sensor, model, f"{sensor.name}: {name}, as {shown(text)} says")
+    return _stand_in(sensor, reason)
+
+
+def _catalogued(sensor: PortableSensor, row: RigFormat) -> Modelled | None:
+    """Return a sensor with the catalogue's model of the name in the file; None if there is none. A
     camera that the catalogue has with another lens gets the file's lens."""
     normalized = NO_WORD.sub("", (sensor.model or "").lower())
     names = {NO_WORD.sub("", name.lower()): name for name in catalog.names(sensor.kind)}
-    if normalized and normalized in names:
-        model, line = catalog.load(names[normalized]), ""
-        ours, theirs = portable_kinds.picture_of(model), sensor.picture
-        if ours and theirs is not None and not alike(row.keeps(ours), theirs):
-            note = f"{sensor.name}: its lens is not that of {model.name} in the catalogue, but the"
-            model, line = portable_kinds.camera_of(sensor.name, theirs, row.usual_size)
-            line = line or f"{note} file's"
-        return Modelled(sensor, portable_kinds.with_ranges(model, sensor), line)
-    if (own := portable_kinds.portable_kind(sensor.kind).model(sensor, row.usual_size)) is not None:
-        return Modelled(sensor, *own)
-    for text in filter(None, (sensor.model, sensor.name)):
-        if named := model_by_name(text, sensor.kind):
-            model = portable_kinds.with_ranges(catalog.load(named), sensor)
-            return Modelled(sensor, model, f"{sensor.name}: {named}, as {shown(text)} says")
+    if not normalized or normalized not in names:
+        return None
+    model, line = catalog.load(names[normalized]), ""
+    ours, theirs = portable_kinds.picture_of(model), sensor.picture
+    if ours and theirs is not None and not alike(row.keeps(ours), theirs):
+        note = f"{sensor.name}: its lens is not that of {model.name} in the catalogue, but the"
+        model, line = portable_kinds.camera_of(sensor.name, theirs, row.usual_size)
+        line = line or f"{note} file's"
+    return Modelled(sensor, portable_kinds.with_ranges(model, sensor), line)
+
+
+def _stand_in(sensor: PortableSensor, reason: str) -> Modelled:
+    """Return a sensor with a stand-in for its model. `reason` may be empty: the file has none."""
     stand_in = portable_kinds.stand_in_of(sensor.kind or "")
     assert stand_in is not None, "`parted` has left it out"
-    reason = (
-        f"no {shown(sensor.model)} in the catalogue" if sensor.model else "no model in the file"
-    )
-    if said_kind(sensor.name) is None and sensor.kind == portable_kinds.LIDAR:
+    if not reason and sensor.model:
+        reason = f"no {shown(sensor.model)} in the catalogue"
+    reason = reason or "no model in the file"
+    if sensor.kind == portable_kinds.LIDAR and said_kind(sensor.name) is None:
         reason += ", and no kind in its name"
     line = f"{sensor.name}: {reason}; {stand_in} stands in: choose its model"
     return Modelled(sensor, catalog.load(stand_in), line, True)

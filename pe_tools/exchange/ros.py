@@ -30,7 +30,7 @@ from . import frames
 from .foreign_values import RPY, XYZ, Export, FileTexts
 from .lens_pictures import Picture
 from .portable import PortableRig, PortableSensor
-from .portable_kinds import CAMERA
+from .portable_kinds import CAMERA, camera_of
 
 FILE, ROOT = "rig.launch.xml", "base_link"
 PUBLISHER = "static_transform_publisher"
@@ -234,9 +234,12 @@ def with_info(folder: Path, sensors: Iterable[PortableSensor]) -> PortableRig:
 
 def read_info(source: str, text: str) -> tuple[Picture | None, str]:
     """Return the intrinsics in the text of a camera_info file, and a message (may be empty). If the
-    file is damaged or has a lens that is not known, they are None and the message says why."""
+    file is damaged, or its lens is not known or is that of no camera, they are None and the message
+    says why."""
     try:
-        return picture_of_info(source, text), ""
+        picture = picture_of_info(source, text)
+        camera_of(source, picture)
+        return picture, ""
     except InputError as error:
         return None, f"its lens is left out: {error.at(f'{FOLDER}/{Path(source).name}')}"
 

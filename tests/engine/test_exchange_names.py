@@ -249,26 +249,51 @@ def test_a_unit_with_a_damaged_number_is_refused_and_so_are_strays_alone(tmp_pat
         pt.import_rig(kit, None, AXLE)
 
 
-def test_an_odd_lens_is_told_and_its_file_is_kept(tmp_path):
-    frames = {f"{name}/camera_link": (0.1, 0.0, 0.0, 0.0, 0.0, 0.0) for name in ("a", "b")}
+INFO = (
+    "image_width: 640\nimage_height: 480\ndistortion_model: {}\n"
+    "camera_matrix: {{rows: 3, cols: 3, data: [400, 0, {}, 0, 400, 240, 0, 0, 1]}}\n"
+    "distortion_coefficients: {{rows: 1, cols: 4, data: [0, 0, 0, 0]}}\n"
+)
+ODD = {
+    "distortion_model": INFO.format("double_sphere", 320),
+    "cx": INFO.format("plumb_bob", 700),  # of a calibration at another size
+    "image_width": INFO.format("plumb_bob", 320).replace("640", "wide"),
+    "line 1": "{",
+}
+
+
+@pytest.mark.parametrize("field", ODD)
+def test_an_odd_lens_is_told_and_its_file_is_kept(field, tmp_path):
+    frames = {f"{name}/camera_link": (0.1, k, 0.0, 0.0, 0.0, 0.0) for k, name in enumerate("ab")}
     kit = kit_of(tmp_path, frames)
     (kit / "camera_info").mkdir()
-    odd = (
-        "image_width: 640\nimage_height: 480\ndistortion_model: double_sphere\n"
-        "camera_matrix: {rows: 3, cols: 3, data: [400, 0, 320, 0, 400, 240, 0, 0, 1]}\n"
-        "distortion_coefficients: {rows: 1, cols: 2, data: [0.1, 0.2]}\n"
-    )
-    (kit / "camera_info" / "a.yaml").write_text(odd)
-    (kit / "camera_info" / "b.yaml").write_text(
-        odd.replace("double_sphere", "plumb_bob").replace("cols: 2, data: [0.1, 0.2]",
-                                                          "cols: 4, data: [0, 0, 0, 0]")
-    )  # fmt: skip
+    (kit / "camera_info" / "a.yaml").write_text(ODD[field])
+    (kit / "camera_info" / "b.yaml").write_text(INFO.format("plumb_bob", 320))
     found = pt.import_rig(kit, None, AXLE)
     assert found.to_choose == ("a",) and found.rig["b"].model.width == 640
-    assert any("camera_info/a.yaml: distortion_model" in line for line in found.lines)
-    _, lines = pt.export_rig(found.rig, "autoware", kit, AXLE, replace=True)
-    assert (kit / "camera_info" / "a.yaml").read_text() == odd
-    assert any(line.startswith("a: its camera_info") for line in lines)
+    assert any(f"camera_info/a.yaml: {field}" in line for line in found.lines)
+    for passthrough in (None, found.passthrough):
+        _, lines = pt.export_rig(
+            found.rig, "autoware", kit, AXLE, replace=True, passthrough=passthrough
+        )
+        assert (kit / "camera_info" / "a.yaml").read_text() == ODD[field]
+        assert passthrough or any(line.startswith("a: its camera_info") for line in lines)
+
+
+def test_an_odd_lens_of_another_format_does_not_refuse_its_rig(tmp_path):
+    block = (
+        '<gazebo reference="{0}"><sensor name="{0}" type="camera"><camera>'
+        "<horizontal_fov>1.0</horizontal_fov><image><width>640</width><height>480</height></image>"
+        "<lens><intrinsics><fx>400</fx><fy>400</fy><cx>{1}</cx><cy>240</cy></intrinsics></lens>"
+        "</camera></sensor></gazebo>"
+    )
+    joint = '<joint name="{0}" type="fixed"><parent link="o"/><child link="{0}"/></joint>'
+    rows = (("a", 700.0), ("b", 310.0))
+    inside = "".join(f'<link name="{n}"/>' + joint.format(n) + block.format(n, x) for n, x in rows)
+    (tmp_path / "r.urdf").write_text(f'<robot name="r"><link name="o"/>{inside}</robot>')
+    found = pt.import_rig(tmp_path / "r.urdf")
+    assert found.to_choose == ("a",) and found.rig["b"].model.projection.cx == 310.0
+    assert any(line.startswith("a: its lens is left out, cx") for line in found.lines)
 
 
 def test_sensors_of_one_kind_at_one_place_are_told(tmp_path):

@@ -41,7 +41,9 @@ def read(folder, text, name="r.urdf"):
 
 
 MAST = ("base_link", "mast", "0 0 1", "fixed")
-FRONT = f'<sensor name="front" type="gpu_lidar"><pose>0.5 0 0.25 0 0.3 0</pose>{SCAN.format(360, -math.pi, math.pi, 16)}</sensor>'
+AT_FRONT = "<pose>0.5 0 0.25 0 0.3 0</pose>"
+FULL_SCAN = SCAN.format(360, -math.pi, math.pi, 16)
+FRONT = f'<sensor name="front" type="gpu_lidar">{AT_FRONT}{FULL_SCAN}</sensor>'
 EYE = '<sensor name="eye" type="camera"><pose degrees="true">0.6 0 0.1 0 0 90</pose>{}</sensor>'
 EYE = EYE.format(CAMERA.format(1.0, ""))
 QUATERNION = '<pose rotation_format="quat_xyzw">0 0 0 0 0 0.6 0.8</pose>'

@@ -1,9 +1,8 @@
 """Sensors of Gazebo, in a URDF or an SDF: their kinds, their poses, several of a link."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 from xml.etree.ElementTree import Element, SubElement, tostring
 
 from pe_core.base.errors import InputError, one_of, shown
@@ -62,50 +61,52 @@ def read_sensors(path: Path, at: LinkBlock, poses: Mapping[str, Pose]) -> list[P
     """Return the sensors of a link. A single one has the name of its link, several have their own.
     `poses` are those of all frames that a pose can be relative to."""
     elements = sensor_elements(at.blocks)
+    if len(elements) > 1:
+        named = [(element.get("name") or at.link, element) for element in elements]
+        return [_sensor(path, name, at=at, element=e, poses=poses) for name, e in named]
+    element = elements[0] if elements else None
+    sensor = _sensor(path, at.link, at=at, element=element, poses=poses)
     own = next((e for block in at.blocks if (e := block.find(OWN)) is not None), None)
-    if not elements or len(elements) == 1:
-        element = elements[0] if elements else None
-        return [_sensor(path, at.link, at, poses, element, own)]
-    return [
-        _sensor(path, element.get("name") or at.link, at, poses, element, None)
-        for element in elements
-    ]
+    return [sensor if own is None else _with_own(path, sensor, at, own)]
 
 
 def _sensor(
-    path: Path,
-    name: str,
-    at: LinkBlock,
-    poses: Mapping[str, Pose],
-    element: Element | None,
-    own: Element | None,
+    path: Path, name: str, *, at: LinkBlock, element: Element | None, poses: Mapping[str, Pose]
 ) -> PortableSensor:
-    def field(key: str) -> str:
-        return f"sensor of {name}, {key}"
-
-    kind = None
-    pose = at.pose
-    if element is not None:
-        type_name = element.get("type", "")
-        kind = KIND_BY_TYPE.get(type_name, type_name or None)
-        pose = _pose_of(path, field("pose"), at.pose, element, poses)
-    fields: dict[str, Any] = {}
-    if own is not None:
-        kind = own.get("kind") or kind
-        known = Figures(path, own.get, field)
-        fields = {key: known.number(key, rule) for key, rule in RANGES.items()}
-        fields["parameters"] = own.get("parameters", "")
-        fields["fusion"] = own.get("fusion") or None
-        fields["model"] = own.get("model") or None
-    inside = Figures(
-        path, lambda k: None if element is None else element.findtext(f".//{k}"), field
-    )
-    fields["picture"] = picture_in(inside)
-    fields["scan"] = scan_in(inside)
-    sensor = PortableSensor(name, pose, kind, **fields)
+    """Return the sensor of an element. One of a kind that is left out has its element as entry."""
+    if element is None:
+        return PortableSensor(name, at.pose)
+    type_name = element.get("type", "")
+    kind = KIND_BY_TYPE.get(type_name, type_name or None)
+    pose = _pose_of(path, _field(name)("pose"), at.pose, element, poses)
+    figures = Figures(path, lambda key: element.findtext(f".//{key}"), _field(name))
+    picture = picture_in(figures)
+    scan = scan_in(figures)
+    sensor = PortableSensor(name, pose, kind, picture=picture, scan=scan)
     if kind is None or has_model(sensor):
         return sensor
     return replace(sensor, entry=pose_entry(sensor, gazebo=_kept(at, name, element)))
+
+
+def _field(name: str) -> Callable[[str], str]:
+    return lambda key: f"sensor of {name}, {key}"
+
+
+def _with_own(path: Path, sensor: PortableSensor, at: LinkBlock, own: Element) -> PortableSensor:
+    """Return a sensor with what an export of this program adds."""
+    known = Figures(path, own.get, _field(sensor.name))
+    ranges = {key: known.number(key, rule) for key, rule in RANGES.items()}
+    full = replace(
+        sensor,
+        kind=own.get("kind") or sensor.kind,
+        model=own.get("model") or None,
+        parameters=own.get("parameters", ""),
+        fusion=own.get("fusion") or None,
+        **ranges,
+    )
+    if full.kind is None or has_model(full):
+        return replace(full, entry="")
+    return replace(full, entry=pose_entry(full, gazebo=_texts(at.blocks)))
 
 
 def _pose_of(
@@ -142,12 +143,17 @@ def pose_in(path: Path, field: str, element: Element | None) -> Pose:
     return values.pose_from(path, field, numbers[:3], numbers[3:], degrees=in_degrees)
 
 
-def _kept(at: LinkBlock, name: str, element: Element | None) -> list[str]:
+def _kept(at: LinkBlock, name: str, element: Element) -> list[str]:
     """Return the blocks of a sensor that is left out, for an export: as they are, or only its own
     element, whose pose the exported link has."""
-    if element is None or (name == at.link and element.find("pose") is None):
-        return [tostring(block, "unicode").strip() for block in at.blocks]
+    in_blocks = all(block.tag == "gazebo" for block in at.blocks)
+    if in_blocks and name == at.link and element.find("pose") is None:
+        return _texts(at.blocks)
     block = Element("gazebo", {"reference": name})
     kept = SubElement(block, "sensor", element.attrib)
     kept.extend(child for child in element if child.tag != "pose")
     return [tostring(block, "unicode")]
+
+
+def _texts(blocks: Iterable[Element]) -> list[str]:
+    return [tostring(block, "unicode").strip() for block in blocks]

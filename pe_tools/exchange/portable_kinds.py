@@ -163,7 +163,7 @@ def _lidar_between(name: str, scan: Scan, ends: tuple[float, float], elevations:
     step = 2.0 * math.pi / steps
     first = round(low / step)
     offset = low - first * step
-    offsets = None if abs(offset) <= OFF_STEP * step else np.full(len(elevations), offset)
+    offset = 0.0 if abs(offset) <= OFF_STEP * step else offset
     fov = (first * step, (first + scan.azimuths - 1) * step)
     if scan.azimuths >= steps:
         fov = FULL_CIRCLE
@@ -172,7 +172,7 @@ def _lidar_between(name: str, scan: Scan, ends: tuple[float, float], elevations:
         elevations,
         steps,
         ranges[0],
-        azimuth_offsets=offsets,
+        azimuth_offsets=np.full(len(elevations), offset),
         horizontal_fov=fov,
         min_range=ranges[1],
     )

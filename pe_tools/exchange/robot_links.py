@@ -17,6 +17,7 @@ from .portable_kinds import CAMERA
 from .sensor_names import FRAME, said_kind
 
 MOST_NAMES = 12  # Maximum names in a message
+MOST_HOUSINGS = 8  # Maximum joints from a sensor to its housing
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +84,9 @@ def _inner_links(tree: LinkTree, said: dict[str, str | None]) -> set[str]:
     inner = set()
     for name, kind in said.items():
         link = name
-        while kind in KINDS and link in tree.parents and link not in tree.moving:
+        for _ in range(MOST_HOUSINGS if kind in KINDS else 0):
+            if link not in tree.parents or link in tree.moving:
+                break
             link = tree.parents[link]
             if said.get(link) == kind:
                 inner.add(link)
@@ -95,25 +98,24 @@ def unread_lines(tree: LinkTree, read: Collection[str]) -> list[str]:
     """Return a message on links with the name of a sensor, in a robot whose sensors are Gazebo's,
     that are `read`. A link that holds such a sensor, or is on its link, is no other."""
     near = set(read)
+    on_read = {name for name in read if name != tree.links[0] and said_kind(name) != FRAME}
     for link in read:
         while link in tree.parents and tree.parents[link] not in near:
             link = tree.parents[link]
             near.add(link)
-    names = [
-        (said_kind(name) or "", name)
-        for name in tree.links[1:]
-        if said_kind(name) in KINDS and name not in near and not _is_on(tree, name, read)
-        and not OPTICAL_NAME.search(name)
-    ]  # fmt: skip
+    names = []
+    for name in tree.links[1:]:  # parents come first
+        if tree.parents[name] in on_read:
+            on_read.add(name)
+        kind = said_kind(name)
+        if (
+            kind in KINDS
+            and name not in near
+            and name not in on_read
+            and not OPTICAL_NAME.search(name)
+        ):
+            names.append((kind, name))
     return [f"left out, as Gazebo has no sensor on them: {_listed(names)}"] if names else []
-
-
-def _is_on(tree: LinkTree, name: str, links: Collection[str]) -> bool:
-    while name in tree.parents:
-        name = tree.parents[name]
-        if name in links:
-            return True
-    return False
 
 
 def _left_out_lines(found: list[tuple[str, str]]) -> list[str]:

@@ -43,12 +43,16 @@ def read_sdf(path: Path, root: Element) -> tuple[PortableRig, list[str]]:
     named = list(_elements(model, "", ""))
     values.require_at_most(path, "link", len(named), values.MAX_FRAMES, "links and frames")
     poses = _poses(path, named)
+    in_scope: dict[str, dict[str, Pose]] = {}
     sensors = []
     for each in named:
-        if each.element.tag == "link" and each.element.find("sensor") is not None:
-            at = LinkBlock(each.name, poses[each.name], [each.element])
-            inside = {name.removeprefix(each.scope): pose for name, pose in poses.items()}
-            sensors += read_sensors(path, at, inside)
+        if each.element.tag != "link" or each.element.find("sensor") is None:
+            continue
+        if each.scope not in in_scope:
+            names = {name.removeprefix(each.scope): pose for name, pose in poses.items()}
+            in_scope[each.scope] = names
+        at = LinkBlock(each.name, poses[each.name], [each.element])
+        sensors += read_sensors(path, at, in_scope[each.scope])
     lines = []
     if included := [*model.iter("include")]:
         uris = ", ".join((include.findtext("uri") or "").strip() for include in included[:12])

@@ -139,6 +139,8 @@ def test_links_beside_gazebo_s_sensors_are_told(tmp_path):
     assert [sensor.name for sensor in found.rig] == ["lidar_top"]
     (line,) = [line for line in found.lines if "Gazebo" in line]
     assert "camera_front" in line and "lidar" not in line
+    imu = '<gazebo reference="base_link"><sensor name="i" type="imu"/></gazebo>'
+    assert line in read(tmp_path, robot(LINKS, block, imu)).lines, "not all on the base are read"
 
 
 def test_links_stand_in_the_robot_itself(tmp_path):
@@ -237,6 +239,7 @@ SDF = f"""<sdf version="1.9"><world name="w"><model name="car"><pose>5 5 0 0 0 1
 <link name="body"><pose>0 0 0.5 0 0 0</pose>
   <sensor name="low" type="gpu_lidar"><pose>2 0 0 0 0 0</pose>{SCAN.format(90, -1, 1, 4)}</sensor>
   <sensor name="imu" type="imu"/></link>
+<link name="nose"><sensor name="s" type="sonar"><range>9</range></sensor></link>
 <frame name="roof" attached_to="body"><pose>0 0 1.2 0 0 0</pose></frame>
 <link name="eye"><pose relative_to="roof">0.3 0 0.1 0 0 1.5707963267948966</pose>
   <sensor name="e" type="camera">{CAMERA.format(1.0, "")}</sensor></link>
@@ -257,9 +260,11 @@ def test_sdf_is_read_in_the_frame_of_its_model(tmp_path):
     assert rows["rack::bar"][1] == pytest.approx((0.0, 1.0, 2.2))
     assert found.rig["eye"].pose.rotation_deg == pytest.approx((0.0, 0.0, 90.0))
     text = " ".join(found.lines)
-    assert "1 imu sensor (imu)" in text and "model://wheel" in text
+    assert "1 imu sensor (imu), 1 sonar sensor (nose)" in text and "model://wheel" in text
     out = tmp_path / "out.urdf"
     pt.export_rig(found.rig, "urdf", out, passthrough=found.passthrough)
+    kept = ElementTree.fromstring(out.read_text()).findall("gazebo[@reference='nose']")
+    assert [b.findtext("sensor/range") for b in kept if b.find("sensor") is not None] == ["9"]
     again = pt.import_rig(out).rig
     assert [s.pose.position for s in again] == [pytest.approx(s.pose.position) for s in found.rig]
 

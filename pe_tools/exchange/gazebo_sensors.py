@@ -16,7 +16,7 @@ from .passthrough import pose_entry
 from .portable import ORIGIN, PortableSensor
 from .portable_kinds import CAMERA, LIDAR, has_model
 
-RANGES = {"min_range": values.MIN_RANGE, "max_range": values.FARTHEST}
+RANGES = ("min_range", "max_range")  # Attributes of the ranges in the own element
 TAG = CAMERA  # Tag of a camera in a sensor
 OWN = "perception_entropy"  # Tag of the element that an export adds
 KIND_BY_TYPE = {
@@ -95,14 +95,14 @@ def _field(name: str) -> Callable[[str], str]:
 def _with_own(path: Path, sensor: PortableSensor, at: LinkBlock, own: Element) -> PortableSensor:
     """Return a sensor with what an export of this program adds."""
     known = Figures(path, own.get, _field(sensor.name))
-    ranges = {key: known.number(key, rule) for key, rule in RANGES.items()}
     full = replace(
         sensor,
         kind=own.get("kind") or sensor.kind,
         model=own.get("model") or None,
         parameters=own.get("parameters", ""),
         fusion=own.get("fusion") or None,
-        **ranges,
+        min_range=known.number("min_range", values.MIN_RANGE),
+        max_range=known.number("max_range", values.FARTHEST),
     )
     if full.kind is None or has_model(full):
         return replace(full, entry="")

@@ -37,10 +37,10 @@ PUBLISHER = "static_transform_publisher"
 QUATERNION = ("qw", "qx", "qy", "qz")
 ENDS = ("frame-id", "child-frame-id")
 EQUALS = re.compile(r"(--[a-z-]+)=")  # Between an option and its value, in place of a blank
-NODE = re.compile(r"""<node\b((?:[^>"']|"[^"]*"|'[^']*')*)>""")
-ATTRIBUTE = re.compile(r"""([\w.:-]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
+NODE = re.compile(r"<node\b([^<]*)")
+ATTRIBUTE = re.compile(r"""(?<![\w.:-])([\w.:-]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 CALL = re.compile(rf"{PUBLISHER}[\"']?([^<\"'\n]*)")
-"""Nodes of a launch file, their attributes, and calls in other files."""
+"""Nodes of a launch file up to the next tag, their attributes, and calls in other files."""
 POSITIONAL = ("x", "y", "z", "yaw", "pitch", "roll")
 POSITIONAL_QUATERNION = ("x", "y", "z", "qx", "qy", "qz", "qw")
 """Numbers before both frames in a call without options; ROS 1 has a period [ms] after these."""
@@ -130,6 +130,11 @@ def _calls(text: str) -> list[str]:
     of a script."""
     calls = []
     for node in NODE.finditer(text):
+        if PUBLISHER not in node[1]:
+            continue
+        if len(node[1]) > 2 * values.MAX_LINE_LENGTH:  # it is refused by its length
+            calls.append(node[1])
+            continue
         found = ATTRIBUTE.findall(node[1])
         attributes = {key: unescape(double or single) for key, double, single in found}
         if PUBLISHER in (attributes.get("exec"), attributes.get("type")):

@@ -2,6 +2,7 @@
 here are the only place that knows it; every format whose file states neither asks them."""
 
 import re
+from functools import lru_cache
 
 from pe_core import catalog
 
@@ -111,6 +112,7 @@ def model_by_name(name: str, kind: str | None = None) -> str | None:
     return model if model and kind in (None, catalog.load(model).kind) else None
 
 
+@lru_cache(maxsize=16_384)  # of a file with many frames, asked for several times
 def said_kind(name: str) -> str | None:
     """Return the kind of a sensor, or what else it is, as its name says; None if it says nothing.
     The last word that says something decides: a camera's IMU is an IMU."""

@@ -107,7 +107,7 @@ def unread_lines(tree: LinkTree, read: Collection[str]) -> list[str]:
     for name in tree.links[1:]:  # parents come first
         if tree.parents[name] in on_read:
             on_read.add(name)
-        kind = said_kind(name)
+        kind = said_kind(name) or ""
         if (
             kind in KINDS
             and name not in near

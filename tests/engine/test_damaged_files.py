@@ -225,6 +225,7 @@ TOO_MUCH = [
     ("file", ("r.xml", lambda: many(CALL, 10_001))),
     ("sensors", ("r.xml", lambda: many(CALL, 2_000, True))),
     ("file", ("r.xml", lambda: "<!--" * 1_000_000)),
+    ("file", ("r.xml", lambda: "<node a='" * 200_000)),
     ("transform 1", ("r.xml", lambda: CALL.format(0, "a" * 20_000))),
     ("file", ("r.csv", lambda: ROWS.format("a,0,0,0,0,0,0\n" * 10_001))),
     ("sensors", ("r.csv", lambda: ROWS.format("a,0,0,0,0,0,0\n" * 1_001))),

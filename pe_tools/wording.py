@@ -135,6 +135,10 @@ WARNINGS: Mapping[str, Callable[..., str]] = {
     "figure": lambda _, name, told: (
         f"{name} cannot be kept as wanted: no placement that was tried has it; the best: {told}"
     ),
+    "coincides": lambda _, others: (
+        f"{joined(others)} {'is' if len(others) == 1 else 'are'} at the same place, within 1 cm; "
+        "each of them counts: remove what is an alternative"
+    ),
     "range_term": lambda _, curves: (
         f"{joined(curves)} with c: AP = a ln m - c ln R + b, not the paper's; compare these scores "
         "with such scores alone"

@@ -1,6 +1,7 @@
 """Kinds of sensors, one folder for each: intrinsics, the definition of m, and fast kernels."""
 
 from .camera import CAMERA, BrownConrady, Camera, FTheta, KannalaBrandt, Lens, Pinhole
+from .coincidence import coinciding
 from .field_of_view import FieldPicture, ViewPatch
 from .kernels import (
     GridKernel,

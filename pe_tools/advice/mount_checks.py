@@ -1,7 +1,7 @@
 """Checks of a sensor's mounting position: inside the body, off the body, or occluded by it."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -16,7 +16,7 @@ from pe_core.geometry.raycast import Hits
 from pe_core.scene.rig import Sensor, cuts_body
 from pe_core.scene.vehicle import Vehicle, closest_points, is_enclosed
 from pe_core.scoring.score import SensorScore
-from pe_core.sensors import kind_of
+from pe_core.sensors import coinciding, kind_of
 from pe_tools.wording import metres
 
 from .advice import Advice
@@ -151,6 +151,13 @@ def odd_place(sensor: Sensor, space: PerceptionSpace) -> Iterator[Advice]:
     if kind.has_top and up < UPSIDE_DOWN:
         values = {"kind": kind.label.lower()}
         yield Advice(sensor.name, "upside_down", values, fix="roll_sensor", amount=(180.0,))
+
+
+def odd_together(sensors: Sequence[Sensor]) -> Iterator[Advice]:
+    """Yield a warning for each group of sensors of one kind that are at one place."""
+    for first, *others in coinciding(sensors):
+        values = {"others": tuple(sensor.name for sensor in others)}
+        yield Advice(first.name, "coincides", values)
 
 
 def distance_to(vehicle: Vehicle, point: Floats) -> float:

@@ -15,7 +15,7 @@ from pe_core.study.study import Study
 from pe_tools.wording import joined, percent
 
 from .advice import Advice
-from .mount_checks import SensorAtBody, odd_mounting, odd_place
+from .mount_checks import SensorAtBody, odd_mounting, odd_place, odd_together
 from .vehicle_checks import Bodywork, odd_vehicle
 
 
@@ -33,6 +33,7 @@ def warnings(
     sensors = tuple(rig)
     if any(getattr(sensor.model, "returns", ALL) != ALL for sensor in sensors):
         found.append(Advice(None, "returns", {}))
+    found += odd_together(sensors)
     for sensor in sensors:
         found += odd_place(sensor, space)
         if body is not None:

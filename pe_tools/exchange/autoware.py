@@ -10,7 +10,7 @@ order and structure. The pose of the kit, the parent of each frame, and frames t
 do not change either.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -23,12 +23,20 @@ from pe_tools.formats.yaml_text import KeyPath, YamlText, parse_yaml
 
 from . import foreign_values as foreign
 from .foreign_values import RPY, XYZ, Export, FileTexts, plain_number
-from .frames import composed, seen_from, with_legal_frames
+from .frames import (
+    composed,
+    is_optical,
+    optical_of_body,
+    seen_from,
+    turned_to_body,
+    with_legal_frames,
+)
 from .lens_pictures import alike
 from .passthrough import is_there, is_turned_so
 from .portable import ORIGIN, PortableRig, PortableSensor, merged_lines
 from .portable_kinds import CAMERA, LIDAR, RADAR
-from .ros import info_files, info_name, picture_of_info, with_info
+from .ros import info_files, info_name, read_info, with_info
+from .sensor_names import said_kind
 
 BASE, KIT = "base_link", "sensor_kit_base_link"
 TO_KIT, IN_KIT = "sensors_calibration.yaml", "sensor_kit_calibration.yaml"
@@ -36,6 +44,10 @@ FRAMES = {CAMERA: "/camera_link", LIDAR: "_base_link", RADAR: "/radar_link"}
 """Suffixes of frame names, by kind."""
 HEAD = "# Metres and radians; R = Rz(yaw) Ry(pitch) Rx(roll); x forward, y left, z up.\n"
 NO_INFO = "the kit has no camera_info of it; its lens is not written"
+ODD_INFO = "its camera_info has a lens that is not read; it is kept"
+BODY_AXES, OPTICAL_AXES = "x forward", "z forward"
+"""Comments of a camera's frame whose name and roll would say the other."""
+AT_FRAME = "no model is known: its frame is taken as the centre of its scan"
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,34 +70,111 @@ def kit_texts(folder: Path) -> dict[str, str]:
 def _units(folder: Path, texts: Mapping[str, str]) -> dict[str, Unit]:
     """Return the parts of a kit by file name: the frames on base_link first, then its units. A unit
     is the sensor kit itself or one of several groups, each in a file UNIT_calibration.yaml. The kit
-    aip_x2 of TIER IV, for example, has the units top_unit and front_unit."""
-    units: dict[str, Unit] = {}
+    aip_x2 of TIER IV, for example, has the units top_unit and front_unit. Files of other content
+    are left out, unless nothing is left then."""
+    units = {TO_KIT: _unit(folder / TO_KIT, texts[TO_KIT], (BASE,))}
+    base = units[TO_KIT].frames
+    strays = _strays(folder, texts, base)
+    if strays and len(strays) == len(texts) - 1:
+        raise next(iter(strays.values()))
     for file, text in texts.items():
-        path = folder / file
-        yaml = YamlText(str(path), text)
-        parents = [BASE] if file == TO_KIT else list(yaml.data)
-        if len(parents) != 1:
-            found = ", ".join(parents) or "none"
-            raise InputError(path, "file", "one frame, and others on it", found)
-        (parent,) = parents
-        if file != TO_KIT and parent not in units[TO_KIT].frames:
-            raise InputError(folder / TO_KIT, BASE, parent, ", ".join(units[TO_KIT].frames))
-        if parent not in yaml.data:
-            raise InputError(path, parent, "a mapping of frames", "nothing")
-        table = Table(yaml.data, str(path)).table(parent)
-        frames = {}
-        for name in table.names:
-            row = table.table(name)
-            position, angles = (foreign.named_numbers(row, keys) for keys in (XYZ, RPY))
-            frames[name] = foreign.pose_from(path, row.path, position, angles)
-        units[file] = Unit(yaml, parent, frames)
+        if file != TO_KIT and file not in strays:
+            units[file] = _unit(folder / file, text, base)
     return units
+
+
+def _strays(
+    folder: Path, texts: Mapping[str, str], parents: Collection[str]
+) -> dict[str, InputError]:
+    """Return the files that are no unit of the kit, and what they lack. The file of the kit itself
+    has to be one."""
+    strays = {}
+    for file, text in texts.items():
+        if file in (TO_KIT, IN_KIT):
+            continue
+        try:
+            _head(folder / file, text, parents)
+        except InputError as error:
+            strays[file] = error
+    return strays
+
+
+def _head(path: Path, text: str, parents: Collection[str]) -> tuple[YamlText, str]:
+    """Return a file of a kit, and the frame that it is about: one of `parents`."""
+    yaml = YamlText(str(path), text)
+    if len(yaml.data) != 1:
+        found = ", ".join(yaml.data) or "none"
+        raise InputError(path, "file", "one frame, and others on it", found)
+    (parent,) = yaml.data
+    if parent in parents:
+        return yaml, parent
+    if path.name == TO_KIT:
+        raise InputError(path, BASE, "a mapping of frames", "nothing")
+    raise InputError(path.parent / TO_KIT, BASE, parent, ", ".join(parents))
+
+
+def _unit(path: Path, text: str, parents: Collection[str]) -> Unit:
+    yaml, parent = _head(path, text, parents)
+    table = Table(yaml.data, str(path)).table(parent)
+    frames = {}
+    for name in table.names:
+        row = table.table(name)
+        position, angles = (foreign.named_numbers(row, keys) for keys in (XYZ, RPY))
+        frames[name] = foreign.pose_from(path, row.path, position, angles)
+    return Unit(yaml, parent, frames)
+
+
+def remarks(path: Path) -> list[str]:
+    """Return messages on files of a kit that are not read."""
+    folder = path if path.is_dir() else path.parent
+    texts = kit_texts(folder)
+    base = _unit(folder / TO_KIT, texts[TO_KIT], (BASE,)).frames
+    return [
+        f"{error.at(file)}; the file is not read"
+        for file, error in _strays(folder, texts, base).items()
+    ]
 
 
 def _models(unit: Unit) -> dict[str, str]:
     """Return catalogue model names by frame, from the comments that `write` adds to frames."""
     catalogued = catalog.entries()
-    return {path[-1]: text for path, text in unit.text.comments().items() if text in catalogued}
+    return {frame: text for frame, (text, _) in _comments(unit).items() if text in catalogued}
+
+
+def _comments(unit: Unit) -> dict[str, tuple[str, str]]:
+    """Return the comments of frames: the model, or any text, and the axes; empty texts if none."""
+    found = {}
+    for path, comment in unit.text.comments().items():
+        *texts, last = comment.split("; ")
+        axes = last if last in (BODY_AXES, OPTICAL_AXES) else ""
+        found[path[-1]] = ("; ".join(texts) if axes else comment, axes)
+    return found
+
+
+def _is_optical_here(frame: str, pose: Pose, axes: str) -> bool:
+    """Whether a camera's frame is an optical one: by the comment on its axes, else by itself."""
+    return axes == OPTICAL_AXES if axes else is_optical(frame, pose)
+
+
+def _axes_comment(frame: str, pose: Pose, *, optical: bool) -> str:
+    """Return the comment on the axes of a camera's frame; empty if the frame itself says them."""
+    if is_optical(frame, pose) == optical:
+        return ""
+    return OPTICAL_AXES if optical else BODY_AXES
+
+
+def _kind_of(frame: str) -> str | None:
+    """Return the kind that a frame's name says. The suffix of LiDARs is that of many other frames:
+    of these, the rest of the name decides."""
+    kind = next((kind for kind, suffix in FRAMES.items() if frame.endswith(suffix)), None)
+    said = said_kind(frame.removesuffix(FRAMES.get(kind or "", "")))
+    if kind in (None, LIDAR) and said is not None:
+        return said if said in FRAMES else None
+    return kind
+
+
+def _suffix_of(frame: str) -> str:
+    return next((suffix for suffix in FRAMES.values() if frame.endswith(suffix)), "")
 
 
 def read(path: Path) -> PortableRig:
@@ -102,11 +191,14 @@ def read(path: Path) -> PortableRig:
     parents = {unit.parent for unit in units}
     poses |= {name: pose for name, pose in base.frames.items() if name not in parents}
     models = {frame: model for unit in (base, *units) for frame, model in _models(unit).items()}
+    comments = {frame: both for unit in (base, *units) for frame, both in _comments(unit).items()}
     sensors = []
     for frame, pose in poses.items():
-        kind = next((kind for kind, suffix in FRAMES.items() if frame.endswith(suffix)), None)
-        name = frame.removesuffix(FRAMES.get(kind or "", ""))
-        sensors.append(PortableSensor(name, pose, kind, models.get(frame)))
+        sensor = PortableSensor(frame, pose, _kind_of(frame), models.get(frame))
+        _, axes = comments.get(frame, ("", ""))
+        if sensor.kind == CAMERA and _is_optical_here(frame, pose, axes):
+            sensor = turned_to_body(sensor)
+        sensors.append(replace(sensor, name=frame.removesuffix(_suffix_of(frame))))
     return with_info(folder, sensors)
 
 
@@ -114,9 +206,11 @@ def source(path: Path) -> dict[str, str]:
     """Return the texts of a kit's calibration and camera_info files by file name."""
     folder = path if path.is_dir() else path.parent
     texts = kit_texts(folder)
-    for unit in _units(folder, texts).values():
+    units = _units(folder, texts)
+    texts = {name: texts[name] for name in units}
+    for unit in units.values():
         for frame in unit.frames:
-            name = info_name(frame.removesuffix(FRAMES[CAMERA]))
+            name = info_name(frame.removesuffix(_suffix_of(frame)))
             if (folder / name).is_file():
                 texts[name] = foreign.text_of(folder / name)
     return texts
@@ -124,6 +218,8 @@ def source(path: Path) -> dict[str, str]:
 
 def lifted(sensor: PortableSensor) -> PortableSensor:
     """Return a LiDAR of a known model with the pose of its scan centre instead of its frame."""
+    if sensor.is_stand_in and sensor.kind == LIDAR:
+        return replace(sensor, told=AT_FRAME)
     if not (height := _height(sensor)):
         return sensor
     note = f"{1000.0 * height:.1f} mm from its frame up to the centre of its scan ({sensor.model})"
@@ -131,8 +227,8 @@ def lifted(sensor: PortableSensor) -> PortableSensor:
 
 
 def _height(sensor: PortableSensor) -> float:
-    """Return the height of a sensor's origin above its frame [m]."""
-    return catalog.scan_above_base(sensor.model) if sensor.kind == LIDAR else 0.0
+    """Return the height of a sensor's origin above its frame [m]; 0 if its model is not known."""
+    return catalog.scan_above_base(sensor.known_model) if sensor.kind == LIDAR else 0.0
 
 
 def _frame_of(sensor: PortableSensor) -> str:
@@ -148,8 +244,12 @@ def _base_frame(sensor: PortableSensor) -> Pose:
 
 def _frame_lines(sensor: PortableSensor, unit: Pose) -> list[str]:
     """Return the YAML lines of a sensor's frame on a unit; the model name becomes a comment."""
-    model = f"  # {sensor.known_model}" if sensor.known_model else ""
-    return _lines_of(f"{_frame_of(sensor)}:{model}", seen_from(unit, _base_frame(sensor)))
+    frame = _frame_of(sensor)
+    on_vehicle = _base_frame(sensor)
+    axes = _axes_comment(frame, on_vehicle, optical=False) if sensor.kind == CAMERA else ""
+    comment = "; ".join(filter(None, [sensor.known_model, axes]))
+    head = f"{frame}:  # {comment}" if comment else f"{frame}:"
+    return _lines_of(head, seen_from(unit, on_vehicle))
 
 
 def _lines_of(head: str, pose: Pose) -> list[str]:
@@ -166,6 +266,8 @@ def write(sensors: PortableRig, texts: FileTexts) -> Export:
     named, lines = with_legal_frames(
         included, slashes=True, frames=lambda sensor: (_frame_of(sensor),), taken=parents
     )
+    if units:
+        named = _without_height(units, named)
     files, own_lines = _updated(units, texts, named) if units else (_new(named), [])
     notes = []
     for sensor in (sensor for sensor in named if sensor.kind == LIDAR):
@@ -179,6 +281,26 @@ def write(sensors: PortableRig, texts: FileTexts) -> Export:
         notes.append((sensor.name, text))
     written = {name: text.encode() for name, text in files.items()}
     return written, [*lines, *own_lines, *merged_lines(notes)]
+
+
+def _without_height(
+    units: Mapping[str, Unit], sensors: Sequence[PortableSensor]
+) -> tuple[PortableSensor, ...]:
+    """Return the sensors; a LiDAR whose origin is its frame in the kit counts as of unknown model.
+    An import put it there because the kit names no model of it."""
+    base = units[TO_KIT].frames
+    at_frame = set()
+    for file, unit in units.items():
+        outer = ORIGIN if file == TO_KIT else base[unit.parent]
+        named = _models(unit)
+        for sensor in sensors:
+            frame = _frame_of(sensor)
+            if sensor.kind != LIDAR or frame in named or frame not in unit.frames:
+                continue
+            inside = seen_from(outer, sensor.pose).position
+            if all(map(is_there, inside, unit.frames[frame].position)):
+                at_frame.add(sensor.name)
+    return tuple(replace(s, is_stand_in=s.is_stand_in or s.name in at_frame) for s in sensors)
 
 
 def _new(sensors: Sequence[PortableSensor]) -> dict[str, str]:
@@ -223,21 +345,35 @@ def _patched(
     `pose` is that of the unit on base_link."""
     values: dict[KeyPath, str] = {}
     comments: dict[KeyPath, str] = {}
-    models = _models(unit)
+    old_comments = _comments(unit)
     for frame in unit.frames.keys() & by_frame.keys():
         sensor, old = by_frame[frame], unit.frames[frame]
-        now = seen_from(pose, _base_frame(sensor))
+        text, axes = old_comments.get(frame, ("", ""))
+        optical = sensor.kind == CAMERA and _is_optical_here(frame, composed(pose, old), axes)
+        on_vehicle = optical_of_body(sensor.pose) if optical else _base_frame(sensor)
+        now = seen_from(pose, on_vehicle)
         moved = zip(XYZ, old.position, now.position, strict=True)
         changed = [key for key, a, b in moved if not is_there(a, b)]
         changed += [] if is_turned_so(old, now) else RPY
         numbers = foreign.pose_numbers(now)
         values |= {(unit.parent, frame, key): plain_number(numbers[key]) for key in changed}
-        model = sensor.known_model or ""
-        if frame in models and model in catalog.entries():
-            comments[unit.parent, frame] = model
-        elif frame in models and sensor.kind != CAMERA:  # its camera_info describes a camera
-            comments[unit.parent, frame] = ""
+        new_axes = axes
+        if sensor.kind == CAMERA and changed:
+            new_axes = _axes_comment(frame, on_vehicle, optical=optical)
+        new_text = _new_text(sensor, text)
+        if (new_text, new_axes) != (text, axes):
+            comments[unit.parent, frame] = "; ".join(filter(None, [new_text, new_axes]))
     return unit.text.edited(values, comments, ((unit.parent,), added))
+
+
+def _new_text(sensor: PortableSensor, text: str) -> str:
+    """Return the comment of a frame of a kit: its model if the comment was one, else the same."""
+    if text not in catalog.entries():
+        return text
+    model = sensor.known_model or ""
+    if model in catalog.entries():
+        return model
+    return text if sensor.kind == CAMERA else ""  # its camera_info describes a camera
 
 
 def _infos(
@@ -253,7 +389,11 @@ def _infos(
             continue
         if name not in files and sensor not in added:
             lines.append(f"{sensor.name}: {NO_INFO}")
-        elif name not in files or not alike(picture_of_info(name, files[name]), sensor.picture):
+        elif name not in files:
+            files[name] = fresh[name]
+        elif (own := read_info(name, files[name])[0]) is None:
+            lines.append(f"{sensor.name}: {ODD_INFO}")
+        elif not alike(own, sensor.picture):
             files[name] = fresh[name]
     return files, lines
 

@@ -25,6 +25,7 @@ from .foreign_values import MAX_FRAMES, FileTexts, require_at_most
 from .passthrough import pose_of_entry
 from .portable import ORIGIN, PortableSensor
 from .portable_kinds import CAMERA
+from .sensor_names import said_kind
 
 Quaternion = tuple[float, float, float, float]
 
@@ -38,6 +39,10 @@ GROUND, REAR_AXLE_GROUND, REAR_AXLE = "ground", "rear axle on the ground", "rear
 """Origins: of the ground frame; the middle of the rear axle on the ground; the middle itself."""
 ASKING = "calibration"  # Source of messages on poses that a program hands over
 OPTICAL = "_optical"  # Suffix of the name of a camera's optical frame
+OPTICAL_NAME = re.compile("[_/]?optical(_frame|_link)?$")  # End of such names in foreign files
+OPTICAL_TILT = math.radians(45.0)
+"""A camera has optical axes if its y axis is nearer than this to the vertical [rad].
+If it looks ahead, its roll is then 45 to 135 degrees."""
 ILLEGAL, ILLEGAL_IN_TF = (re.compile(f"[^A-Za-z0-9_{more}]+") for more in ("", "/"))
 AXES = (
     "x forward, y left, z up; metres, radians. NAME_optical looks along z, x right, y down (REP "
@@ -101,6 +106,79 @@ def seen_from(outer: Pose, inner: Pose) -> Pose:
         return Pose((x, y, z), inner.rpy)
     back = outer.ground_from_sensor.T
     return pose_of(product(back, inner.ground_from_sensor), turned(back, (x, y, z)))
+
+
+def is_optical(name: str, pose: Pose) -> bool:
+    """Whether a camera's frame has optical axes: its name says so, or y is the vertical axis, and
+    not z. `pose` is that on the vehicle."""
+    vertical = abs(float(pose.ground_from_sensor[2, 1]))
+    return bool(OPTICAL_NAME.search(name)) or vertical > math.cos(OPTICAL_TILT)
+
+
+def body_of_optical(pose: Pose) -> Pose:
+    """Return the pose of a camera, which looks along x, from that of its optical frame."""
+    return pose_of(product(pose.ground_from_sensor, BODY_FROM_OPTICAL.T), pose.position)
+
+
+TURNED = "a frame of this name, or whose y axis is vertical, is optical: z is taken as forward"
+TURNED_APART = "its optical frame looks elsewhere than its link, by {:.3g} deg; it is followed"
+NOT_TURNED = "its optical frame is turned as its own frame: x is taken as forward"
+APART = math.radians(1.0)  # Optical axes nearer than this to the x axis of the link are along it
+
+
+def with_body_axes(sensor: PortableSensor, frame: str = "") -> PortableSensor:
+    """Return a sensor; a camera whose frame is an optical one is turned, and has a note on it.
+    `frame` is the name of the frame, if it is not the sensor's."""
+    kind = sensor.kind or said_kind(sensor.name)
+    if kind != CAMERA or not is_optical(frame or sensor.name, sensor.pose):
+        return sensor
+    return turned_to_body(replace(sensor, kind=kind))
+
+
+def turned_to_body(sensor: PortableSensor) -> PortableSensor:
+    """Return the camera whose pose is that of its optical frame, with a note on it."""
+    return replace(sensor, pose=body_of_optical(sensor.pose), told=TURNED)
+
+
+def as_camera(sensor: PortableSensor, optical: Pose) -> PortableSensor:
+    """Return the camera of an optical frame below its own: it is there and looks along its z axis.
+    A note says so where its own frame looks elsewhere. An optical frame that is turned as its own
+    frame is, is one only if the roll says so, too."""
+    own_rotation = sensor.pose.ground_from_sensor
+    camera = replace(sensor, kind=CAMERA, pose=Pose(optical.position, sensor.pose.rpy))
+    if np.abs(optical.ground_from_sensor - own_rotation).max() < PROPER_WITHIN:
+        turned_camera = with_body_axes(camera)
+        return turned_camera if turned_camera.told else replace(camera, told=NOT_TURNED)
+    pose = body_of_optical(optical)
+    rotation = pose.ground_from_sensor
+    if np.abs(rotation - own_rotation).max() < PROPER_WITHIN:  # but for the file's rounding
+        return camera
+    cosine = float(rotation[:, 0] @ own_rotation[:, 0])
+    apart = math.acos(min(1.0, max(-1.0, cosine)))
+    told = TURNED_APART.format(math.degrees(apart)) if apart > APART else ""
+    return replace(camera, pose=pose, told=told)
+
+
+def camera_frames(parents: Mapping[str, str]) -> dict[str, str]:
+    """Return the name of the camera of each optical frame: that of its parent, if this is not the
+    root, no frame of the vehicle, and has no other optical frame; else its own without the suffix.
+    `parents` are names of parents by that of the frame."""
+    optical = [name for name in parents if OPTICAL_NAME.search(name)]
+    of_parent: dict[str, list[str]] = {}
+    for name in optical:
+        of_parent.setdefault(parents[name], []).append(name)
+    result = {}
+    for name in optical:
+        parent = parents[name]
+        is_link = parent in parents and said_kind(parent) in (CAMERA, None)
+        stem = OPTICAL_NAME.sub("", name) or name
+        result[name] = parent if is_link and len(of_parent[parent]) == 1 else stem
+    return result
+
+
+def optical_of_body(pose: Pose) -> Pose:
+    """Return the pose of a camera's optical frame from that of the camera."""
+    return pose_of(product(pose.ground_from_sensor, BODY_FROM_OPTICAL), pose.position)
 
 
 def origin_in_ground(

@@ -84,7 +84,7 @@ def write_scan(element: Element, scan: Scan) -> None:
     """Write a scan into a ``<lidar>`` element."""
     block = SubElement(element, "scan")
     parts = {
-        "horizontal": (scan.azimuths, *scan.fov),
+        "horizontal": (scan.azimuths, *(scan.ends or scan.fov)),
         "vertical": (scan.channels, scan.low, scan.high),
     }
     for name, numbers in parts.items():
@@ -99,6 +99,7 @@ def write_scan(element: Element, scan: Scan) -> None:
 
 def scan_in(sensor: Figures) -> Scan | None:
     """Return a LiDAR's scan; None if it is incomplete. Without ``<vertical>`` it has one channel.
+    Its first and last azimuth are at both ends: N samples are N - 1 steps apart.
     Angles that end before they begin raise `InputError`."""
     azimuths = sensor.whole("horizontal/samples", values.STEPS)
     across = sensor.numbers([f"horizontal/{end}" for end in ENDS], values.AZIMUTH)
@@ -112,5 +113,6 @@ def scan_in(sensor: Figures) -> Scan | None:
         if min_angle > max_angle:
             expected, found = f"{ENDS[0]} up to {ENDS[1]}", f"{min_angle:g}, {max_angle:g}"
             raise InputError(sensor.source, sensor.field(name), expected, found)
-    nearest, fov = sensor.number("range/min", values.MIN_RANGE) or 0.0, (across[0], across[1])
-    return Scan(channels, low, high, azimuths, fov, max_range, min_range=nearest)
+    nearest = sensor.number("range/min", values.MIN_RANGE) or 0.0
+    fov = (across[0], across[1])
+    return Scan(channels, low, high, azimuths, fov, max_range, min_range=nearest, ends=fov)

@@ -1,5 +1,6 @@
 """Import of a rig from the files of another program."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,15 +12,19 @@ from pe_core.base.values import A_NAME
 from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig, Sensor, SensorModel
 from pe_core.scene.vehicle_description import Reference
+from pe_core.sensors import KINDS, coinciding
 from pe_core.study.passthrough import Passthrough, SourceSensor
 
 from . import portable_kinds
 from .foreign_values import MAX_SENSORS, require_at_most
 from .frames import composed, origin_in_ground, shifted
 from .lens_pictures import alike
-from .passthrough import NO_WORD, listed_kinds, model_text, parted
+from .passthrough import listed_kinds, model_text, parted
 from .portable import PortableSensor, merged_lines, named_apart
 from .rig_formats import RigFormat, detect_format, rig_format
+from .sensor_names import model_by_name, said_kind
+
+NO_WORD = re.compile("[^a-z0-9]+")  # What two spellings of a model's name may differ in
 
 
 class Modelled(NamedTuple):
@@ -130,37 +135,71 @@ def _imported(
     hint = f"; an export to {row.title} has them again" if row.passes_through else ""
     left_out_lines = [f"left out: {left_out_names}{hint}"] if left_out else []
     notes = merged_lines(((m.sensor.name, m.sensor.told) for m in modelled), len(modelled))
-    lines = (*left_out_lines, *renamed, *notes, *(m.line for m in modelled if m.line))
+    remarks = row.remarks(path)
+    lines = (*left_out_lines, *renamed, *remarks, *notes, *(m.line for m in modelled if m.line))
+    lines += tuple(
+        f"{', '.join(sensor.name for sensor in group)}: at the same place, within 1 cm; each counts"
+        for group in coinciding(rig)
+    )
     to_choose = tuple(m.sensor.name for m in modelled if m.stands_in)
     return ImportedRig(Rig(rig), to_choose, lines, passthrough if passthrough.holds else None)
 
 
 def _with_model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> Modelled:
     """Return a sensor with its kind resolved, its model, and a message about the model."""
-    sensor = replace(sensor, kind=sensor.kind or portable_kinds.kind_by_name(sensor.name))
+    said = said_kind(sensor.name)
+    sensor = replace(sensor, kind=sensor.kind or (said if said in KINDS else portable_kinds.LIDAR))
     modelled = Modelled(sensor, catalog.load(chosen), "") if chosen else _modelled(sensor, row)
-    return modelled._replace(sensor=row.settled(replace(sensor, model=modelled.model.name)))
+    known = replace(sensor, model=modelled.model.name, is_stand_in=modelled.stands_in)
+    return modelled._replace(sensor=row.settled(known))
 
 
 def _modelled(sensor: PortableSensor, row: RigFormat) -> Modelled:
-    """Return a sensor with the catalogue's model, one of the file's figures, or a stand-in. A
+    """Return a sensor with the catalogue's model, one of the file's figures, the one that its name
+    says, or a stand-in."""
+    if (named := _catalogued(sensor, row)) is not None:
+        return named
+    reason = ""
+    try:
+        own = portable_kinds.portable_kind(sensor.kind).model(sensor, row.usual_size)
+    except InputError as error:
+        if sensor.picture is None:
+            raise
+        own = None
+        reason = f"its lens is left out, {error.at('')}"
+    if own is not None:
+        return Modelled(sensor, *own)
+    for text in filter(None, (sensor.model, sensor.name)):
+        if name := model_by_name(text, sensor.kind):
+            model = portable_kinds.with_ranges(catalog.load(name), sensor)
+            return Modelled(sensor, model, f"{sensor.name}: {name}, as {shown(text)} says")
+    return _stand_in(sensor, reason)
+
+
+def _catalogued(sensor: PortableSensor, row: RigFormat) -> Modelled | None:
+    """Return a sensor with the catalogue's model of the name in the file; None if there is none. A
     camera that the catalogue has with another lens gets the file's lens."""
     normalized = NO_WORD.sub("", (sensor.model or "").lower())
     names = {NO_WORD.sub("", name.lower()): name for name in catalog.names(sensor.kind)}
-    if normalized and normalized in names:
-        model, line = catalog.load(names[normalized]), ""
-        ours, theirs = portable_kinds.picture_of(model), sensor.picture
-        if ours and theirs is not None and not alike(row.keeps(ours), theirs):
-            note = f"{sensor.name}: its lens is not that of {model.name} in the catalogue, but the"
-            model, line = portable_kinds.camera_of(sensor.name, theirs, row.usual_size)
-            line = line or f"{note} file's"
-        return Modelled(sensor, portable_kinds.with_ranges(model, sensor), line)
-    if (own := portable_kinds.portable_kind(sensor.kind).model(sensor, row.usual_size)) is not None:
-        return Modelled(sensor, *own)
+    if not normalized or normalized not in names:
+        return None
+    model, line = catalog.load(names[normalized]), ""
+    ours, theirs = portable_kinds.picture_of(model), sensor.picture
+    if ours and theirs is not None and not alike(row.keeps(ours), theirs):
+        note = f"{sensor.name}: its lens is not that of {model.name} in the catalogue, but the"
+        model, line = portable_kinds.camera_of(sensor.name, theirs, row.usual_size)
+        line = line or f"{note} file's"
+    return Modelled(sensor, portable_kinds.with_ranges(model, sensor), line)
+
+
+def _stand_in(sensor: PortableSensor, reason: str) -> Modelled:
+    """Return a sensor with a stand-in for its model. `reason` may be empty: the file has none."""
     stand_in = portable_kinds.stand_in_of(sensor.kind or "")
     assert stand_in is not None, "`parted` has left it out"
-    reason = (
-        f"no {shown(sensor.model)} in the catalogue" if sensor.model else "no model in the file"
-    )
+    if not reason and sensor.model:
+        reason = f"no {shown(sensor.model)} in the catalogue"
+    reason = reason or "no model in the file"
+    if sensor.kind == portable_kinds.LIDAR and said_kind(sensor.name) is None:
+        reason += ", and no kind in its name"
     line = f"{sensor.name}: {reason}; {stand_in} stands in: choose its model"
     return Modelled(sensor, catalog.load(stand_in), line, True)

@@ -5,7 +5,6 @@ entry of a sensor is written unchanged while the sensor has its imported pose an
 import hashlib
 import json
 import math
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -21,7 +20,8 @@ from pe_core.study.passthrough import Passthrough, json_entry
 
 from .foreign_values import pose_from
 from .portable import ORIGIN, PortableRig, PortableSensor
-from .portable_kinds import has_model
+from .portable_kinds import RADAR, ULTRASONIC, has_model
+from .sensor_names import FRAME, NO_SENSOR_WORDS, said_kind
 
 UNMOVED_M, UNTURNED = 2e-5, 4e-6
 """A pose nearer than this to the imported one is unchanged: .blend files and studies round to
@@ -142,10 +142,9 @@ def pose_of_entry(sensor: PortableSensor) -> Pose:
     return pose_from("passthrough", sensor.name, position, angles)
 
 
-NO_WORD = re.compile("[^a-z0-9]+")
-NAMED_KINDS = ("radar", "ultrasonic", "sonar", "gnss", "gps", "imu", "ins", "collision")
-"""Words in sensor names that identify a kind, if the file states none."""
-NOUNS = {"radar", "ultrasonic"}  # Kinds that are nouns; of others one says sensor
+SENSORS = frozenset(["gnss", "gps", "imu", "ins", "collision", "sonar", "lane_invasion"])
+NOUNS = frozenset({RADAR, ULTRASONIC, "link", FRAME}) | (NO_SENSOR_WORDS - SENSORS)
+"""Kinds that are nouns; of others one says sensor."""
 
 
 def parted(
@@ -157,8 +156,7 @@ def parted(
     for sensor in sensors:
         kind = sensor.kind or ""
         if not (kind or sensor.name in chosen or sensor.model or sensor.has_figures):
-            words = NO_WORD.sub(" ", sensor.name.lower()).split()
-            kind = next((named for named in NAMED_KINDS if named in words), "")
+            kind = said_kind(sensor.name) or ""
         is_chosen = kind in KINDS and sensor.name in chosen
         if not kind or is_chosen or has_model(replace(sensor, kind=kind)):
             included.append(sensor)

@@ -19,7 +19,8 @@ class Scan:
     are the elevations of the outer channels, `fov` is the azimuth range [rad]; ranges are in
     metres. `even` tells whether the channels are evenly spaced; their azimuth offsets are up to
     `offset_rad`. `directions` (B, 3) are the beams of an imported file that lists them; for a LiDAR
-    of a rig, `compute_beams` computes them."""
+    of a rig, `compute_beams` computes them. `ends` are the first and the last azimuth [rad], which
+    formats state that divide a scan so (SDF); None where the file has `fov` alone."""
 
     channels: int
     low: float
@@ -32,6 +33,7 @@ class Scan:
     min_range: float = 0.0
     compute_beams: Callable[[], Floats] | None = None
     offset_rad: float = 0.0
+    ends: tuple[float, float] | None = None
 
     @property
     def beams(self) -> Floats | None:

@@ -11,21 +11,25 @@ from typing import Any
 import numpy as np
 
 from pe_core import catalog
+from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError
 from pe_core.scene.rig import Rig, SensorModel
 from pe_core.sensors import KINDS
 from pe_core.sensors.camera import Camera
 from pe_core.sensors.camera.lens import fold_angle
 from pe_core.sensors.lidar import Lidar
+from pe_core.sensors.lidar.model import FULL_CIRCLE
 from pe_core.sensors.radar import Radar, RadarMode
 from pe_core.sensors.ultrasonic import Ultrasonic
 from pe_core.study.passthrough import json_entry
 
+from .foreign_values import MAX_BEAMS
 from .lens_pictures import ALIKE_PX, Picture, Size
 from .portable import EVEN_RAD, FieldOfView, PortableRig, PortableSensor, Scan
 
 CAMERA, LIDAR, RADAR, ULTRASONIC = Camera.kind, Lidar.kind, Radar.kind, Ultrasonic.kind
 NO_EXTENT_RAD = 1e-9  # A scan with a smaller horizontal field of view does not rotate [rad]
+OFF_STEP = 0.01  # Of an azimuth step: what is nearer to a whole number of steps than this is one
 OFF_CENTER = 0.06
 """Of a picture's side, how far from the middle the principal point of a usual size may be:
 nuScenes' own cameras have it 0.046 below."""
@@ -41,13 +45,11 @@ class PortableKind:
     """How the exchange model expresses the sensors of a kind. `figures` returns the fields of
     `PortableSensor` that describe a model. `model` returns the model of a sensor's figures, by the
     usual image size of the format; None without figures of the kind. `stand_in` is the catalogue
-    name of the model that stands in where a file names none, `name_parts` are parts of a name that
-    identify the kind, if a file does not state it."""
+    name of the model that stands in where a file names none."""
 
     figures: Callable[[Any], Mapping[str, Any]]
     model: Callable[[PortableSensor, Size | None], OwnModel | None]
     stand_in: str | None = None
-    name_parts: tuple[str, ...] = ()
 
 
 def portable_kind(name: str | None) -> PortableKind:
@@ -66,13 +68,6 @@ def has_model(sensor: PortableSensor) -> bool:
     """Whether a sensor's kind is known, and the file or the catalogue has a model for it."""
     kind = sensor.kind or ""
     return kind in KINDS and (sensor.has_figures or stand_in_of(kind) is not None)
-
-
-def kind_by_name(name: str) -> str:
-    """Return the kind of a sensor by its name; a LiDAR where nothing in it identifies one."""
-    lowered = name.lower()
-    rows = PORTABLE_KINDS.items()
-    return next((k for k, row in rows if any(p in lowered for p in row.name_parts)), LIDAR)
 
 
 def portable_sensors(rig: Rig) -> PortableRig:
@@ -144,9 +139,60 @@ def lidar_of(name: str, scan: Scan) -> Lidar:
         level = np.cos(elevations)
         beams = [level * math.cos(low), level * math.sin(low), np.sin(elevations)]
         return Lidar.from_directions(name, np.stack(beams, axis=1), *ranges)
+    if scan.ends is not None and scan.azimuths > 1:
+        return _lidar_between(name, scan, scan.ends, elevations)
     share = min((high - low) / (2.0 * math.pi), 1.0)
     steps = max(round(scan.azimuths / share), 1)
     return Lidar(name, elevations, steps, ranges[0], horizontal_fov=scan.fov, min_range=ranges[1])
+
+
+def _lidar_between(name: str, scan: Scan, ends: tuple[float, float], elevations: Floats) -> Lidar:
+    """Return the LiDAR of a scan with azimuths at both ends and evenly between. It has the steps of
+    a full circle if these fit, else its beams are listed. A scan of a whole turn has the azimuth
+    at its seam once."""
+    ranges = scan.max_range, scan.min_range
+    low, high = ends
+    nominal = (high - low) / (scan.azimuths - 1)
+    steps = round(2.0 * math.pi / nominal)
+    if abs(2.0 * math.pi / nominal - steps) > OFF_STEP and scan.beam_count <= MAX_BEAMS:
+        azimuths = np.tile(np.linspace(low, high, scan.azimuths), len(elevations))
+        up = np.repeat(elevations, scan.azimuths)
+        level = np.cos(up)
+        beams = [level * np.cos(azimuths), level * np.sin(azimuths), np.sin(up)]
+        return Lidar.from_directions(name, np.stack(beams, axis=1), *ranges)
+    step = 2.0 * math.pi / steps
+    first = round(low / step)
+    offset = low - first * step
+    offset = 0.0 if abs(offset) <= OFF_STEP * step else offset
+    fov = (first * step, (first + scan.azimuths - 1) * step)
+    if scan.azimuths >= steps:
+        fov = FULL_CIRCLE
+    return Lidar(
+        name,
+        elevations,
+        steps,
+        ranges[0],
+        azimuth_offsets=np.full(len(elevations), offset),
+        horizontal_fov=fov,
+        min_range=ranges[1],
+    )
+
+
+def _ends(model: Lidar) -> tuple[float, float]:
+    """Return the first and the last azimuth [rad]; of a full circle, those round the x axis."""
+    azimuths = model.azimuth_steps
+    first, last = int(azimuths[0]), int(azimuths[-1])
+    if len(azimuths) == model.azimuth_count:
+        first = -(model.azimuth_count // 2)
+        last = first + model.azimuth_count - 1
+    common = _common_offset(model)
+    return first * model.azimuth_step + common, last * model.azimuth_step + common
+
+
+def _common_offset(model: Lidar) -> float:
+    """Return the azimuth offset that all channels share [rad]; 0 if they differ."""
+    offsets = model.azimuth_offsets
+    return float(offsets[0]) if np.ptp(offsets) == 0.0 else 0.0
 
 
 def _scan(model: Lidar) -> Scan:
@@ -159,7 +205,8 @@ def _scan(model: Lidar) -> Scan:
         even=all(abs(b - a - step) < EVEN_RAD for a, b in pairwise(angles)),
         min_range=model.min_range,
         compute_beams=lambda: model.directions,
-        offset_rad=float(np.abs(model.azimuth_offsets).max()),
+        offset_rad=float(np.abs(model.azimuth_offsets - _common_offset(model)).max()),
+        ends=_ends(model),
     )
 
 
@@ -206,15 +253,10 @@ PORTABLE_KINDS: dict[str, PortableKind] = {
         "Velodyne VLP-16 Puck",
     ),
     CAMERA: PortableKind(
-        lambda model: {"picture": picture_of(model)},
-        _camera_model,
-        "nuScenes front",
-        ("cam", "fisheye", "rgb", "image"),
+        lambda model: {"picture": picture_of(model)}, _camera_model, "nuScenes front"
     ),
-    RADAR: PortableKind(_with_field, _model_by_field, "Continental ARS408-21", ("radar",)),
-    ULTRASONIC: PortableKind(
-        _with_field, _model_by_field, "Bosch Ultrasonic 3.1", ("ultrasonic", "uss")
-    ),
+    RADAR: PortableKind(_with_field, _model_by_field, "Continental ARS408-21"),
+    ULTRASONIC: PortableKind(_with_field, _model_by_field, "Bosch Ultrasonic 3.1"),
 }  # Rows by kind; other kinds are expressed by `OTHER`
 OTHER = PortableKind(
     lambda model: {"parameters": json_entry(catalog.to_table(model))}, _model_by_table

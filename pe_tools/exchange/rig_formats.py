@@ -1,6 +1,6 @@
 """Registry of the rig formats for import and export, one row per format."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -42,7 +42,8 @@ class RigFormat:
     `holds`: properties that it holds besides poses and lenses. `keeps`: function that reduces a
     camera's intrinsics to what the format can express. `settled`: function that adjusts a sensor
     once its model is known. `source`: function of an imported path; returns the texts that `write`
-    takes, by file name. `usual_size` (int, int): image size of the format's data set [px], for a
+    takes, by file name. `remarks`: function of an imported path; returns messages on what was not
+    read, or was guessed. `usual_size` (int, int): image size of the format's data set [px], for a
     format that states no size. `beside`: whether files with camera intrinsics are beside the main
     file. `passes_through`: whether an export restores imported sensors of unknown kinds."""
 
@@ -55,6 +56,7 @@ class RigFormat:
     keeps: lenses.KeptPicture = lambda picture: picture
     settled: Callable[[PortableSensor], PortableSensor] = lambda sensor: sensor
     source: Callable[[Path], FileTexts] = lambda path: {}
+    remarks: Callable[[Path], Sequence[str]] = lambda path: ()
     usual_size: lenses.Size | None = None
     beside: bool = False
     passes_through: bool = True
@@ -72,6 +74,7 @@ _ROWS = (
     RigFormat(
         *("urdf", "URDF", GROUND, (urdf.FILE,), urdf, _TABLE | _BEAMS, lenses.opencv_of_five),
         source=urdf.source,
+        remarks=urdf.remarks,
     ),
     RigFormat(
         *("ros", "ROS 2 static transforms", GROUND, (ros.FILE,), ros),
@@ -86,6 +89,7 @@ _ROWS = (
         keeps=lenses.opencv,
         settled=autoware.lifted,
         source=autoware.source,
+        remarks=autoware.remarks,
         beside=True,
     ),
     RigFormat(
@@ -162,7 +166,7 @@ def detect_format(path: Path) -> RigFormat:
         if names & set(row.files):
             return row
     ending = {".csv": "csv", ".urdf": "urdf", ".xacro": "urdf", ".sh": "ros", ".xml": "ros"}
-    ending[".txt"] = "kitti"
+    ending |= {".sdf": "urdf", ".txt": "kitti"}
     if path.suffix.lower() in ending:
         return RIG_FORMATS[ending[path.suffix.lower()]]
     expected = f"a file name of a known format, or the name of a format: {', '.join(RIG_FORMATS)}"

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
+from xml.sax.saxutils import unescape
 
 import numpy as np
 
@@ -29,14 +30,20 @@ from . import frames
 from .foreign_values import RPY, XYZ, Export, FileTexts
 from .lens_pictures import Picture
 from .portable import PortableRig, PortableSensor
-from .portable_kinds import CAMERA
+from .portable_kinds import CAMERA, camera_of
 
 FILE, ROOT = "rig.launch.xml", "base_link"
 PUBLISHER = "static_transform_publisher"
 QUATERNION = ("qw", "qx", "qy", "qz")
 ENDS = ("frame-id", "child-frame-id")
 EQUALS = re.compile(r"(--[a-z-]+)=")  # Between an option and its value, in place of a blank
-ARGS = re.compile(rf"{PUBLISHER}[\"']?(?:\s+args=[\"'])?([^<\"'\n]*)")
+NODE = re.compile(r"<node\b([^<]*)")
+ATTRIBUTE = re.compile(r"""(?<![\w.:-])([\w.:-]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
+CALL = re.compile(rf"{PUBLISHER}[\"']?([^<\"'\n]*)")
+"""Nodes of a launch file up to the next tag, their attributes, and calls in other files."""
+POSITIONAL = ("x", "y", "z", "yaw", "pitch", "roll")
+POSITIONAL_QUATERNION = ("x", "y", "z", "qx", "qy", "qz", "qw")
+"""Numbers before both frames in a call without options; ROS 1 has a period [ms] after these."""
 
 FOLDER = "camera_info"
 PLUMB_BOB, RATIONAL, EQUIDISTANT = "plumb_bob", "rational_polynomial", "equidistant"
@@ -79,24 +86,30 @@ def source(path: Path) -> dict[str, str]:
 
 def read(path: Path) -> PortableRig:
     """Read the transforms of all calls of the publisher in a file, in the frame of their root. A
-    frame with an optical frame below it is a camera; the kind of others is unknown."""
+    frame with one optical frame below it is a camera, that looks along the optical axis; so is an
+    optical frame on its own. The kind of others is unknown."""
     path = path / FILE if path.is_dir() else path
     links = _links(path)
     names = dict.fromkeys(name for child, (parent, _) in links.items() for name in (parent, child))
     poses = frames.poses_from_root(path, links, names, "frame")
-    optical = {name for name in links if name.endswith(frames.OPTICAL)}
-    cameras = {links[name][0] for name in optical}
-    sensors = [
-        PortableSensor(name, poses[name], CAMERA if name in cameras else None)
-        for name in links
-        if name not in optical
-    ]
+    owners = frames.camera_frames({child: parent for child, (parent, _) in links.items()})
+    optical_of = {owner: name for name, owner in owners.items() if owner in links}
+    sensors = []
+    for name in links:
+        owner = owners.get(name)
+        if owner in links:
+            continue
+        sensor = PortableSensor(owner or name, poses[name], CAMERA if owner else None)
+        if name in optical_of:
+            sensors.append(frames.as_camera(sensor, poses[optical_of[name]]))
+        else:
+            sensors.append(frames.with_body_axes(sensor, name))
     return with_info(path.parent, sensors)
 
 
 def _links(path: Path) -> dict[str, tuple[str, Pose]]:
     """Return the parent and the pose in the parent frame, by frame name."""
-    calls = ARGS.findall(without_comments(values.text_of(path)))
+    calls = _calls(without_comments(values.text_of(path)))
     values.require_at_most(path, "file", len(calls), values.MAX_FRAMES, f"calls of {PUBLISHER}")
     links: dict[str, tuple[str, Pose]] = {}
     for number, arguments in enumerate(calls):
@@ -112,16 +125,34 @@ def _links(path: Path) -> dict[str, tuple[str, Pose]]:
     return links
 
 
+def _calls(text: str) -> list[str]:
+    """Return the arguments of the publisher in each call: of nodes of a launch file, else of lines
+    of a script."""
+    calls = []
+    for node in NODE.finditer(text):
+        if PUBLISHER not in node[1]:
+            continue
+        if len(node[1]) > 2 * values.MAX_LINE_LENGTH:  # it is refused by its length
+            calls.append(node[1])
+            continue
+        found = ATTRIBUTE.findall(node[1])
+        attributes = {key: unescape(double or single) for key, double, single in found}
+        if PUBLISHER in (attributes.get("exec"), attributes.get("type")):
+            calls.append(attributes.get("args", ""))
+    return calls if "<node" in text else CALL.findall(text)
+
+
 def _transform(path: Path, field: str, args: str) -> tuple[str, str, Pose]:
     """Return parent, child and pose of one call."""
     try:
         words = shlex.split(EQUALS.sub(r"\1 ", args))
     except ValueError as error:
         raise InputError(path, field, "arguments", error) from None
-    options = dict(zip(words[::2], words[1::2], strict=False))
+    options = _positional(words) or dict(zip(words[::2], words[1::2], strict=False))
     ends = [options.get(f"--{end}", "") for end in ENDS]
     if not all(ends):
-        raise InputError(path, field, "--frame-id and --child-frame-id", shown(args.strip()))
+        expected = "--frame-id and --child-frame-id, or 6 or 7 numbers and two frames"
+        raise InputError(path, field, expected, shown(args.strip()))
 
     def figures(keys: Sequence[str]) -> list[float]:
         texts = [(key, options.get(f"--{key}", "1" if key == "qw" else "0")) for key in keys]
@@ -132,6 +163,23 @@ def _transform(path: Path, field: str, args: str) -> tuple[str, str, Pose]:
         rotation = frames.from_quaternion(path, field, figures(QUATERNION))
         return ends[0], ends[1], frames.pose_of(rotation, position)
     return ends[0], ends[1], values.pose_from(path, field, position, figures(RPY))
+
+
+def _positional(words: Sequence[str]) -> dict[str, str]:
+    """Return a call of numbers and frames as options; empty if it is none. It has x, y, z, then
+    yaw, pitch, roll or a quaternion, parent and child, and in ROS 1 a period."""
+    keys = {f"--{key}" for key in (*XYZ, *RPY, *QUATERNION, *ENDS)}
+    if keys & set(words):
+        return {}
+    is_number = [values.PLAIN.fullmatch(word) is not None for word in words]
+    for order in (POSITIONAL_QUATERNION, POSITIONAL):
+        count = len(order)
+        is_call = len(words) == count + 2 or (len(words) == count + 3 and is_number[-1])
+        if is_call and all(is_number[:count]) and not any(is_number[count : count + 2]):
+            numbers = dict(zip((f"--{key}" for key in order), words, strict=False))
+            ends = dict(zip((f"--{end}" for end in ENDS), words[count:], strict=False))
+            return numbers | ends
+    return {}
 
 
 def without_comments(text: str) -> str:
@@ -182,10 +230,23 @@ def with_info(folder: Path, sensors: Iterable[PortableSensor]) -> PortableRig:
     for sensor in sensors:
         path = folder / info_name(sensor.name)
         if path.is_file():
-            picture = picture_of_info(str(path), values.text_of(path))
-            sensor = replace(sensor, kind=CAMERA, picture=picture)
+            picture, note = read_info(str(path), values.text_of(path))
+            told = "; ".join(filter(None, [sensor.told, note]))
+            sensor = replace(sensor, kind=CAMERA, picture=picture, told=told)
         result.append(sensor)
     return tuple(result)
+
+
+def read_info(source: str, text: str) -> tuple[Picture | None, str]:
+    """Return the intrinsics in the text of a camera_info file, and a message (may be empty). If the
+    file is damaged, or its lens is not known or is that of no camera, they are None and the message
+    says why."""
+    try:
+        picture = picture_of_info(source, text)
+        camera_of(source, picture)
+        return picture, ""
+    except InputError as error:
+        return None, f"its lens is left out: {error.at(f'{FOLDER}/{Path(source).name}')}"
 
 
 def picture_of_info(source: str, text: str) -> Picture:

@@ -2,36 +2,38 @@
 Gazebo's sensor elements, as far as these can express them. The model name is in an element beside
 them, which other readers of URDF ignore."""
 
-from collections.abc import Collection, Iterator
+import re
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from pe_core.base.errors import InputError, shown
-from pe_core.base.files import read_bytes
+from pe_core.base.files import decode_text, read_bytes
 from pe_core.geometry.poses import Pose
 from pe_tools.formats.xml_text import parse_xml
 
 from . import foreign_values as values
 from . import frames
-from .foreign_values import Export, Figures, FileTexts, spaced
-from .frames import OPTICAL
-from .gazebo import picture_in, scan_in, write_clip, write_picture, write_scan
-from .passthrough import entry_row, pose_entry
+from .foreign_values import Export, FileTexts, spaced
+from .gazebo import write_clip, write_picture, write_scan
+from .gazebo_sensors import OWN, RANGES, LinkBlock, read_sensors
+from .passthrough import entry_row
 from .portable import PortableRig, PortableSensor, uneven
-from .portable_kinds import CAMERA, LIDAR, has_model
+from .portable_kinds import CAMERA, LIDAR
+from .robot_links import LinkTree, SensorLink, has_mass, sensor_links, unread_lines
+from .ros import without_comments
+from .sdf import read_sdf
 
-RANGES = {"min_range": values.MIN_RANGE, "max_range": values.FARTHEST}
 FILE, ROOT, NAME = "rig.urdf", "base_link", "rig"
+XACRO = re.compile(r"<xacro:|\$\{|\$\((find|arg|eval|env|optenv|dirname|anon)\b")
+"""What only a file of xacro has."""
 ON_GROUND = "base_footprint"  # The link on the ground under a robot (REP 120)
 MASSES = (
     "Links have a mass and joints are preserved, so that Gazebo keeps each sensor's frame; gravity "
     "does not move them. "
 )
 GAZEBO_KINDS = {CAMERA: CAMERA, LIDAR: "gpu_lidar"}
-KIND_BY_TEXT = {CAMERA: CAMERA, LIDAR: LIDAR, "ray": LIDAR, "depth": CAMERA}
-"""What a word in a Gazebo sensor's type says of its kind."""
 INERTIA_KEYS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 MASS_KG, INERTIA = 0.01, 1e-5
 """Of every link [kg, kg m2]: Gazebo has none without (sdformat's issue 199), nor below 1e-5 kg."""
@@ -65,9 +67,11 @@ def write(sensors: PortableRig, texts: FileTexts) -> Export:
 
 def source(path: Path) -> dict[str, str]:
     """Return a robot of the same name with only the origin link, for `write`."""
-    robot = _robot(path)
-    skeleton = Element("robot", {"name": robot.get("name", NAME)})
-    SubElement(skeleton, "link", {"name": _origin_of(_poses(path, robot))})
+    root = _description(path)
+    name = root.get("name", NAME) if root.tag == "robot" else NAME
+    skeleton = Element("robot", {"name": name})
+    link = ROOT if root.tag == "sdf" else _origin_of(_poses(path, root))
+    SubElement(skeleton, "link", {"name": link})
     return {FILE: tostring(skeleton, "unicode")}
 
 
@@ -104,7 +108,7 @@ def _gazebo(robot: Element, sensor: PortableSensor) -> None:
     }
     attributes = {"kind": sensor.kind or "", "model": sensor.known_model or ""}
     attributes |= {key: text for key, text in optional.items() if text}
-    SubElement(block, "perception_entropy", attributes)
+    SubElement(block, OWN, attributes)
     if kind is None or (sensor.picture is None and sensor.scan is None):
         return
     element = SubElement(block, "sensor", {"name": sensor.name, "type": kind})
@@ -117,43 +121,91 @@ def _gazebo(robot: Element, sensor: PortableSensor) -> None:
 
 
 def read(path: Path) -> PortableRig:
-    """Read the sensors of a robot, in the frame of its root. Sensors are the links with a Gazebo
-    sensor. If there are none, they are the links with an optical frame, and the links without
-    children and without a mass."""
-    robot = _robot(path)
-    in_root = _poses(path, robot)
-    blocks = {
-        block.get("reference", ""): block
-        for block in robot.iter("gazebo")
-        if any(block.find(tag) is not None for tag in ("sensor", "perception_entropy"))
-    }
-    names = [name for name in in_root if name in blocks] or list(_bodiless(robot, in_root))
-    if not names:
-        raise InputError(path, "link", "links of sensors", "none")
+    """Read the sensors of a robot, in the frame of its root. Sensors are Gazebo's. If there are
+    none, names, joints and masses of links decide: see `robot_links`."""
+    return _read(path)[0]
+
+
+def remarks(path: Path) -> list[str]:
+    """Return messages on links that are left out, or taken without a name that says so."""
+    return _read(path)[1]
+
+
+def _read(path: Path) -> tuple[PortableRig, list[str]]:
+    root = _description(path)
+    if root.tag == "sdf":
+        return read_sdf(path, root)
+    in_root = _poses(path, root)
     origin = _origin_of(in_root)
     poses = {name: frames.seen_from(in_root[origin], pose) for name, pose in in_root.items()}
-    is_ours = next(robot.iter("perception_entropy"), None) is not None
-    result = []
+    blocks = _sensor_blocks(root)
+    tree = _tree(root, in_root)
+    lines: list[str] = []
+    if any(name in blocks for name in poses):
+        at_links = [LinkBlock(name, poses[name], blocks[name]) for name in poses if name in blocks]
+        sensors = [sensor for at in at_links for sensor in read_sensors(path, at, poses)]
+        if next(root.iter(OWN), None) is None:
+            lines = unread_lines(tree, blocks)
+    else:
+        links, lines = sensor_links(tree)
+        sensors = [_sensor_of_link(link, poses) for link in links]
+    if not sensors:
+        raise InputError(path, "link", "links of sensors", "none")
+    line = _origin_line(root, in_root, origin)
+    noted = [replace(s, told="; ".join(filter(None, [s.told, line]))) for s in sensors]
+    return tuple(noted), lines
+
+
+def _sensor_blocks(robot: Element) -> dict[str, list[Element]]:
+    """Return Gazebo's elements with sensors by their link."""
+    blocks: dict[str, list[Element]] = {}
+    for block in robot.findall("gazebo"):
+        if any(block.find(tag) is not None for tag in ("sensor", OWN)):
+            blocks.setdefault(block.get("reference", ""), []).append(block)
+    return blocks
+
+
+def _origin_line(robot: Element, in_root: Mapping[str, Pose], origin: str) -> str:
+    """Return the message on the origin; empty for a robot of this program."""
     place, under = f"the robot's root, {next(iter(in_root))}", "on the ground under"
     if origin == ON_GROUND:
         place, under = f"{ON_GROUND}, which is on the ground", "under"
     middle = "the middle of the vehicle, --at says where it is"
-    line = "" if is_ours else f"taken in {place}; if that is not {under} {middle}"
-    for name in names:
-        sensor, entry = _sensor(path, name, poses, blocks.get(name)), ""
-        if sensor.kind is not None and not has_model(sensor):  # of unknown kind
-            own = [b for b in robot.iter("gazebo") if b.get("reference") == name]
-            texts = [tostring(block, "unicode").strip() for block in own]
-            entry = pose_entry(sensor, gazebo=texts)
-        result.append(replace(sensor, told=line, entry=entry))
-    return tuple(result)
+    is_ours = next(robot.iter(OWN), None) is not None
+    return "" if is_ours else f"taken in {place}; if that is not {under} {middle}"
 
 
-def _robot(path: Path) -> Element:
-    robot = parse_xml(str(path), read_bytes(path))
-    if robot.tag != "robot":
-        raise InputError(path, "file", "URDF, a <robot>", f"<{robot.tag}>")
-    return robot
+def _tree(robot: Element, in_root: Mapping[str, Pose]) -> LinkTree:
+    joints = robot.findall("joint")
+    parents, moving = {}, set()
+    for joint in joints:
+        parent, child = (joint.find(end) for end in ("parent", "child"))
+        if parent is None or child is None:  # `_poses` has refused it
+            continue
+        parents[child.get("link", "")] = parent.get("link", "")
+        if joint.get("type", "fixed") != "fixed":
+            moving.add(child.get("link", ""))
+    heavy = {link.get("name", "") for link in robot.findall("link") if has_mass(link)}
+    return LinkTree(tuple(in_root), parents, frozenset(moving), frozenset(heavy))
+
+
+def _sensor_of_link(link: SensorLink, poses: Mapping[str, Pose]) -> PortableSensor:
+    sensor = PortableSensor(link.name, poses[link.frame], link.kind)
+    if link.optical is not None and link.optical != link.frame:
+        return frames.as_camera(sensor, poses[link.optical])
+    return frames.with_body_axes(sensor, link.frame)
+
+
+def _description(path: Path) -> Element:
+    """Return the root of a URDF or an SDF. A file of xacro is not one yet."""
+    data = read_bytes(path)
+    if XACRO.search(without_comments(decode_text(data))):
+        expected = f"URDF, as `xacro {path.name}` writes it to a file"
+        raise InputError(path, "file", expected, "xacro, whose macros are not expanded")
+    root = parse_xml(str(path), data)
+    if root.tag not in ("robot", "sdf"):
+        raise InputError(path, "file", "URDF, a <robot>, or SDF", f"<{root.tag}>")
+    return root
 
 
 def _origin_of(poses: dict[str, Pose]) -> str:
@@ -163,7 +215,7 @@ def _origin_of(poses: dict[str, Pose]) -> str:
 
 def _poses(path: Path, robot: Element) -> dict[str, Pose]:
     """Return the poses of links in the root frame, by name, ordered by depth."""
-    links = dict.fromkeys(link.get("name", "") for link in robot.iter("link"))
+    links = dict.fromkeys(link.get("name", "") for link in robot.findall("link"))
     values.require_at_most(path, "link", len(links), values.MAX_FRAMES, "links")
     joints = {}
     for joint in robot.findall("joint"):  # movable joints are at zero
@@ -187,47 +239,3 @@ def _end(path: Path, joint: Element, end: str, links: Collection[str]) -> str:
         field = f"joint {joint.get('name', '')!r}, {end}"
         raise InputError(path, field, "the name of a link", shown(name))
     return name
-
-
-def _bodiless(robot: Element, poses: dict[str, Pose]) -> Iterator[str]:
-    """Yield the links that may be sensors, in a robot without Gazebo sensors."""
-    joints, links = robot.findall("joint"), robot.findall("link")
-    parents = {end.get("link") for joint in joints for end in joint.iter("parent")}
-    heavy = {link.get("name") for link in links if link.find("inertial") is not None}
-    for name in list(poses)[1:]:
-        is_end = name not in parents and name not in heavy
-        if OPTICAL not in name and (is_end or _optical_of(name, poses)):
-            yield name
-
-
-def _optical_of(name: str, poses: dict[str, Pose]) -> str | None:
-    """Return the optical frame of a link, by its name."""
-    stem = name.removesuffix("_link").removesuffix("_frame")
-    endings = (OPTICAL, f"{OPTICAL}_frame", f"{OPTICAL}_link")
-    return next((s + e for s in (name, stem) for e in endings if s + e in poses), None)
-
-
-def _sensor(path: Path, name: str, poses: dict[str, Pose], block: Element | None) -> PortableSensor:
-    kind = CAMERA if _optical_of(name, poses) else None
-    if block is None:
-        return PortableSensor(name, poses[name], kind)
-    project_element, sensor = block.find("perception_entropy"), block.find("sensor")
-    model = project_element.get("model") if project_element is not None else None
-    if sensor is not None:
-        type_name = sensor.get("type", "")
-        kind = next((k for word, k in KIND_BY_TEXT.items() if word in type_name), type_name or kind)
-    if project_element is not None:
-        kind = project_element.get("kind") or kind
-
-    def field(key: str) -> str:
-        return f"sensor of {name}, {key}"
-
-    inside = Figures(path, lambda k: None if sensor is None else sensor.findtext(f".//{k}"), field)
-    fields: dict[str, Any] = {}
-    if project_element is not None:
-        known = Figures(path, project_element.get, field)
-        fields = {key: known.number(key, rule) for key, rule in RANGES.items()}
-        fields["parameters"] = project_element.get("parameters", "")
-        fields["fusion"] = project_element.get("fusion") or None
-    picture_and_scan = picture_in(inside), scan_in(inside)
-    return PortableSensor(name, poses[name], kind, model or None, *picture_and_scan, **fields)

@@ -82,17 +82,19 @@ class YamlText:
         return {p: c for p in self._nodes if (c := self._comment(p)[1])}
 
     def _comment(self, path: KeyPath) -> tuple[int, str]:
-        """Return where the text after a mapping's key begins, and the comment in it."""
+        """Return where the comment of a mapping's key begins or would begin, and the comment: it is
+        on the key's line, after a value in braces. The place is 0 where none can be."""
         key, value = self._nodes[path]
-        if (
-            key is None
-            or isinstance(value.value, str)
-            or value.start_mark.line == key.end_mark.line
-        ):
+        if key is None or isinstance(value.value, str):
             return 0, ""
-        start = self.text.index(":", key.end_mark.index) + 1
-        mark = self.text[start : self._end_of_line(start)].partition("#")
-        return start + len(mark[0]), mark[2].strip()
+        if value.start_mark.line != key.end_mark.line:
+            start = self.text.index(":", key.end_mark.index) + 1
+        elif value.end_mark.line == key.end_mark.line:
+            start = value.end_mark.index
+        else:
+            return 0, ""
+        before, _, comment = self.text[start : self._end_of_line(start)].partition("#")
+        return (0, "") if before.strip() else (start + len(before), comment.strip())
 
     def _end_of_line(self, start: int) -> int:
         end = self.text.find("\n", start)
@@ -105,8 +107,8 @@ class YamlText:
         added: tuple[KeyPath, Sequence[str]] | None = None,
     ) -> str:
         """Return the text with other values and comments, and lines added to a mapping. An empty
-        comment removes the old one; where there is none, none is written. The lines of `added` are
-        indented as the keys of the mapping at its path."""
+        comment removes the old one. The lines of `added` are indented as the keys of the mapping at
+        its path."""
         edits = []
         for path, new in values.items():
             value = self._nodes[path][1]
@@ -118,6 +120,9 @@ class YamlText:
                 if not comment:
                     start, new = len(self.text[:start].rstrip(" \t")), ""
                 edits.append((start, end, new))
+            elif start and comment:
+                end = len(self.text[:start].rstrip(" \t\r"))
+                edits.append((end, end, f"  # {comment}"))
         if added is not None and added[1]:
             path, lines = added
             if self._nodes[path][1].flow_style:

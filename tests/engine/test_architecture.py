@@ -257,7 +257,6 @@ def test_a_sensor_s_kind_is_asked_of_the_table_alone():
         "pe_tools/graphics/",
         *("pe_tools/page/pictures/sensor_views.py", "pe_tools/exchange/portable_kinds.py"),
         "pe_tools/page/fitting.py",  # the usual kind of a table
-        "pe_tools/exchange/passthrough.py",  # words in the names of foreign sensors
     )
     offenders = []
     for name, path in files(*ROOMS).items():

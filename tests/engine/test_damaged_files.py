@@ -143,7 +143,8 @@ def good_files(name, folder):
 
 
 def hunt(name, folder, count, seed=8):
-    """Read a format's files with a number that is odd, or damage; return how many were refused."""
+    """Read a format's files with a number that is odd, or damage; return how many were refused, or
+    told as left out: a damaged lens does not refuse its rig."""
     rng, refused = np.random.default_rng(seed), 0
     paths, asked = good_files(name, folder)
     whole = {path: path.read_bytes() for path in paths}
@@ -157,9 +158,9 @@ def hunt(name, folder, count, seed=8):
             wrong = data[: number.start()] + odd + data[number.end() :]
         path.write_bytes(wrong)
         found = read_or_refused(lambda: pt.import_rig(asked, name, AXLE), str(folder))
-        if found is None:
+        if found is None or any(": expected " in line for line in found.lines):
             refused += 1
-        else:
+        if found is not None:
             numbers = [v for s in found.rig for v in (*s.pose.position, *s.pose.rpy)]
             assert all(map(math.isfinite, numbers))
         path.write_bytes(data)
@@ -224,6 +225,7 @@ TOO_MUCH = [
     ("file", ("r.xml", lambda: many(CALL, 10_001))),
     ("sensors", ("r.xml", lambda: many(CALL, 2_000, True))),
     ("file", ("r.xml", lambda: "<!--" * 1_000_000)),
+    ("file", ("r.xml", lambda: "<node a='" * 200_000)),
     ("transform 1", ("r.xml", lambda: CALL.format(0, "a" * 20_000))),
     ("file", ("r.csv", lambda: ROWS.format("a,0,0,0,0,0,0\n" * 10_001))),
     ("sensors", ("r.csv", lambda: ROWS.format("a,0,0,0,0,0,0\n" * 1_001))),
@@ -252,6 +254,9 @@ def test_yaml_with_tags_anchors_and_braces_is_read_and_edited_where_it_can_be():
     assert yaml.data == {"a": [1.0, "b", -5.0], "c": {"d": 2.0, "e": "no"}}
     edited = yaml.edited({("c", "d"): "7.25"}, {})
     assert edited == text.replace("&y 2", "7.25")
+    assert yaml.comments() == {("c",): "kept"}
+    edited = yaml.edited({}, {("c",): "new", ("a",): "seen"})
+    assert edited == text.replace("kept", "new").replace(".5e1]", ".5e1]  # seen")
     with pytest.raises(pe.InputError) as error:
         yaml.edited({}, {}, (("c",), ["f: 1"]))
     assert error.value.field == "c"

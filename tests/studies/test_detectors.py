@@ -1,7 +1,6 @@
 """Our own study: its plan, scenes, points, targets, average precision, runs and page."""
 
 import hashlib
-import importlib.util
 import json
 import re
 import subprocess
@@ -52,7 +51,6 @@ from studies.detectors.scores import COVERAGE, EXPECTED_AP, PRIMARY
 from studies.detectors.second.analysis import FINDS_MORE
 from tests.limits import HANG_S
 from tests.studies.conftest import ROOT, study
-from tests.thorough import THOROUGH
 
 FOLDER = ROOT / "docs" / "validity" / "own"
 PLAN = full_plan()
@@ -223,8 +221,7 @@ def in_a_process(script, *arguments):
     return answer.stdout
 
 
-@pytest.mark.skipif(not THOROUGH, reason="ten detectors are trained: with CI=true")
-@pytest.mark.skipif(not importlib.util.find_spec("tensorflow"), reason="there is no TensorFlow")
+@pytest.mark.trains_detectors
 def test_the_quick_studies_run_whole_and_repeated_runs_have_the_same_results(tmp_path):
     """All in one process, but for what is repeated."""
     said = in_a_process(QUICKLY + TOWN_RUN, tmp_path, "--runs=4", "--cameras", "--after-search")

@@ -310,7 +310,7 @@ def test_real_layouts_are_every_twentieth_frame_with_feet_on_the_ground(tmp_path
         Layouts(tmp_path / "no")
 
 
-@pytest.mark.skipif(not THOROUGH, reason="a detector is trained: with CI=true")
+@pytest.mark.trains_detectors
 def test_the_quick_study_of_layouts_runs_whole(tmp_path):
     write_log(tmp_path / "logs" / "one", rows_of_a_log())
     quick = ("--quick", "--output", tmp_path / "out", "--layouts", tmp_path / "logs")

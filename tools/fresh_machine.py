@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
-"""Follow README.md, or a Dockerfile, line by line on a bare Debian, and time each line.
+"""Follow README.md, a workflow or a Dockerfile, line by line on a bare Debian; time each line.
 
-usage: tools/fresh_machine.py [SUITE ...] [--user NAME] [--tests] [--dockerfile FILE]
+usage: tools/fresh_machine.py [SUITE ...] [--user NAME] [--tests]
+       [--workflow FILE | --dockerfile FILE]
 
 A machine is a new Debian folder with nothing but its essential packages, and a clone of the last
 commit. README.md is followed twice in each suite: as root, and as a user; `--user` chooses one. The
-lines are those of the code blocks below the heading "Get it"; `apt-get` is always root's, and
-`make test` is left out without `--tests`. Lines of the same block share a shell. A line that fails
-ends its machine, not the others. The table has the time and the size of each line; below it stand
-how many tests passed, failed and were skipped, and why.
+lines are those of the code blocks below the heading "Get it"; `apt-get` is always root's, and lines
+that run tests are left out without `--tests`. Lines of the same block share a shell. A line that
+fails ends its machine, not the others. The table has the time and the size of each line; below it
+stand how many tests passed, failed and were skipped, and why.
 
 The host lends what reaches the network: its resolver, and the files of certificates that its
 environment names. It needs Debian, root and debootstrap; each machine takes 3 GB for a while.
@@ -33,6 +34,9 @@ SUITES = ("bookworm", "trixie")
 USER = "newcomer"
 CERTIFICATES = ("PIP_CERT", "SSL_CERT_FILE", "REQUESTS_CA_BUNDLE")
 BARE_PATH = "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"
+# What a hosted runner has before the first line: git and make, and the Python of `setup-python`.
+RUNNER_PACKAGES = "apt-get update && apt-get install -y git make python3-venv"
+RUNNER_PYTHON = "/opt/python"
 # Processes and mounts of a machine end with the script that runs in it, also when it is killed.
 ENTER = ("unshare", "--mount", "--pid", "--fork", "--kill-child")
 MOUNTS = 'mount --rbind /dev "$0/dev" && mount -t proc proc "$0/proc"; exec chroot "$0" "$@"'
@@ -167,13 +171,34 @@ def lines_of_readme(text: str) -> list[str]:
     return [line for line in typed if line]
 
 
+def without_tests(lines: list[str]) -> list[str]:
+    """Return the lines that run no tests."""
+    return [line for line in lines if line != "make test" and "pytest " not in line]
+
+
 def follow_readme(machine: Machine, tests: bool) -> list[Step]:
     """Follow README.md in a clone in the home of the machine's user."""
+    lines = lines_of_readme((ROOT / "README.md").read_text("utf-8"))
     where = f"{machine.home}/perception-entropy"
     machine.clone(where)
-    lines = lines_of_readme((ROOT / "README.md").read_text("utf-8"))
-    kept = [line for line in lines if tests or line != "make test"]
-    return list(machine.follow(kept, where))
+    return list(machine.follow(lines if tests else without_tests(lines), where))
+
+
+def lines_of_workflow(text: str) -> list[str]:
+    """Return what the steps of a workflow run."""
+    return re.findall(r"^ +- run: (.*)$", text, re.MULTILINE)
+
+
+def follow_workflow(machine: Machine, path: Path, tests: bool) -> list[Step]:
+    """Follow a workflow, where its first steps have given a checkout and a Python of their own."""
+    text = path.read_text("utf-8")
+    machine.env |= dict(re.findall(r'^env: \{ (\w+): "(\w+)" \}', text, re.MULTILINE))
+    machine.env["PATH"] = f"{RUNNER_PYTHON}/bin:{BARE_PATH}"
+    machine.type(f"{RUNNER_PACKAGES} && python3 -m venv {RUNNER_PYTHON}", as_root=True)
+    where = f"{machine.home}/perception-entropy"
+    machine.clone(where)
+    lines = lines_of_workflow(text)
+    return list(machine.follow(lines if tests else without_tests(lines), where))
 
 
 def instructions(text: str) -> Iterator[tuple[str, str]]:
@@ -260,29 +285,43 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("suites", nargs="*", default=SUITES, metavar="SUITE", help="Debian suites")
     parser.add_argument("--user", choices=("root", USER), help="in place of both")
-    parser.add_argument("--tests", action="store_true", help="type `make test`, too: an hour")
-    parser.add_argument("--dockerfile", type=Path, help="follow this file in place of README.md")
+    parser.add_argument("--tests", action="store_true", help="run the tests, too: an hour")
+    others = parser.add_mutually_exclusive_group()
+    others.add_argument("--workflow", type=Path, help="follow this file, as root alone")
+    others.add_argument("--dockerfile", type=Path, help="follow this file in place of README.md")
     options = parser.parse_args()
     if os.geteuid() != 0 or shutil.which("debootstrap") is None:
         print("fresh_machine: needs root and debootstrap", file=sys.stderr)
         return 1
-    runs = {}
     try:
         with tempfile.TemporaryDirectory(prefix="pe-fresh-") as scratch:
-            if options.dockerfile is not None:
-                steps = follow_dockerfile(options.dockerfile, Path(scratch))
-                runs[options.dockerfile.name] = steps
-            for suite in () if options.dockerfile else options.suites:
-                base = make_base(suite, Path(scratch))
-                for user in (options.user,) if options.user else ("root", USER):
-                    machine = Machine(copy_of(base, user), user)
-                    runs[f"{suite}, {user}"] = follow_readme(machine, options.tests)
-                    shutil.rmtree(machine.folder)
+            runs = follow_all(options, Path(scratch))
     except Failed as failed:
         print(f"fresh_machine: this line failed: {failed.args[0]}", file=sys.stderr)
         return 1
     print(report(runs))
     return int(any(step.failed for steps in runs.values() for step in steps))
+
+
+def follow_all(options: argparse.Namespace, folder: Path) -> dict[str, list[Step]]:
+    """Follow what the command line asks for on each machine; return the steps by machine."""
+    if options.dockerfile is not None:
+        return {options.dockerfile.name: follow_dockerfile(options.dockerfile, folder)}
+    users = ("root", USER) if options.user is None else (options.user,)
+    if options.workflow is not None:
+        users = ("root",)
+    runs = {}
+    for suite in options.suites:
+        base = make_base(suite, folder)
+        for user in users:
+            machine = Machine(copy_of(base, user), user)
+            if options.workflow is not None:
+                steps = follow_workflow(machine, options.workflow, options.tests)
+            else:
+                steps = follow_readme(machine, options.tests)
+            runs[f"{suite}, {user}"] = steps
+            shutil.rmtree(machine.folder)
+    return runs
 
 
 if __name__ == "__main__":

@@ -66,6 +66,15 @@ def test_hosted_runners_skip_what_they_do_not_have(path):
     assert read(path)["env"]["CI"] == "false"
 
 
+@pytest.mark.parametrize("name", ["linux", "windows_macos"])
+def test_lines_of_a_workflow_are_those_that_a_fresh_machine_follows(name):
+    text = (GITHUB / "workflows" / f"{name}.yml").read_text("utf-8")
+    (job,) = read(GITHUB / "workflows" / f"{name}.yml")["jobs"].values()
+    runs = [step["run"] for step in job["steps"] if "run" in step]
+    assert fresh_machine.lines_of_workflow(text) == runs
+    assert 0 < len(fresh_machine.without_tests(runs)) < len(runs)
+
+
 def test_extras_that_are_installed_anywhere_exist():
     """In `pip install ".[blender,test]"`, `perception-entropy[meshes]`, and make_venv.sh's list."""
     extras = set(PYPROJECT["project"]["optional-dependencies"])

@@ -68,6 +68,10 @@ class Machine:
         self.home = "/root" if user == "root" else f"/home/{user}"
         self.env = {"PATH": BARE_PATH, "LC_ALL": "C.UTF-8", "DEBIAN_FRONTEND": "noninteractive"}
         self.env |= self._lent_certificates()
+        # An installed Debian has it, debootstrap's has not; without it Blender warns on its output.
+        mounts = self.folder / "etc" / "mtab"
+        if not mounts.is_symlink():
+            mounts.symlink_to("../proc/self/mounts")
         if user != "root":
             self.type(f"useradd --create-home --shell /bin/bash {user}", as_root=True)
 

@@ -3,11 +3,10 @@
 SHELL := /bin/bash
 PYTHON_VENV := .venv/bin/python
 ARGS ?=
-comma := ,
 ON_ALL_PROCESSORS := --numprocesses auto --dist loadscope --no-loadscope-reorder
 
 .DEFAULT_GOAL := help
-.PHONY: demo test properties mutants bench lint extension release site examples screenshots clean help
+.PHONY: demo test study-tests properties mutants bench lint extension release site examples screenshots clean help
 
 demo: .venv/run.stamp  ## better places for a LiDAR and a camera on a sedan: a page to open, the better .blend
 	@tools/demo.sh $(ARGS)
@@ -18,6 +17,9 @@ test: export PYTHONDONTWRITEBYTECODE =
 test: export OPENBLAS_NUM_THREADS = 1
 test: .venv/dev.stamp  ## run all tests; ARGS="tests/engine -k prior" for some
 	@$(PYTHON_VENV) -m pytest $(ON_ALL_PROCESSORS) $(or $(ARGS),tests)
+
+study-tests: .venv/studies.stamp  ## train the studies' detectors on little data; installs TensorFlow
+	@$(PYTHON_VENV) -m pytest -m trains_detectors $(or $(ARGS),tests/studies)
 
 properties: .venv/dev.stamp  ## what must hold for any rig, on 1,000 random ones: four minutes
 	@PE_PROPERTY_RIGS=1000 $(PYTHON_VENV) -m pytest $(or $(ARGS),tests/engine/test_properties.py)
@@ -60,11 +62,13 @@ screenshots: .venv/dev.stamp  ## make docs/images in a real window; ARGS="guide"
 .venv/run.stamp: pyproject.toml tools/make_venv.sh
 	@tools/make_venv.sh blender $@
 
-# The library of the detectors takes 1.6 GB: CI alone has it, and else who asks for it. Not after
-# run.stamp, of which it has all: pip would build the project twice.
+# Not after run.stamp, of which it has all: pip would build the project twice.
 .venv/dev.stamp: pyproject.toml tools/make_venv.sh
-	@tools/make_venv.sh blender,test,meshes,argoverse,docs,dev$(if $(CI),$(comma)studies) $@
+	@tools/make_venv.sh blender,test,meshes,argoverse,docs,dev $@
 	@[ ! -e $@ ] || touch .venv/run.stamp
+
+.venv/studies.stamp: .venv/dev.stamp
+	@tools/make_venv.sh blender,studies $@
 
 .venv/docs.stamp: .venv/run.stamp
 	@tools/make_venv.sh blender,docs,notebook $@
@@ -78,5 +82,5 @@ clean:  ## remove the environment and everything made
 	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 help:  ## this list
-	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | \
-		sed -E 's/^([a-z]+):.*## (.*)/make \1\t\2/' | expand -t 18
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | \
+		sed -E 's/^([a-z-]+):.*## (.*)/make \1\t\2/' | expand -t 18

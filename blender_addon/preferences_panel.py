@@ -3,7 +3,6 @@
 import bpy
 
 from . import library, own_catalog, signals
-from .engine import app
 from .library import stored
 from .panel_text import draw_label
 from .properties import fields
@@ -23,9 +22,6 @@ def load_catalog(preferences: bpy.types.AddonPreferences, _context: bpy.types.Co
 def redraw(_preferences: bpy.types.AddonPreferences, _context: bpy.types.Context) -> None:
     """Update callback: draw the overlay and the panel again."""
     signals.view_changed.emit()
-
-
-NAMES_SHARE = 0.4  # Share of the width that Blender gives to names of properties
 
 
 class PE_Preferences(bpy.types.AddonPreferences):
@@ -53,10 +49,6 @@ class PE_Preferences(bpy.types.AddonPreferences):
         if own_catalog.problem:
             draw_label(column, own_catalog.problem, "ERROR")
         column.prop(self, "show_library")
-        row = self.layout.split(factor=NAMES_SHARE)
-        row.separator()
-        link = row.operator("wm.url_open", text="Website", translate=False, icon="URL")
-        link.url = app.WEBSITE
 
     def _section(self, heading: str) -> bpy.types.UILayout:
         """Draw a heading; return a column below it. Blender draws a column's own only at a tick."""

@@ -6,7 +6,7 @@ RUN apt-get update \
     && rm -rf /var/lib/apt/lists/*
 COPY . /src
 RUN python3 -m venv /opt/pe \
-    && /opt/pe/bin/pip install --no-cache-dir "/src[meshes,report]" \
+    && /opt/pe/bin/pip install --no-cache-dir "/src[meshes]" \
     && rm -rf /src/build
 ENV PATH=/opt/pe/bin:$PATH
 WORKDIR /work

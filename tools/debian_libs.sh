@@ -1,15 +1,19 @@
 #!/usr/bin/env bash
 # Installs the Debian packages named, or says which single line would.
 #
-# usage: tools/debian_libs.sh [PACKAGE...]
+# usage: tools/debian_libs.sh [--tests | --window] [PACKAGE...]
 #
-# Without names: the libraries that bpy, Blender as a Python module, is linked to.
+# Without names: the libraries that bpy, Blender as a Python module, is linked to. With --tests: all
+# that `make test` needs, with --window: what installs a real Blender and shows its window.
 set -euo pipefail
 
 # The wheel carries the rest. Without libegl1 the first render ends the whole process.
 readonly BPY_LIBS=(
     libx11-6 libxrender1 libxfixes3 libxi6 libxkbcommon0 libsm6 libgl1 libegl1
 )
+# Pages are opened in the first; Playwright's node, which drives it, is linked to the second.
+readonly BROWSER_PACKAGES=(chromium libatomic1)
+readonly WINDOW_PACKAGES=(debootstrap xvfb xdotool imagemagick libgl1-mesa-dri)
 
 is_installed() {
     [ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
@@ -33,8 +37,12 @@ apt_quietly() {
     rm -f "$log"
 }
 
-wanted=("$@")
-[ $# -gt 0 ] || wanted=("${BPY_LIBS[@]}")
+case "${1:-}" in
+    "") wanted=("${BPY_LIBS[@]}") ;;
+    --tests) wanted=("${BPY_LIBS[@]}" "${BROWSER_PACKAGES[@]}" "${WINDOW_PACKAGES[@]}" "${@:2}") ;;
+    --window) wanted=("${WINDOW_PACKAGES[@]}" "${@:2}") ;;
+    *) wanted=("$@") ;;
+esac
 
 if ! command -v dpkg-query >/dev/null; then
     echo "debian_libs: not a Debian system; what is needed goes there by the names ${wanted[*]}"

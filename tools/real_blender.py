@@ -26,9 +26,6 @@ TOOLS = Path(__file__).resolve().parent
 OLDEST = (4, 2)  # the first Blender with extensions and --command
 VERSION_TIMEOUT_S = 60
 
-# What an installation and a window without a screen need on the host.
-HOST_PACKAGES = ("debootstrap", "xvfb", "xdotool", "imagemagick", "libgl1-mesa-dri")
-
 
 class NoBlender(Exception):
     """No Blender can be had; the message is one line that says why."""
@@ -125,7 +122,7 @@ def install(suite: str) -> None:
         raise NoBlender(f"installing Debian {suite}'s Blender needs root: sudo {where} {again}")
     if shutil.which("apt-get") is None:
         raise NoBlender("--install needs Debian; elsewhere install Blender and set BLENDER")
-    if subprocess.run([TOOLS / "debian_libs.sh", *HOST_PACKAGES], stdout=sys.stderr).returncode:
+    if subprocess.run([TOOLS / "debian_libs.sh", "--window"], stdout=sys.stderr).returncode:
         raise NoBlender("the host's packages could not be installed")
     with only_one(cache_folder()) as lock:
         if not is_finished(chroot_folder(suite)):

@@ -5,7 +5,6 @@ from bpy.types import Context, PropertyGroup, UILayout
 
 from .. import where_map
 from ..diagnostics import vehicle_line
-from ..engine import app
 from ..operators import offers, running_job
 from ..panel_text import draw_label, typeset
 from ..sensor_cache import sensors as listed_sensors
@@ -32,13 +31,11 @@ def draw_actions(layout: UILayout, settings: PropertyGroup) -> None:
 
 
 def draw_empty(layout: UILayout) -> None:
-    """Draw what an empty file begins with: a vehicle of one's own, an example, the guide."""
+    """Draw what an empty file begins with: a vehicle of one's own, or an example."""
     column = layout.column(align=True)
     column.scale_y = 1.5
     column.operator("pe.use_selected", icon="RESTRICT_SELECT_OFF")
     column.operator("pe.open_example", icon="FILE_BLEND")
-    link = column.operator("wm.url_open", text="Guide", translate=False, icon="HELP")
-    link.url = f"{app.WEBSITE}guide/"
 
 
 def draw_vehicle(layout: UILayout, context: Context) -> None:

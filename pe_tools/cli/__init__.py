@@ -1,7 +1,5 @@
 """The command ``pe``, and the parts that all command lines of the project share."""
 
-from pe_core.version import WEBSITE as WEBSITE
-
 from .check_verb import add_check_options, check_study
 from .command import Parser, add_run_options, add_score_options, add_sensors_verb, as_typed
 from .command import count_up_to, run, with_options

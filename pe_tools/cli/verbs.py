@@ -14,7 +14,7 @@ from pe_core.base.errors import InputError
 from pe_core.base.plugins import call_plugin, find_plugins, load_plugin, plugin_name
 from pe_core.search.payload import keep_freed_memory
 from pe_core.study import Study, load_study
-from pe_core.version import WEBSITE, __version__
+from pe_core.version import __version__
 
 from ..jobs import read_search
 from . import exchange_verbs, run_job
@@ -103,7 +103,7 @@ def parser() -> argparse.ArgumentParser:
         prog="pe",
         description="Perception entropy of vehicle sensors.",
         formatter_class=_InGroups,
-        epilog=f"Manual: docs/index.md of the source. Home page: {WEBSITE}",
+        epilog="Manual: docs/index.md of the source.",
     )
     about = f"pe {__version__}, NumPy {np.__version__}, Python {platform.python_version()}"
     about += f", {platform.platform()}"

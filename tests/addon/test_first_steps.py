@@ -111,9 +111,9 @@ def first_panel():
 
 
 @pytest.mark.parametrize("panels", ["SIMPLE", "ALL"])
-def test_an_empty_file_shows_three_things(scene, panels):
+def test_an_empty_file_shows_two_things(scene, panels):
     scene.perception_entropy.panels = panels
-    assert [kind for kind, _ in first_panel().notes] == ["operator"] * 3
+    assert [kind for kind, _ in first_panel().notes] == ["operator"] * 2
     window = Window(scene)
     shown = [cls for cls in CLASSES if issubclass(cls, bpy.types.Panel) and cls.poll(window)]
     assert [cls.__name__ for cls in shown] == ["PE_PT_main", "PE_PT_view"]

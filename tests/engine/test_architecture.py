@@ -74,8 +74,6 @@ ROOMS = {
 STOREYS = 8
 MAX_CHAIN_LENGTH = 30
 """Of pe_core: storeys of rooms, and files in a row of which each imports the next, at most."""
-MAX_LINES = 74_813
-"""Of the product: every file of our own in both packages and the add-on."""
 LIBRARIES = {
     "collada": {"pe_tools/formats"},
     "pxr": {"pe_tools/formats"},
@@ -242,11 +240,6 @@ def test_the_engine_is_low_and_its_chains_are_short():
 def test_no_modules_import_each_other_in_a_circle(package):
     """A type hint is an arrow, too."""
     graphlib.TopologicalSorter(import_graph(package, hints=True)).prepare()
-
-
-def test_the_product_stays_small():
-    paths = files(*ROOMS, "blender_addon").values()
-    assert sum(len(path.read_text("utf-8").splitlines()) for path in paths) <= MAX_LINES
 
 
 def test_a_sensor_s_kind_is_asked_of_the_table_alone():

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from pe_core.metric.entropy import ap_of_entropy
+
 ROOT = Path(__file__).parents[2]
 FIGURES = ROOT / "docs" / "figures"
 ENGINE = (ROOT / "docs" / "engine.md").read_text("utf-8")
@@ -112,6 +114,16 @@ def test_functions_that_the_table_of_equations_names_are_there():
     for path, function in named:
         room = ROOT / "pe_core" / ("" if path.startswith("metric") else "sensors")
         assert f"\ndef {function}(" in (room / path).read_text("utf-8"), function
+
+
+def test_what_a_number_means_is_the_metric_s():
+    """Each pair of nats and AP on the page."""
+    text = " ".join((ROOT / "docs" / "metric.md").read_text("utf-8").split())
+    pairs = re.findall(r"([\d.]+\d)(?: nats)? is AP ([\d.]+\d)", text)
+    assert len(pairs) == 3
+    for nats, ap in pairs:
+        digits = len(ap.partition(".")[2])
+        assert f"{float(ap_of_entropy(float(nats))):.{digits}f}" == ap, nats
 
 
 GUIDE = (ROOT / "docs" / "guide.md").read_text("utf-8")

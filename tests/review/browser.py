@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import shutil
+import subprocess
+import sys
 from contextlib import contextmanager
 
-from tests.limits import patience
+from tests.limits import HANG_S, patience
 from tests.needed import unavailable
 
 try:
-    from playwright.sync_api import Browser, Page, Playwright, sync_playwright
+    from playwright.sync_api import Browser, Page, sync_playwright
 except ImportError:
-    Browser = Page = Playwright = sync_playwright = None
+    Browser = Page = sync_playwright = None
 
 PACKAGE = "chromium"
 FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
@@ -33,21 +35,27 @@ SETTLED = """() => new Promise((done) => {
 
 @contextmanager
 def started():
-    """Yield Chromium; skip where it or Playwright is missing."""
-    if sync_playwright is None:
-        unavailable("there is no Playwright: install the extra test")
+    """Yield Chromium; skip where it or Playwright is missing, or does not start."""
+    program = browser_program()
     with sync_playwright() as playwright:
-        browser = launched(playwright)
+        browser = playwright.chromium.launch(executable_path=program, args=list(FLAGS))
         yield browser
         browser.close()
 
 
-def launched(playwright: Playwright) -> Browser:
-    """Start Chromium, or skip where there is none."""
+def browser_program() -> str:
+    """Return the path of Chromium, or skip: Playwright is started only where all is there."""
+    if sync_playwright is None:
+        unavailable("there is no Playwright: install the extra test")
     program = shutil.which(PACKAGE)
     if program is None:
         unavailable(f"there is no {PACKAGE}: install Debian's package of that name")
-    return playwright.chromium.launch(executable_path=program, args=list(FLAGS))
+    command = [sys.executable, "-m", "playwright", "--version"]
+    answer = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S)
+    if answer.returncode != 0:
+        reason = answer.stderr.strip().partition("\n")[0]
+        unavailable(f"Playwright does not start: {reason}; Debian has libatomic1")
+    return program
 
 
 class Heard:

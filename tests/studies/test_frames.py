@@ -1,6 +1,5 @@
 """One frame and five: scenes in motion, voxels of frames, verdicts from runs."""
 
-import importlib.util
 import json
 import shutil
 from pathlib import Path
@@ -31,7 +30,6 @@ from studies.detectors.scenes import CLASSES
 from studies.detectors.scores import SPACE
 from tests.studies.conftest import study
 from tests.studies.test_detectors import COARSE, in_a_process
-from tests.thorough import THOROUGH
 
 FOLDER = Path(__file__).parents[2] / "docs/validity/own/frames"
 DIGEST = "013db2ab2a2f4774"
@@ -145,8 +143,7 @@ def test_the_page_of_the_docs_is_that_of_its_runs(tmp_path):
         assert (tmp_path / "frames" / name).read_bytes() == (FOLDER / name).read_bytes()
 
 
-@pytest.mark.skipif(not THOROUGH, reason="detectors are trained: with CI=true")
-@pytest.mark.skipif(not importlib.util.find_spec("tensorflow"), reason="there is no TensorFlow")
+@pytest.mark.trains_detectors
 def test_the_quick_study_runs_whole(tmp_path):
     script = "import runpy; runpy.run_module('studies.detectors.frames', run_name='__main__')"
     said = in_a_process(COARSE + script, "--quick", "--output", tmp_path / "out")

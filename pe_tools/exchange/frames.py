@@ -16,7 +16,7 @@ from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError
 from pe_core.base.files import is_reserved
 from pe_core.base.values import vector
-from pe_core.geometry.poses import METRES, Pose, rpy_from_matrix
+from pe_core.geometry.poses import METRES, PROPER_WITHIN, Pose, rpy_from_matrix
 from pe_core.geometry.poses import checked_rotation as checked_rotation
 from pe_core.geometry.poses import from_quaternion as from_quaternion
 from pe_core.scene.vehicle_description import Reference

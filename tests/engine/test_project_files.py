@@ -3,9 +3,11 @@
 import re
 import sys
 import tomllib
+from importlib import metadata
 from itertools import chain
 
 import pytest
+from packaging.specifiers import SpecifierSet
 from ruamel.yaml import YAML
 
 from pe_core.version import __version__
@@ -87,6 +89,22 @@ def test_extras_that_are_installed_anywhere_exist():
             named = (match[1] or match[2]).split(",")
             unknown += [(path.name, name) for name in named if name not in extras]
     assert not unknown
+
+
+def pinned():
+    """Requirements of one version, as pip reads them."""
+    listed = chain.from_iterable(PYPROJECT["project"]["optional-dependencies"].values())
+    return [line for line in listed if re.fullmatch(r"[\w-]+==[\d.]+", line)]
+
+
+@pytest.mark.parametrize("requirement", pinned())
+def test_what_is_pinned_can_be_had_on_debian_12(requirement):
+    """Its Python is 3.11.2; of what is not pinned pip takes an older version."""
+    name, _, version = requirement.partition("==")
+    found = metadata.metadata(name)
+    if found["Version"] != version:
+        pytest.skip(f"{requirement} is not installed")
+    assert SpecifierSet(found["Requires-Python"] or "").contains("3.11.2")
 
 
 def test_no_address_is_given_out_that_is_not_there_yet():

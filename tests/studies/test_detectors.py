@@ -248,6 +248,7 @@ def results_of_runs(folder, names):
     found = [json.loads((folder / name).read_text("utf-8")) for name in names]
     for data in found:
         del data["seconds"], data["training"]["training_seconds"]
+        del data["made"]["commit"]  # another one if someone commits meanwhile
     return found
 
 

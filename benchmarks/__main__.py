@@ -2,11 +2,13 @@
 
 Ratios, not seconds, are what to compare between commits: both sides of a ratio are measured in the
 same process, and the smallest of a few runs is taken. Each row has a process of its own, so that
-its peak memory is its own as well. ``python -m benchmarks ROW...`` prints the rows of that name.
+its peak memory is its own as well. ``python -m benchmarks ROW...`` prints the rows of that name;
+``python -m benchmarks --against REV`` times them on an older commit in alternation.
 """
 
 from __future__ import annotations
 
+import argparse
 import csv
 import json
 import os
@@ -19,6 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from . import requirement_searches
+from .against import compare
 from .experiment_searches_told import table_lines
 from .rows import ROWS, Timing
 
@@ -33,8 +36,15 @@ SHOWN = (
 HEAD = ["work", "ours", "yardstick", "its time", "ratio", "our peak memory"]
 
 
-def main(names: list[str]) -> int:
+def main(arguments: list[str]) -> int:
     """Run all benchmarks, print the table and write it; or print some rows as JSON."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=main.__doc__)
+    parser.add_argument("names", nargs="*", metavar="ROW", help="rows; all by default")
+    parser.add_argument("--against", metavar="REV", help="time each row on this commit, too")
+    given = parser.parse_args(arguments)
+    names: list[str] = given.names
+    if given.against:
+        return compare(given.against, names or list(ROWS))
     for name in names:
         print(json.dumps(asdict(ROWS[name]())))
     if not names:

@@ -311,7 +311,8 @@ def search_line(outcome: jobs.Outcome) -> str:
         first, last = (each.ap for each in outcome.in_traffic)
         nats = f"perception entropy {before:.3f} to {after:.3f} nats"
         return f"Expected AP in traffic {first:.3f} to {last:.3f}, {nats} ({best})"
-    return f"Perception entropy {before:.3f} to {after:.3f} nats ({best})"
+    change = outcome.change_text.replace("+-", "±")
+    return f"Perception entropy {before:.3f} to {after:.3f} nats ({change}; {best})"
 
 
 def front_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint) -> Task:

@@ -136,7 +136,8 @@ def summary(outcome: Outcome) -> str:
 def _before_and_after(outcome: Outcome) -> Iterator[str]:
     """Yield what a search began and ended with, also under mounting errors and failures."""
     before, after = outcome.before, outcome.after
-    entropy = f"entropy   {before.entropy:.3f} -> {after.entropy:.3f} nats"
+    ends = f"{before.entropy:.3f} -> {after.entropy:.3f} nats"
+    entropy = f"entropy   {ends} ({outcome.change_text})"
     beside = figure_lines(outcome)
     yield from [*beside, entropy] if outcome.in_traffic is not None else [entropy, *beside]
     yield f"coverage  {percent(before.coverage, 1)} -> {percent(after.coverage, 1)}"

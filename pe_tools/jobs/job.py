@@ -11,12 +11,13 @@ from pe_core.base.errors import InputError, require_kind
 from pe_core.base.lazy_threads import threads
 from pe_core.base.notebook import Tabular
 from pe_core.base.plugins import optional_package
+from pe_core.base.values import error_text, rounded
 from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigEvaluator
 from pe_core.scoring.requirements import CheckStep, RequirementChecker, Verdict
 from pe_core.scoring.sampling import CENTERED, SEARCHED, Shift
-from pe_core.scoring.score import ObjectScore, Score, ScoreStopped
+from pe_core.scoring.score import SURE, ObjectScore, Score, ScoreStopped
 from pe_core.search import EvaluatedRig, KeyFigures, Reading, Robustness, dashboard
 from pe_core.search.key_figures import ENTROPY, REQUIREMENTS
 from pe_core.study.condition_table import (
@@ -177,6 +178,17 @@ class Outcome(Tabular):
         if self.figures is not None:
             errors |= self.figures[1].errors_from(self.figures[0])
         return errors
+
+    @property
+    def change_text(self) -> str:
+        """The change of entropy that a search made, with its standard error: "-0.051 +- 0.010", or
+        "no change beyond +- 0.010". Without an error for the whole grid."""
+        by = rounded(self.after.entropy - self.before.entropy)
+        error = self.change_errors[ENTROPY]
+        if not error:
+            return f"{by:+.3f}"
+        sure = f"+- {error_text(error)}"
+        return f"{by:+.3f} {sure}" if abs(by) > SURE * error else f"no change beyond {sure}"
 
     @property
     def gain(self) -> str:

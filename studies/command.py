@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from pe_core import InputError
+from pe_core.base.input_files import not_noting_inputs
 from pe_tools.cli import Answer, Parser, count_up_to, leave, run
 
 MAX_WORKERS = 1024
@@ -55,7 +56,8 @@ def main(
 
     def answer() -> Answer:
         try:
-            return study(args, folder)
+            with not_noting_inputs():  # a study reads results of its own to go on from them
+                return study(args, folder)
         except ImportError as error:
             hint, found = "pip install -e '.[studies]'", " ".join(str(error).split())
             raise InputError("studies", "package", hint, found) from error

@@ -17,7 +17,7 @@ from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..sensors import PerceptionModel
 from .story import Story, outline
-from .story_sight import Pair, StorySight
+from .story_sight import SensorPair, StorySight
 from .tracks import KEPT, Confirmation, first_frame, longest_run
 
 CHANCES = (0.9, 0.99)
@@ -188,7 +188,7 @@ def _margin_and_loss(story: Story, confirmed: Floats, kept: Floats) -> tuple[flo
     return rounded(margin_s), rounded(longest_run(kept[first:] < KEPT) / story.rate_hz)
 
 
-def _widest(seams: Mapping[Pair, float]) -> tuple[float | None, tuple[str, ...]]:
+def _widest(seams: Mapping[SensorPair, float]) -> tuple[float | None, tuple[str, ...]]:
     """Return the widest seam [m], and of which two sensors it is; None without any."""
     if not seams:
         return None, ()

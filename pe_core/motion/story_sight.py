@@ -18,7 +18,7 @@ from .scenes import StoryScenes, story_scenes
 from .story import Story
 from .tracks import Confirmation
 
-Pair = tuple[str, str]
+SensorPair = tuple[str, str]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -79,7 +79,7 @@ class StorySight:
             kept.append(clock.held(confirmation.kept(found, clock.frame_s)))
         return Track(np.max(confirmed, axis=0), np.max(kept, axis=0))
 
-    def seams(self, alone: Mapping[str, Floats]) -> dict[Pair, Floats]:
+    def seams(self, alone: Mapping[str, Floats]) -> dict[SensorPair, Floats]:
         """Return how far apart two sensors see the bodies (W, K) [m], eq. T4, where both see them;
         of pairs of which it is known. `alone`: AP (W, K) of each sensor alone."""
         found = {}

@@ -51,7 +51,7 @@ body_query: analysis_calls bridge choices engine engine_process sensor_cache veh
 where_map: bridge engine signals
 housing: engine sensor_cache sensor_kinds
 library:
-preferences_panel: engine library own_catalog panel_text properties signals
+preferences_panel: library own_catalog panel_text properties signals
 live: analysis_calls bridge change_events choices engine engine_calls engine_process panel_text
     sensor_cache signals vehicle_cache viewport
 best_so_far: engine

@@ -195,7 +195,7 @@ def _block(
         some = labels == number
         reflectivity = radar.reflectivity(objects.class_names[number])
         rcs[some] = reflectivity.square_metres(aspect[some])
-    silhouette = _Silhouette.of(own_boxes, radar.is_cautious)
+    silhouette = _BodyOutline.of(own_boxes, radar.is_cautious)
     sides = silhouette.rays
     angles = angles_of(sensor, sides.directions)
     free, loss = seen_through(fan, angles, sides.distance)
@@ -213,7 +213,7 @@ def _block(
 
 
 @dataclass(frozen=True, slots=True)
-class _Silhouette:
+class _BodyOutline:
     """Points on the sides of boxes that face the radar, which stand for the boxes' silhouettes.
 
     `rays` (R,) lead to the points, `solid` (R,) are solid angles [sr]. If `is_cautious`, the points
@@ -225,7 +225,7 @@ class _Silhouette:
     is_cautious: bool
 
     @classmethod
-    def of(cls, boxes: PlacedBoxes, is_cautious: bool) -> "_Silhouette":
+    def of(cls, boxes: PlacedBoxes, is_cautious: bool) -> "_BodyOutline":
         if is_cautious:
             return cls(*boxes.side_corners(SIDE_PATCHES), True)
         return cls(*boxes.side_points(*SIDE_POINTS), False)

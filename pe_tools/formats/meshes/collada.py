@@ -15,7 +15,7 @@ from pe_core.base.errors import InputError
 
 from ..xml_text import parse_xml
 from .mesh import FoundMesh, Piece, found, mesh_notes, placed, require_room
-from .polygons import Indices, joined_ring, triangle_count, triangulate
+from .polygons import Corners, joined_ring, triangle_count, triangulate
 
 UP = {"X_UP": "+x", "Y_UP": "+y", "Z_UP": "+z"}
 PACKED = b"PK\3\4"
@@ -44,7 +44,7 @@ def read_dae(path: Path, data: bytes) -> FoundMesh:
         nodes = [] if document.scene is None else document.scene.nodes
         pieces = []
         crossing = 0
-        few: list[Indices] = []
+        few: list[Corners] = []
         for name, matrix, primitive in _primitives(nodes):
             corners, counts = _rings(source, primitive)
             require_room(source, triangle_count(counts))
@@ -100,7 +100,7 @@ def _primitives(roots: Sequence[Any]) -> Iterator[tuple[str, Floats, Any]]:
         waiting += [(child, matrix) for child in reversed(inner) if hasattr(child, "children")]
 
 
-def _rings(source: str, primitive: Any) -> tuple[Floats, Indices]:
+def _rings(source: str, primitive: Any) -> tuple[Floats, Corners]:
     """The corners (C, 3) of all polygons of a primitive in one list, and how many each has."""
     rings = [_with_holes(source, primitive, element) for element in _holed(primitive)]
     corners = [np.zeros((0, 3)), *rings]
@@ -114,7 +114,7 @@ def _rings(source: str, primitive: Any) -> tuple[Floats, Indices]:
     return np.concatenate(corners), np.array(counts, np.int64)
 
 
-def _checked(source: str, points: Floats, indices: Indices) -> Floats:
+def _checked(source: str, points: Floats, indices: Corners) -> Floats:
     """The points that indices name."""
     if len(indices) and not 0 <= int(indices.min()) <= int(indices.max()) < len(points):
         expected = f"indices within {len(points)} vertices"

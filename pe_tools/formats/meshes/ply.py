@@ -46,7 +46,7 @@ class _Element:
 
 
 @dataclass(frozen=True, slots=True)
-class _Body:
+class _PlyBody:
     """The values behind the header: numbers of text, or bytes in an order ("<", ">")."""
 
     source: str
@@ -102,7 +102,7 @@ def read_ply(path: Path, data: bytes) -> Mesh:
     return make_mesh(source, cut.triangles, np.zeros_like(cut.polygons), [path.stem], notes)
 
 
-def _header(source: str, data: bytes) -> tuple[list[_Element], _Body]:
+def _header(source: str, data: bytes) -> tuple[list[_Element], _PlyBody]:
     """The elements, and what is behind the header."""
     end = data.find(END, 0, MAX_HEADER_BYTES)
     begin = data.find(b"\n", end) + 1
@@ -127,7 +127,7 @@ def _header(source: str, data: bytes) -> tuple[list[_Element], _Body]:
     order = ORDERS.get(kind, "")
     if not kind:
         raise InputError(source, "format", "one of " + ", ".join(ORDERS), "none")
-    return elements, _Body(source, _values(source, data[begin:], order), order)
+    return elements, _PlyBody(source, _values(source, data[begin:], order), order)
 
 
 def _type(source: str, name: str) -> str:
@@ -146,7 +146,7 @@ def _values(source: str, data: bytes, order: str) -> NDArray[Any]:
         raise InputError(source, "file", "numbers behind the header", str(error)) from error
 
 
-def _starts(body: _Body, element: _Element, at: int) -> tuple[NDArray[np.int64], int]:
+def _starts(body: _PlyBody, element: _Element, at: int) -> tuple[NDArray[np.int64], int]:
     """Where each property (R, K) of each row begins, of a list its length; and where all end."""
     least = sum(body.size(each.length_type or each.type) for each in element.properties)
     if element.count * max(least, 1) > len(body.values) - at:
@@ -169,12 +169,12 @@ def _starts(body: _Body, element: _Element, at: int) -> tuple[NDArray[np.int64],
     return even, at
 
 
-def _lengths(body: _Body, of: _Property, starts: NDArray[np.int64]) -> NDArray[np.int64]:
+def _lengths(body: _PlyBody, of: _Property, starts: NDArray[np.int64]) -> NDArray[np.int64]:
     whole = starts + body.size(of.length_type) <= len(body.values)
     return body.take(of.length_type, starts[whole]).astype(np.int64)
 
 
-def _row(body: _Body, element: _Element, at: int) -> tuple[list[int], int]:
+def _row(body: _PlyBody, element: _Element, at: int) -> tuple[list[int], int]:
     """Where each property of the row at an item begins, and where the row ends."""
     begins = []
     for each in element.properties:
@@ -192,14 +192,16 @@ def _row(body: _Body, element: _Element, at: int) -> tuple[list[int], int]:
     return begins, at
 
 
-def _points(body: _Body, columns: dict[str, Any]) -> NDArray[np.float64]:
+def _points(body: _PlyBody, columns: dict[str, Any]) -> NDArray[np.float64]:
     if not {"x", "y", "z"} <= columns.keys():
         raise InputError(body.source, "header", "vertices with x, y and z", ", ".join(columns))
     axes = [body.take(columns[axis][0].type, columns[axis][1]) for axis in "xyz"]
     return np.stack(axes, axis=1).astype(np.float64)
 
 
-def _polygons(body: _Body, columns: dict[str, Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _polygons(
+    body: _PlyBody, columns: dict[str, Any]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """The corners of all faces in one list, and how many each face has."""
     name = next((each for each in CORNERS if each in columns), None)
     if name is None or not columns[name][0].length_type:

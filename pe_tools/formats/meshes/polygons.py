@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError
 
-Indices = NDArray[np.int64]
+Corners = NDArray[np.int64]
 MAX_CONCAVE_CORNERS = 5_000  # Cutting ears takes time with the square of the corners: 8 s
 ON_LINE = 1e-12  # Product of two areas, of points that are within 1 of each other, that counts as 0
 CHUNK_CORNERS = 1 << 18  # Corners of the polygons that are worked on together
@@ -34,7 +34,7 @@ class Triangulation(NamedTuple):
     themselves: their triangles overlap."""
 
     triangles: Floats
-    polygons: Indices
+    polygons: Corners
     crossing: int
 
 
@@ -84,7 +84,7 @@ def triangle_count(counts: NDArray[np.integer]) -> int:
     return int(np.maximum(counts.astype(np.int64) - 2, 0).sum())
 
 
-def joined_ring(rings: Sequence[Floats]) -> Indices:
+def joined_ring(rings: Sequence[Floats]) -> Corners:
     """Return a ring and the holes in it as one ring: the order of the points of all `rings`, one
     list after the other, in which those of the edge to a hole stand twice."""
     points = np.concatenate(rings)
@@ -132,7 +132,7 @@ def _is_within(before: Floats, corner: Floats, after: Floats, point: Floats) -> 
     return bool(left_of_in or left_of_out)
 
 
-def _fans(sizes: Indices) -> tuple[Indices, Indices]:
+def _fans(sizes: Corners) -> tuple[Corners, Corners]:
     """Positions (T, 3) of the corners of each polygon's fan of triangles, and the polygon (T,)."""
     if (sizes == 3).all():  # the usual case
         return np.arange(3 * len(sizes)).reshape(-1, 3), np.arange(len(sizes))
@@ -154,12 +154,12 @@ def _fan_fits(rings: Floats) -> NDArray[np.bool_]:
     return ~_covers_more(areas)
 
 
-def _cut_quads(rings: Floats) -> Indices:
+def _cut_quads(rings: Floats) -> Corners:
     """The corners (P, 2, 3) of quads' triangles when the second corner is that of both."""
     return np.broadcast_to(np.array([(0, 1, 3), (1, 2, 3)]), (len(rings), 2, 3))
 
 
-def _overlap(rings: Floats, cut: Indices) -> NDArray[np.bool_]:
+def _overlap(rings: Floats, cut: Corners) -> NDArray[np.bool_]:
     """Whether the triangles (P, N - 2, 3) of each ring (P, N, 3) cover more than the ring."""
     corners = rings[np.arange(len(rings))[:, None, None], cut]
     areas = np.cross(corners[:, :, 1] - corners[:, :, 0], corners[:, :, 2] - corners[:, :, 0])
@@ -208,10 +208,10 @@ def _area(ring: Floats) -> float:
     return float(_cross(ring - ring[0], np.roll(ring, -1, axis=0) - ring[0]).sum())
 
 
-def _cut_ears(flat: Floats) -> Indices:
+def _cut_ears(flat: Floats) -> Corners:
     """The corners (P, N - 2, 3) of the triangles of rings (P, N, 2) that turn to the left."""
     count, size = flat.shape[:2]
-    rings = _Rings.of(flat)
+    rings = _ClippedRings.of(flat)
     all_rows = np.arange(count)
     rings.count_ears(all_rows)
     cut = np.empty((count, size - 2, 3), np.int64)
@@ -224,20 +224,20 @@ def _cut_ears(flat: Floats) -> Indices:
 
 
 @dataclass(slots=True)
-class _Rings:
+class _ClippedRings:
     """Rings from which ears are cut, a row each: corners (P, N, 2), the corner before and after
     each (P, N), which are left, which are ears (`EAR`, `FLAT`), and the level (P,) of
     `STRICTNESS`."""
 
     flat: Floats
-    before: Indices
-    after: Indices
+    before: Corners
+    after: Corners
     is_left: NDArray[np.bool_]
     ears: NDArray[np.int8]
-    level: Indices
+    level: Corners
 
     @classmethod
-    def of(cls, flat: Floats) -> "_Rings":
+    def of(cls, flat: Floats) -> "_ClippedRings":
         count, size = flat.shape[:2]
         order = np.arange(size)
         return cls(
@@ -249,12 +249,12 @@ class _Rings:
             np.zeros(count, np.int64),
         )
 
-    def count_ears(self, rows: Indices) -> None:
+    def count_ears(self, rows: Corners) -> None:
         """Find all ears of some rings."""
         for corner in range(self.flat.shape[1]):
             self._look(rows, np.full(len(rows), corner))
 
-    def cut_off(self, rows: Indices, corner: Indices) -> Indices:
+    def cut_off(self, rows: Corners, corner: Corners) -> Corners:
         """Cut an ear off each ring; return its corners (P, 3)."""
         before, after = self.before[rows, corner], self.after[rows, corner]
         self.after[rows, before] = after
@@ -264,7 +264,7 @@ class _Rings:
             self._look(rows, changed)
         return np.stack([before, corner, after], axis=1)
 
-    def _look(self, rows: Indices, corner: Indices) -> None:
+    def _look(self, rows: Corners, corner: Corners) -> None:
         """Find whether a corner of each ring is an ear. A corner without area is one."""
         a = self.flat[rows, self.before[rows, corner]]
         b = self.flat[rows, corner]

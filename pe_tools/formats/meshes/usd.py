@@ -13,7 +13,7 @@ from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError
 
 from .mesh import FoundMesh, Piece, found, mesh_notes, placed, require_room
-from .polygons import Indices, triangulate
+from .polygons import Corners, triangulate
 from .usd_solids import SOLIDS
 
 HIDDEN_PURPOSES = ("guide", "proxy")
@@ -35,7 +35,7 @@ def read_usd(path: Path, _data: bytes) -> FoundMesh:
         if errors := stage.GetCompositionErrors():
             problem = " ".join(str(errors[0]).split())
             raise InputError(source, "composition", "layers that fit together", problem)
-        reading = _Reading(source)
+        reading = _StageReading(source)
         pieces = list(reading.pieces(stage.GetPseudoRoot(), np.eye(4), 0))
     except Tf.ErrorException as error:
         raise InputError(source, "file", "USD", " ".join(str(error).split())) from error
@@ -47,7 +47,7 @@ def read_usd(path: Path, _data: bytes) -> FoundMesh:
 
 
 @dataclass(slots=True)
-class _Reading:
+class _StageReading:
     """The reading of a stage: what is left out of it, and the triangles so far."""
 
     source: str
@@ -119,7 +119,7 @@ class _Reading:
         return cut.triangles[:, ::-1] if is_left_handed else cut.triangles
 
 
-def _polygons(source: str, prim: Any, mesh: Any) -> tuple[Floats, Indices, Indices, int]:
+def _polygons(source: str, prim: Any, mesh: Any) -> tuple[Floats, Corners, Corners, int]:
     """Points (P, 3) of a mesh, the corners of its faces in one list, how many each face has, and
     the number of further faces, which the mesh calls holes."""
     attributes = (

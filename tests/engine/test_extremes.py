@@ -18,7 +18,6 @@ from pe_core.scene.scan import ScanTiming
 from pe_core.scene.vehicle_description import Reference
 from pe_core.scene.vehicle_state import Motion, State
 from pe_core.scoring.requirements import BODIES, Criterion, Requirement, Zone
-from pe_core.search import KeyFigures
 from pe_core.search.goals import Stop
 from pe_core.search.key_figures import Wanted
 from pe_core.sensors.ultrasonic.kind import Ultrasonic
@@ -27,7 +26,7 @@ from pe_core.study.condition_table import condition_table
 from pe_tools.jobs import result_dict
 from tests.engine import shapes
 
-pytestmark = pytest.mark.filterwarnings("error")
+pytestmark = [pytest.mark.filterwarnings("error"), pytest.mark.usefixtures("no_key_figures")]
 
 BESIDE = (5e-324, 1e-320, -1e-320, 1e-300, 1e308, -1e308)
 LIDAR = shapes.small_lidar(4, 36)
@@ -62,7 +61,7 @@ def rig(model=LIDAR, **sensor):
 
 def study(placed=None, **fields):
     space = pe.PerceptionSpace(x=(-12, 12), y=(-8, 8), z=(0, 2), interval=1.0)
-    return pe.Study(placed or rig(), shapes.box_car(), **{"space": space, "samples": 256} | fields)
+    return pe.Study(placed or rig(), shapes.box_car(), **{"space": space, "samples": 1024} | fields)
 
 
 def answers(given):
@@ -70,8 +69,6 @@ def answers(given):
     score = given.evaluator(workers=1).score(given.rig)
     json.dumps(score.to_dict(), allow_nan=False)
     assert math.isfinite(score.entropy)
-    figures = KeyFigures.of_rig(given.sight(), given.rig)
-    json.dumps(figures.to_dict(), allow_nan=False)
     for verdict in given.verdicts(given.rig):
         json.dumps(verdict.to_dict(), allow_nan=False)
     if given.conditions:
@@ -80,7 +77,7 @@ def answers(given):
 
 def searched(**search):
     """Search as `pe optimize` does, in eight evaluations."""
-    given = pe.Search(free={"one": ("x", "z", "pitch")}, samples=256, evaluations=8, **search)
+    given = pe.Search(free={"one": ("x", "z", "pitch")}, samples=1024, evaluations=8, **search)
     job = pt.OptimizeJob(study(search=given), 1)
     for _ in job:
         pass
@@ -168,3 +165,13 @@ def test_a_number_of_a_sensor_at_its_ends_has_an_answer_or_one_line(kind, name, 
         answers(study(rig(replace(MODELS[kind], **{name: value}))))
     except pe.InputError as error:
         assert "\n" not in str(error) and len(str(error)) < 400
+
+
+@pytest.mark.parametrize("cls", USES, ids=lambda cls: cls.__name__)
+def test_the_settings_as_they_are_have_an_answer(cls):
+    USES[cls]({"share": 1.0} if cls is Criterion else {})
+
+
+@pytest.mark.parametrize("kind", MODELS)
+def test_the_sensors_as_they_are_have_an_answer(kind):
+    answers(study(rig(MODELS[kind])))

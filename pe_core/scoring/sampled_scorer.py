@@ -17,8 +17,9 @@ from ..prior.prior import ClassDensity
 from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
 from ..sensors import MeasurementCache, Voxels
+from .leave_one_out import adds_up, mean_without_each
 from .sampling import BLOCKS, CENTERED, Shift, VoxelSample, draw, outside_masses
-from .scenarios import Scenarios, fused_early
+from .scenarios import Scenarios, fused_early, members_of
 from .score import (
     ALIKE,
     RULE_OF_THREE,
@@ -135,13 +136,16 @@ class SampledScorer:
 
     def score(self, rig: Rig, watch: Watch | None = None) -> Score:
         """Return the full score; `watch` gets the share that is done after each sensor."""
-        count = len(rig.sensors)  # each is measured, then all others are fused without it
-        progress = ScoreProgress(watch, count * (1.0 + count / SENSORS_FUSED))
+        count = len(rig.sensors)  # each is measured, then fused alone and left out
+        progress = ScoreProgress(watch, count * (1.0 + 1.0 / SENSORS_FUSED))
         with self._lock:
             self._sensors.measure(rig, progress.add)
             values = self._entropies(rig, [s.name for s in rig])
             whole = self._summary(rig, *values)
-            per_sensor = {s.name: self._sensor(s, rig, whole.entropy, progress) for s in rig}
+            failed = self._without_each(rig)
+            per_sensor = {
+                s.name: self._sensor(s, rig, failed[s.name] - whole.entropy, progress) for s in rig
+            }
             assert whole.scatter is not None
             by_figure = {**whole.scatter.residuals, **self._class_residuals(*values)}
             scatter = Scatter(self._digest, by_figure)
@@ -200,15 +204,26 @@ class SampledScorer:
             if likely.any()
         }
 
+    def _without_each(self, rig: Rig) -> dict[str, float]:
+        """Return the entropy of the rig without each sensor [nats], by name."""
+        names = [s.name for s in rig]
+        if len(names) == 1:
+            return {names[0]: H_BLIND}
+        if not adds_up(self._fusion):
+            rests = {name: [other for other in names if other != name] for name in names}
+            return {n: self._whole(*self._entropies(rig, rest))[0] for n, rest in rests.items()}
+        groups = members_of(rig, self._sensors.m)
+        means = mean_without_each(self._fusion, groups, self._distance)
+        in_order = [s.name for sensors in rig.groups.values() for s in sensors]
+        return dict(zip(in_order, map(rounded, means.tolist()), strict=True))
+
     def _sensor(
-        self, sensor: Sensor, rig: Rig, entropy: float, progress: ScoreProgress
+        self, sensor: Sensor, rig: Rig, lost: float, progress: ScoreProgress
     ) -> SensorScore:
         alone, coverage = self._whole(*self._entropies(rig, [sensor.name]))
-        remaining = [s.name for s in rig if s.name != sensor.name]
-        failed = self._whole(*self._entropies(rig, remaining))[0] if remaining else H_BLIND
         occlusion = self._sensors.occlusion(sensor)
-        progress.add(len(rig.sensors) / SENSORS_FUSED)
-        return sensor_score(alone, coverage, rounded(failed - entropy), occlusion)
+        progress.add(1.0 / SENSORS_FUSED)
+        return sensor_score(alone, coverage, rounded(lost), occlusion)
 
     def _standard_error(self, entropies: Floats, groups: int) -> float:
         """Return the standard error from the scatter of runs of the sequence.

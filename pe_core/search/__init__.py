@@ -25,7 +25,7 @@ from .key_figures import (
 )
 from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_method
 from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
-from .optimize import Step, optimize
+from .optimize import Step, as_objective, optimize
 from .parametrization import Candidate, Parametrization, feasible_start, mirrored, rig_on_mounts
 from .payload import Payload, Unreadable, send_payload
 from .places import MountingPlaces, SurfacePlace, outward_yaw

@@ -10,6 +10,7 @@ once for all its ranges, and the numbers are those of measuring it anew.
 
 import math
 from collections.abc import Callable, Hashable, Iterable, Mapping
+from functools import reduce
 from types import MappingProxyType
 from typing import Any, Generic, TypeVar
 
@@ -32,7 +33,6 @@ from .kernels import (
     ObjectView,
     Occlusion,
     SampleKernel,
-    VisibleGround,
     Voxels,
 )
 from .kind import kind_of
@@ -238,24 +238,31 @@ class VisibleGroundCache:
         self._kernels: _Kernels[GroundKernel] = _Kernels(
             lambda sensor: kind_of(sensor).on_ground(view), kernel_caches
         )
-        self._visible: dict[str, VisibleGround] = {}
+        self._visible: dict[str, tuple[Sensor, NDArray[np.uint8]]] = {}
+        """Sensors of the last rig and what they mark, by name: eight squares a byte."""
 
     @property
     def by_sensor(self) -> dict[str, Flags]:
         """Squares (NX, NY) that each sensor of the last rig marks, by name."""
-        return {name: visible.marked for name, visible in self._visible.items()}
+        return {name: self._unpacked(bits) for name, (_, bits) in self._visible.items()}
+
+    @property
+    def kept_bytes(self) -> int:
+        """Memory of what the sensors of the last rig mark."""
+        return sum(bits.nbytes for _, bits in self._visible.values())
 
     def marked(self, rig: Rig) -> Flags:
         """Return squares (NX, NY) that any sensor marks."""
-        self._visible = {s.name: self._one(s) for s in rig}
+        self._visible = {s.name: (s, self._one(s)) for s in rig}
         self._kernels.keep_only(rig)
-        marked = np.zeros(self.view.grid.shape, bool)
-        for visible in self._visible.values():
-            marked |= visible.marked
-        return marked
+        return self._unpacked(reduce(np.bitwise_or, (bits for _, bits in self._visible.values())))
 
-    def _one(self, sensor: Sensor) -> VisibleGround:
+    def _unpacked(self, bits: NDArray[np.uint8]) -> Flags:
+        nx, ny = self.view.grid.shape
+        return np.unpackbits(bits, count=nx * ny).reshape(nx, ny).view(bool)
+
+    def _one(self, sensor: Sensor) -> NDArray[np.uint8]:
         cached = self._visible.get(sensor.name)
-        if cached is not None and sensor.measures_as(cached.sensor):
-            return cached
-        return self._kernels.kernel_of(sensor).mark(sensor)
+        if cached is not None and sensor.measures_as(cached[0]):
+            return cached[1]
+        return np.packbits(self._kernels.kernel_of(sensor).mark(sensor).marked)

@@ -19,7 +19,7 @@ from ..advice import (
     objects_looked_at,
     off_by,
 )
-from ..jobs import Outcome, condition_lines, searched_on, sureness_lines
+from ..jobs import Outcome, condition_lines, sureness_lines
 from ..wording import margin_text, percent
 
 DONE, BAD_INPUT, USAGE, NOT_MET, INTERRUPTED = 0, 1, 2, 3, 130
@@ -124,8 +124,8 @@ def summary(outcome: Outcome) -> str:
             f"pitch {pitch:g}, yaw {yaw:g} deg; alone {own.entropy:.3f}{stopped}"
         )
     if outcome.kind == "optimize":
-        search, (levels, what) = outcome.start.search, searched_on(outcome.start)
-        how = f"{outcome.evaluations:,} placements evaluated on {levels} {what}"
+        search = outcome.start.search
+        how = f"{outcome.evaluations:,} placements evaluated{outcome.evaluated_on}"
         lines += sureness_lines(outcome)
         lines.append(f"searched by {search.method}, seed {search.seed}: {how}")
     if outcome.stopped:
@@ -139,6 +139,8 @@ def _before_and_after(outcome: Outcome) -> Iterator[str]:
     ends = f"{before.entropy:.3f} -> {after.entropy:.3f} nats"
     entropy = f"entropy   {ends} ({outcome.change_text})"
     beside = figure_lines(outcome)
+    if (own := outcome.own) is not None:
+        yield f"{own.figure.label}  {own.before:.3f} -> {own.after:.3f}"
     yield from [*beside, entropy] if outcome.in_traffic is not None else [entropy, *beside]
     yield f"coverage  {percent(before.coverage, 1)} -> {percent(after.coverage, 1)}"
     yield from built_lines(outcome.figures) if outcome.figures else ()

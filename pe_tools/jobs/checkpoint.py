@@ -119,7 +119,7 @@ class Checkpoint:
         """Write state and best placement into a folder; raises as `SearchState.save`."""
         entries, best = self._job.journal.entries, self._job.best
         is_new = folder != self._folder or not (folder / SEARCH).exists()
-        self._state.save(folder, best, {"": entries}, other=is_new)
+        self._state.save(folder, best, {self._job.journal_name: entries}, other=is_new)
         self._folder, self._saved_entries = folder, len(entries)
 
 
@@ -173,8 +173,9 @@ def resume(job: OptimizeJob | FrontJob, folder: Path) -> int:
     job.inputs = begun.inputs
     if isinstance(job, FrontJob):
         job.journals = FrontJournals(begun.journals)
-    elif extra := [name for name in begun.journals if name]:
-        raise InputError(begun.path, "journals", "the journal of one search", shown(extra[0]))
+    elif extra := [name for name in begun.journals if name != job.journal_name]:
+        expected = f"the journal of one search by {job.figure.label}"
+        raise InputError(begun.path, "journals", expected, shown(extra[0]))
     else:
-        job.journal = begun.journal_of(job.study)
+        job.journal = Journal(begun.journals.get(job.journal_name, ()), str(begun.path))
     return sum(map(len, begun.journals.values()))

@@ -31,7 +31,8 @@ from pe_core.study.study import Study
 
 from ..advice import Advice, curve_warnings, difference_error, gain_sentence, search_cost, warnings
 from ..sensitivity import Sensitivity
-from .searched_figure import IN_NATS, SearchedFigure
+from .own_objective import OwnValues
+from .searched_figure import IN_NATS, SearchedFigure, searched_figure, searched_on
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,6 +123,8 @@ class Outcome(Tabular):
     figures : (KeyFigures, KeyFigures), or None
         Expected AP in traffic, blind sectors and blind ground of start and result; None where the
         ground round the vehicle is not in the space.
+    own : OwnValues or None
+        Of a search by an objective of one's own: its figure, before and after.
     """
 
     kind: str
@@ -145,6 +148,24 @@ class Outcome(Tabular):
     seed_scatter: float | None = None
     in_traffic: tuple[ObjectScore, ObjectScore] | None = None
     figures: tuple[KeyFigures, KeyFigures] | None = None
+    own: OwnValues | None = None
+
+    @property
+    def figure(self) -> SearchedFigure:
+        """The figure that the search improved."""
+        return searched_figure(self.start) if self.own is None else self.own.figure
+
+    @property
+    def journal_name(self) -> str:
+        """Name of the journal in the state of the search: empty for the study's own objective."""
+        return "" if self.own is None else self.own.figure.key
+
+    @property
+    def evaluated_on(self) -> str:
+        """What the search evaluated on, as text: " on 65,536 voxels"; empty for an objective of
+        one's own."""
+        levels, what = searched_on(self.start)
+        return f" on {levels} {what}" if self.own is None else ""
 
     @property
     def figures_after(self) -> KeyFigures | None:

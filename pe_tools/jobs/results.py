@@ -37,7 +37,7 @@ from pe_core.version import __version__
 from ..wording import percent
 from .folder import PROGRAM, FileSet, Write, our_files, prepare_folder, sha256_of
 from .job import HistoryRow, Outcome
-from .searched_figure import IN_NATS, SearchedFigure, searched_figure
+from .searched_figure import IN_NATS, SearchedFigure
 from .study_export import fingerprint, inputs_of, study_text, study_writers
 
 
@@ -58,7 +58,7 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
     the last bit. Infinity and NaN, which JSON does not have, become null.
     """
     start, study, before, after = outcome.start, outcome.study, outcome.before, outcome.after
-    is_search, figure = outcome.kind == "optimize", searched_figure(start)
+    is_search, figure = outcome.kind == "optimize", outcome.figure
     data: dict[str, Any] = {
         "schema": SCHEMA,
         "kind": outcome.kind,
@@ -81,6 +81,8 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
     if outcome.in_traffic is not None:
         first, last = (each.to_dict() for each in outcome.in_traffic)
         data |= {"objective": EXPECTED_AP, EXPECTED_AP: {"before": first, "after": last}}
+    if (own := outcome.own) is not None:
+        data |= {"objective": own.figure.key, "value": {"before": own.before, "after": own.after}}
     if outcome.figures is not None:
         first, last = (each.to_dict() for each in outcome.figures)
         data["figures"] = {"before": first, "after": last}
@@ -158,12 +160,12 @@ def write_outcome(
     folder, data = prepare_folder(folder), result_dict(outcome, host)
     writers = study_writers(outcome.study, STUDY)
     if outcome.kind == "optimize":
-        text = history_csv(outcome.history, searched_figure(outcome.start))
+        text = history_csv(outcome.history, outcome.figure)
         writers[HISTORY] = text.encode(errors="backslashreplace")
         for name, each in runners_up(outcome).items():
             writers[name] = study_text(each).encode()
         writers[SEARCH] = SearchState(outcome.start, outcome.inputs).to_bytes(
-            {"": outcome.evaluated}
+            {outcome.journal_name: outcome.evaluated}
         )
     add_to_result(data, folder, writers, unwanted=set(BESIDE_RESULT) - set(later))
     return data

@@ -1,7 +1,7 @@
 """The jobs that score a study and that search for better poses."""
 
 import time
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import cached_property
@@ -31,6 +31,7 @@ from ..advice import Advice, condition_warnings, fragile, not_kept, unmet
 from ..sensitivity import Archive, analyse
 from .candidate_workers import ExecutorSource, candidate_workers
 from .job import HistoryRow, Job, Outcome, Progress, ProgressSteps, StartEnd, begun, best_so_far
+from .own_objective import OwnValues, own_objective
 from .searched_figure import IN_AP, level_sizes, searched_figure, searched_on, searched_samples
 from .stopping import TARGET, StopWatch, seed_scatter
 
@@ -40,13 +41,14 @@ class _Scored(NamedTuple):
 
     score: Score
     in_traffic: ObjectScore | None = None
+    own: float | None = None
 
     @property
     def value(self) -> float:
         """What the search minimises, of a placement as scored."""
-        return (
-            self.score.entropy if self.in_traffic is None else IN_AP.to_figure(self.in_traffic.ap)
-        )
+        if self.own is not None:
+            return self.own
+        return self.score.entropy if self.in_traffic is None else IN_AP.to_value(self.in_traffic.ap)
 
 
 def _nothing() -> None:
@@ -92,6 +94,10 @@ class OptimizeJob(Job):
         Score of the study's rig, if the caller has it already: it is not computed again.
     journal : Journal, optional
         Journal of an earlier search of the same study, which is resumed.
+    objective : callable, or an object with a method ``entropy``, optional
+        What the search minimises in place of entropy: takes a `Rig`, returns a number. Processes
+        evaluate it if it can be pickled. Limits of the study are kept; robustness and sensitivity,
+        which are of entropy, are left out.
 
     Attributes
     ----------
@@ -118,8 +124,12 @@ class OptimizeJob(Job):
         workers: int | None = None,
         before: Score | None = None,
         journal: Journal | None = None,
+        objective: Callable[[Rig], float] | Objective | None = None,
     ) -> None:
         super().__init__(study, workers)
+        self._own = None if objective is None else own_objective(study, objective)
+        self.figure = searched_figure(study) if self._own is None else self._own.figure
+        self.journal_name = "" if self._own is None else self.figure.key
         self.before, self.journal = before, journal or Journal()
         self.round = 0
         self.history: list[HistoryRow] = []
@@ -149,12 +159,16 @@ class OptimizeJob(Job):
     def _free(self) -> list[Objective]:
         """Objectives without requirements, one for each level of the search method; levels that
         look at the same scenes of objects are one."""
+        if self._own is not None:
+            return [self._own]
         levels = {self._evaluator_of(n): n for n in self.study.level_samples}
         return [study_objective(self.study, each, n, self.workers) for each, n in levels.items()]
 
     @cached_property
     def _samples(self) -> list[str]:
         """What each level of the search evaluates on: "65,536 voxels"."""
+        if self._own is not None:
+            return [""]
         _, unit = searched_on(self.study)
         return [f"{size} {unit}" for size in level_sizes(self.study)]
 
@@ -162,6 +176,8 @@ class OptimizeJob(Job):
     def _held_out(self) -> list[Objective]:
         """What the search minimises, on samples that it does not use: two, each of half the voxels,
         so that their difference tells the error; or all voxels."""
+        if self._own is not None:
+            return [self._own]
         samples = searched_samples(self.study, self.study.search.samples)
         if not samples and not searched_study(self.study).targets.are_objects:
             return [self._free[-1]]
@@ -216,13 +232,15 @@ class OptimizeJob(Job):
         figures = yield from self._figures(rigs, looking)
         # A further stop ends what follows: the result does not wait for it.
         analysing = replace(looking, stage="analysing")
-        found = yield from self._beside(lambda _: self._robustness(best), analysing)
+        found = None
+        if self._own is None:
+            found = yield from self._beside(lambda _: self._robustness(best), analysing)
         verdicts = (yield from self._verdicts(best, analysing, to_the_end=False)) or ()
         against: tuple[Advice, ...] | None = ()
         if best.search.requirements and not all(verdict.met for verdict in verdicts):
             against = yield from self._beside(lambda _: unmet(suggestions(best)), analysing)
         sensitivity = None
-        if self.analyses and not self.stopped:
+        if self.analyses and self._own is None and not self.stopped:
             sensitivity = yield from self._beside(
                 lambda _: analyse(
                     self.study,
@@ -261,13 +279,20 @@ class OptimizeJob(Job):
             sensitivity,
             tuple(self.ends),
             self.stop_reason,
-            seed_scatter(self.descents),
+            seed_scatter(self.descents) if self._own is None else None,
             (first.in_traffic, last.in_traffic) if first.in_traffic and last.in_traffic else None,
             (figures[0], figures[-1]) if figures else None,
+            self._own_values(best),
         )
         warned = (*outcome.warnings, *not_kept(outcome.dashboard))
         self.outcome = replace(outcome, warnings=warned)
         yield self._about("done", last.value)
+
+    def _own_values(self, best: Study) -> OwnValues | None:
+        """Return an objective of one's own, for the start and the result."""
+        if (own := self._own) is None:
+            return None
+        return OwnValues(own.figure, own.figure_of(self.study.rig), own.figure_of(best.rig))
 
     def _checked(self) -> list[Objective]:
         """Return the objectives; raise `InputError` before the search if it is infeasible. This
@@ -282,12 +307,13 @@ class OptimizeJob(Job):
         by_ap = is_by_ap(self.study)
         apart = by_ap and searched_study(self.study).targets != self.study.targets
         all_scenes = self.study.search.samples
+        own = None if self._own is None else self._own.entropy(rig)
         scoring = None
         if apart:
             scoring = begun(lambda: self.evaluators.searching(all_scenes, CENTERED).score(rig))
         score = known or (yield from self._score(rig, waiting, to_the_end=to_the_end))
         if score is None or scoring is None:
-            return None if score is None else _Scored(score, score.objects if by_ap else None)
+            return None if score is None else _Scored(score, score.objects if by_ap else None, own)
         found = yield from self._awaited(scoring, lambda: waiting, to_the_end)
         return None if found is None else _Scored(score, found.objects)
 
@@ -302,7 +328,7 @@ class OptimizeJob(Job):
         return before, self.study  # the search's sample overrated the placement
 
     def _about(self, stage: str, value: float) -> Progress:
-        return Progress(stage, 1.0, value, self.evaluations, searched_figure(self.study))
+        return Progress(stage, 1.0, value, self.evaluations, self.figure)
 
     def _robustness(self, best: Study) -> Robustness:
         """Return how entropies change under mounting errors and sensor failures."""
@@ -334,8 +360,7 @@ class OptimizeJob(Job):
                 break
             if number:  # the best so far stays the job's until a start ends better
                 self.history = []
-            figure = searched_figure(self.study)
-            watch = StopWatch(self.study.search.goals.stop, self._objectives, began, figure)
+            watch = StopWatch(self.study.search.goals.stop, self._objectives, began, self.figure)
             share = number / len(rigs), 1.0 / len(rigs)
             yield from self._search_from(rig, objectives, watch, share)
             if len(rigs) > 1 and self.history:
@@ -382,7 +407,7 @@ class OptimizeJob(Job):
             step.fraction,
             step.entropy,
             step.evaluations,
-            figure=searched_figure(self.study),
+            figure=self.figure,
             sample=self._samples[step.level],
         )
         if step.improved or not self.history:

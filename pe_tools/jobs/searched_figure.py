@@ -23,8 +23,12 @@ class SearchedFigure:
         return self.sign < 0.0
 
     def to_figure(self, value: float) -> float:
-        """Return the figure of a value that a search minimises; or the value of a figure."""
+        """Return the figure of a value that a search minimises."""
         return self.sign * value
+
+    def to_value(self, figure: float) -> float:
+        """Return the value that a search minimises of a figure."""
+        return self.sign * figure
 
     def amount(self, figure: str) -> str:
         """Return a figure in a sentence: "0.50 nats", "an expected AP of 0.65"."""

@@ -9,11 +9,10 @@ from statistics import stdev
 from pe_core.base.values import rounded
 from pe_core.search import Objective, Step, Stop
 from pe_core.study.requirement_search import is_infeasible
-from pe_core.study.study import Study
 
 from ..sensitivity import sensitivity_lines
 from .job import Outcome
-from .searched_figure import IN_NATS, SearchedFigure, searched_figure
+from .searched_figure import IN_NATS, SearchedFigure
 
 TARGET, SECONDS, GAIN = "target", "seconds", "gain"  # Reasons, as result.json names them
 APART = 2.0
@@ -33,7 +32,8 @@ class StopWatch:
         figure: SearchedFigure = IN_NATS,
     ) -> None:
         self._stop, self._objectives, self._started = stop, objectives, started
-        self._target = None if stop.target is None else figure.to_figure(stop.target)
+        self._figure = figure
+        self._target = None if stop.target is None else figure.to_value(stop.target)
         self._bests: deque[float] = deque(maxlen=stop.over + 1)
         self._checked: float | None = None
 
@@ -42,9 +42,9 @@ class StopWatch:
         if self._is_at_target(step):
             return TARGET
         if self._stop.gain is not None and step.level == len(self._objectives) - 1:
-            self._bests.append(step.entropy)
+            self._bests.append(self._figure.to_figure(step.entropy))
             full = len(self._bests) == self._stop.over + 1
-            if full and self._bests[0] - self._bests[-1] < self._stop.gain:
+            if full and abs(self._bests[0] - self._bests[-1]) < self._stop.gain:
                 return GAIN
         seconds = self._stop.seconds
         is_over = seconds is not None and time.monotonic() - self._started >= seconds
@@ -62,15 +62,16 @@ class StopWatch:
         return self._objectives[-1].entropy(step.best) <= target
 
 
-def stop_text(reason: str, study: Study) -> str:
-    """Return why the search of a study ended early, as text; empty without a reason."""
-    stop, figure = study.search.goals.stop, searched_figure(study)
+def stop_text(outcome: Outcome) -> str:
+    """Return why a search ended early, as text; empty without a reason."""
+    stop = outcome.start.search.goals.stop
+    figure = outcome.figure
     target, gain = (figure.amount(f"{value or 0.0:g}") for value in (stop.target, stop.gain))
     return {
         TARGET: f"ended at its target of {target}",
         SECONDS: f"ended after {stop.seconds or 0.0:g} s",
         GAIN: f"ended: {stop.over:,} placements gained less than {gain}",
-    }.get(reason, "")
+    }.get(outcome.stop_reason, "")
 
 
 def seed_scatter(ends: Sequence[float]) -> float | None:
@@ -85,16 +86,17 @@ def scatter_text(outcome: Outcome) -> str:
     """Return how far from a result another seed would end, as text; empty where nothing tells."""
     if outcome.seed_scatter is None:
         return ""
-    unit = "of expected AP" if searched_figure(outcome.start).higher_is_better else "nats"
+    unit = "of expected AP" if outcome.figure.higher_is_better else "nats"
     return f"another seed would probably end within {outcome.seed_scatter:.3f} {unit}"
 
 
 def sureness_lines(outcome: Outcome) -> list[str]:
     """Describe how sure a search is of its result; empty for a score."""
-    figure = searched_figure(outcome.start)
+    figure = outcome.figure
+    sample = "" if outcome.own is not None else ", on the sample of the search"
     lines = [] if outcome.sensitivity is None else list(sensitivity_lines(outcome.sensitivity))
     for end in outcome.starts:
         name = f"the start {end.name}" if end.name else "the given start"
-        lines.append(f"{name} ended {figure.ended(end.entropy)}, on the sample of the search")
-    told = scatter_text(outcome), stop_text(outcome.stop_reason, outcome.start)
+        lines.append(f"{name} ended {figure.ended(end.entropy)}{sample}")
+    told = scatter_text(outcome), stop_text(outcome)
     return [*lines, *filter(None, told)]

@@ -263,7 +263,13 @@ class Sight:
 
     def _on_objects(self, targets: TargetRule, model: PerceptionModel) -> ObjectEvaluator:
         return ObjectEvaluator(
-            self.space, self.prior, self.vehicle, targets=targets, model=model, shift=self._shift[0]
+            self.space,
+            self.prior,
+            self.vehicle,
+            targets=targets,
+            model=model,
+            shift=self._shift[0],
+            kernel_caches=self._voxel_sets.kernel_cache,
         )
 
     def _cells_round_body(self, height: float, within: float) -> GroundCells:

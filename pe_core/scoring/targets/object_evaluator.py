@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +44,8 @@ class ObjectEvaluator:
         AP curves by class and kind, and the fusion rule.
     shift : float
         A number in [0, 1) that scrambles the sample: others give other scenes of the same quality.
+    kernel_caches : dict, optional
+        Caches of kernels by kind, shared with others that measure the same rigs on this vehicle.
     """
 
     def __init__(
@@ -54,6 +57,7 @@ class ObjectEvaluator:
         targets: TargetRule | None = None,
         model: PerceptionModel | None = None,
         shift: float = CENTERED,
+        kernel_caches: dict[str, Any] | None = None,
     ) -> None:
         require_scene("evaluator", space, prior, vehicle)
         self.space, self.prior, self.vehicle = space, prior, vehicle
@@ -64,7 +68,7 @@ class ObjectEvaluator:
         self._fused = FusedObjects(self.drawn.objects, self.drawn.weights, self._model)
         self._sums = ObjectSums(self.drawn, self._model.protocol_floor)
         traffic = self.targets.traffic
-        self._sensors = ObjectMeasurementCache(self.drawn.objects, vehicle, traffic)
+        self._sensors = ObjectMeasurementCache(self.drawn.objects, vehicle, traffic, kernel_caches)
         self._lock = threads().RLock()
 
     def __reduce__(self) -> tuple[object, ...]:

@@ -23,6 +23,8 @@ from .lattice import lattice_of
 from .model import lidar_of
 from .occlusion import occlusion_candidates
 
+Rpy = tuple[float, float, float]
+
 
 @dataclass(frozen=True)
 class BeamField(ShortRepr):
@@ -175,22 +177,17 @@ class CastBeams:
 
 class BeamCache:
     """Rotated and cast beams of the LiDARs on a vehicle; several kernels may share one cache.
-    Entries are by the sensor's name: those of the last rig."""
+    Ends are by the sensor's name, rotated beams by model and orientation, which sensors may share:
+    those of the last rig."""
 
     def __init__(self, vehicle: Vehicle | None) -> None:
         self._vehicle = vehicle
-        self._rotated: dict[str, RotatedBeams] = {}
+        self._rotated: dict[tuple[int, Rpy], RotatedBeams] = {}
         self._cast: dict[str, CastBeams] = {}
 
     def rotated(self, sensor: Sensor) -> RotatedBeams:
-        """Return a LiDAR's beams; the cached ones until the sensor turns."""
-        beams = self._rotated.get(sensor.name)
-        if beams is not None:
-            last = beams.sensor
-            if last.model is sensor.model and last.pose.rpy == sensor.pose.rpy:
-                return beams
-        beams = self._rotated[sensor.name] = RotatedBeams(sensor)
-        return beams
+        """Return a LiDAR's beams, cached for its model and orientation."""
+        return self._rotated.setdefault(_orientation(sensor), RotatedBeams(sensor))
 
     def cast(self, sensor: Sensor) -> CastBeams:
         """Return where a LiDAR's beams end; the cached ends until the sensor moves."""
@@ -208,5 +205,11 @@ class BeamCache:
     def keep_only(self, sensors: Collection[Sensor]) -> None:
         """Drop the entries of all other sensors."""
         names = {sensor.name for sensor in sensors}
-        self._rotated = {name: beams for name, beams in self._rotated.items() if name in names}
+        used = set(map(_orientation, sensors))
+        self._rotated = {key: beams for key, beams in self._rotated.items() if key in used}
         self._cast = {name: beams for name, beams in self._cast.items() if name in names}
+
+
+def _orientation(sensor: Sensor) -> tuple[int, Rpy]:
+    """Return what rotated beams depend on; they hold the model, so its identity stays its own."""
+    return id(sensor.model), sensor.pose.rpy

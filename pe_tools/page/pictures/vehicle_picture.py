@@ -190,6 +190,8 @@ def _figures(outcome: jobs.Outcome) -> list[str]:
     arrow = " \N{RIGHTWARDS ARROW} "
     lines = [] if outcome.in_traffic is None else [f"{each.ap:.3f}" for each in outcome.in_traffic]
     lines = [f"Expected AP in traffic {arrow.join(lines)} (higher is better)"] if lines else []
+    if (own := outcome.own) is not None:
+        lines.append(f"{own.figure.label} {own.before:.3f}{arrow}{own.after:.3f} (lower is better)")
     entropy, coverage = ([f"{s.entropy:.3f}" for s in both], [f"{s.coverage:.1%}" for s in both])
     lines.append(f"Perception entropy {arrow.join(entropy)} nats (lower is better)")
     return [*lines, f"Coverage {arrow.join(coverage)}"]

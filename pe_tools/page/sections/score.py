@@ -143,8 +143,7 @@ def search_history(context: ReportContext) -> dict[str, Any] | None:
     if not context.was_searched:
         return None
     outcome, robustness = context.outcome, context.outcome.robustness
-    levels, what = jobs.searched_on(context.start)
-    figure = jobs.searched_figure(context.start)
+    figure = outcome.figure
     curve, caption = _curve(context, figure)
     moves = []  # how far each sensor was moved [m] and turned [deg]
     for old, new in zip(context.start.rig, context.rig, strict=True):
@@ -153,9 +152,7 @@ def search_history(context: ReportContext) -> dict[str, Any] | None:
         turned = math.degrees(math.acos(min(max(cosine, -1.0), 1.0)))
         moves.append((old, new, math.dist(old.pose.position, new.pose.position), turned))
     return {
-        "levels": levels,
-        "what": what,
-        "reason": jobs.stop_text(outcome.stop_reason, context.start),
+        "reason": jobs.stop_text(outcome),
         "scatter": jobs.scatter_text(outcome),
         "searched": figure,
         "curve": curve,
@@ -178,9 +175,11 @@ def _curve(context: ReportContext, figure: jobs.SearchedFigure) -> tuple[Markup 
         (n, value - INFEASIBLE if is_broken else figure.to_figure(value)) for n, value in found
     ]
     first, last = (number(points[k][1], 3 if by_ap or is_broken else 2) for k in (0, -1))
-    what, unit = (figure.label, "") if by_ap else ("entropy", " nats")
+    own = context.outcome.own is not None
+    what, unit = figure.label, "" if by_ap or own else " nats"
     what, unit = ("violation of constraints", "") if is_broken else (what, unit)
-    caption = f"Best {what} so far: from {first} to {last}{unit}, on the samples of the search."
+    sample = "" if own else ", on the samples of the search"
+    caption = f"Best {what} so far: from {first} to {last}{unit}{sample}."
     label = unit.strip() or what
     alt = f"Convergence curve. {caption}"
     evaluations = context.outcome.evaluations

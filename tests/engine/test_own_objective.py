@@ -1,0 +1,148 @@
+"""A search by an objective of one's own: what is minimised, told and kept."""
+
+import json
+import math
+from dataclasses import replace
+
+import pytest
+
+import pe_core as pe
+import pe_tools as pt
+from pe_tools.cli.terminal import summary
+from pe_tools.jobs import checkpoint, write_outcome
+from pe_tools.jobs.own_objective import own_objective
+from pe_tools.page import ReportContext, page_bytes
+from tests.engine import shapes
+
+pytestmark = pytest.mark.usefixtures("few_errors", "no_key_figures")
+
+
+def cable_length(rig):
+    """Metres from the sensor to the boot, by hand."""
+    return sum(abs(s.pose.position[0] + 1.8) for s in rig)
+
+
+def cable_cost(rig):
+    """The same in a small currency: above all entropies."""
+    return 1e5 * cable_length(rig)
+
+
+class Bare:
+    """An objective as `pe.optimize` takes it: an object with a method `entropy`."""
+
+    def entropy(self, rig):
+        return -cable_length(rig)
+
+
+def study(**search):
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180), (-0.43, 0.0, 1.8))])
+    options = {"samples": 2048, "seed": 4, "method": "random", "evaluations": 40}
+    free = {"roof": ("x", "z")}
+    search = pe.Search(free=free, **{**options, **search})
+    return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search)
+
+
+def searched(objective, **search):
+    job = pt.OptimizeJob(study(**search), 1, objective=objective)
+    return list(job), job
+
+
+@pytest.mark.parametrize(
+    "objective", [cable_length, cable_cost, lambda rig: -rig.sensors[0].pose.position[0], Bare()]
+)
+def test_a_search_minimises_the_function_and_reports_it_beside_the_entropy(objective):
+    steps, job = searched(objective)
+    value = objective if callable(objective) else objective.entropy
+    own, found = job.outcome.own, job.outcome
+    assert (own.before, own.after) == (value(found.start.rig), value(found.study.rig))
+    assert own.after < own.before
+    told = [job.figure.to_figure(row.entropy) for row in found.history]
+    assert told == pytest.approx([value(row.rig) for row in found.history], rel=1e-9)
+    assert told == sorted(told, reverse=True) and len(told) > 1
+    assert found.after.entropy == found.study.evaluator().score(found.study.rig).entropy
+    assert found.robustness is None and found.sensitivity is None and found.seed_scatter is None
+    texts = [step.value_text for step in steps if step.stage == "optimizing"]
+    assert texts and all(text.startswith(job.figure.label) for text in texts)
+    assert not any("broken" in text or "voxels" in text or "entropy" in text for text in texts)
+
+
+def test_files_lines_and_page_call_it_by_its_name(tmp_path):
+    _, job = searched(cable_cost)
+    data = write_outcome(job.outcome, tmp_path)
+    assert data["objective"] == "cable_cost"
+    assert data["value"] == {"before": job.outcome.own.before, "after": job.outcome.own.after}
+    first = data["history"][0]
+    assert first["cable_cost"] == pytest.approx(137_000.0) and "entropy" not in first
+    assert "cable_cost" in (tmp_path / "history.csv").read_text().splitlines()[0]
+    lines = summary(job.outcome).splitlines()
+    assert lines[0].startswith("cable cost  137000.000 -> ")
+    page = page_bytes([ReportContext("own", job.outcome)]).decode()
+    assert "cable cost from 137" in page and "Best cable cost so far" in page
+    assert "Best entropy" not in page
+
+
+def test_limits_of_the_study_are_kept_and_larger_figures_are_no_violation():
+    goals = replace(study().search.goals, keep=["blind_ground"])
+    _, job = searched(cable_cost, goals=goals)
+    assert job.outcome.own.after < job.outcome.own.before
+    start, end = (study().sight().blind_area(r, 0.5) for r in (job.study.rig, job.best.rig))
+    assert end <= start
+    free = searched(cable_cost)[1].best.rig
+    assert cable_cost(free) <= job.outcome.own.after
+
+
+@pytest.mark.parametrize("figure", [-1e300, -7.5, 0.0, 49.9, 50.0, 50.1, 5e3, 1e9, 1e15])
+def test_a_figure_of_any_size_keeps_its_order_below_the_violations(figure):
+    own = own_objective(study(), cable_length).figure
+    value = own.to_value(figure)
+    assert value < 100.0 and own.to_figure(value) == pytest.approx(figure, rel=0.05)
+    assert figure > 1e9 or own.to_figure(value) == pytest.approx(figure, rel=1e-7)
+    assert value <= own.to_value(math.nextafter(figure, math.inf))
+
+
+def test_a_target_and_a_gain_are_of_the_function():
+    stop = pe.Stop(target=0.9e5)
+    goals = replace(study().search.goals, stop=stop)
+    _, job = searched(cable_cost, goals=goals, evaluations=400)
+    assert job.outcome.stop_reason == "target" and job.outcome.own.after <= 0.9e5
+    assert "target of 90000 by cable cost" in summary(job.outcome)
+
+
+@pytest.mark.parametrize(
+    ("objective", "search", "word"),
+    [
+        (7, {}, "int"),
+        (cable_length, {"objective": "expected_ap"}, "expected_ap"),
+        (cable_length, {"tolerance": pe.Tolerance(failures=True)}, "tolerance"),
+        (cable_length, {"conditions": "mean"}, "conditions"),
+    ],
+)
+def test_what_cannot_be_minimised_is_refused_before_the_search(objective, search, word):
+    with pytest.raises(pe.InputError, match=word):
+        pt.OptimizeJob(study(**search), objective=objective)
+
+
+def test_a_function_that_returns_no_number_or_has_a_name_of_the_files_is_refused():
+    def entropy(rig):
+        return 1.0
+
+    with pytest.raises(pe.InputError, match="entropy"):
+        pt.OptimizeJob(study(), objective=entropy)
+    for wrong in (None, math.nan, "low"):
+        with pytest.raises(pe.InputError, match="number"):
+            searched(lambda rig, wrong=wrong: wrong)
+
+
+def test_a_search_resumes_with_its_own_function_only(tmp_path):
+    _, job = searched(cable_length)
+    write_outcome(job.outcome, tmp_path)
+    assert list(json.loads((tmp_path / "search.json").read_text())["journals"]) == ["cable_length"]
+    again = pt.OptimizeJob(study(), 1, objective=cable_length)
+    assert checkpoint.resume(again, tmp_path) == len(job.journal.entries)
+    for _ in again:
+        pass
+    first, second = (each.outcome.study.rig["roof"].pose for each in (job, again))
+    assert first == second
+    for other in (None, cable_cost):
+        with pytest.raises(pe.InputError, match="cable_length"):
+            checkpoint.resume(pt.OptimizeJob(study(), 1, objective=other), tmp_path)

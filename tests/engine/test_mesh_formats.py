@@ -295,6 +295,9 @@ BAD = [
     ("scene", ("a.glb", changed("extensionsRequired", ["KHR_draco_mesh_compression"]))),
     ("scene", ("a.glb", changed("accessors", 0, "normalized", True))),
     ("scene", ("a.glb", changed("nodes", 0, "skin", 0))),
+    ("scene", ("a.glb", changed("nodes", 0, "children", [0]))),
+    ("scene", ("a.glb", changed("nodes", [{"mesh": 0, "children": [1]}, {"children": [0]}]))),
+    ("scene", ("a.glb", changed("nodes", 0, "children", [-1]))),
     ("scene", ("a.glb", glb_file(*gltf(mode=6)))),
 ]
 """Of each format what a reader could read as another shape, and what is no such file."""

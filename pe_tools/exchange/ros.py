@@ -168,7 +168,7 @@ def _transform(path: Path, field: str, args: str) -> tuple[str, str, Pose]:
     return ends[0], ends[1], values.pose_from(path, field, position, figures(RPY))
 
 
-def _until_end(words: Sequence[str]) -> Sequence[str]:
+def _until_end(words: Sequence[str]) -> list[str]:
     """Return the words of a call up to the shell's end of a command, or ROS's own arguments."""
     ends = (k for k, word in enumerate(words) if word in END_WORDS or word.endswith(";"))
     end = next(ends, len(words))

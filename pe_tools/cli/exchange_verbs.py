@@ -45,6 +45,8 @@ def add_rigs_verb(verbs: Any) -> None:
 def show_rigs(args: argparse.Namespace) -> Answer:
     """List known rigs, describe one, or write a study of one; print a study's rig as a line."""
     if args.of is not None:
+        if args.name is not None or args.output is not None:
+            args.usage_error("expected --of STUDY alone: its line is printed, no study is written")
         return rig_line(load_study(args.of).rig), DONE
     if args.name is None:
         if args.output is not None:

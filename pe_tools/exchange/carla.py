@@ -165,7 +165,7 @@ def _kind(type_name: str, name: str) -> str:
     if type_name in TRUTH_TYPES:
         return GROUND_TRUTH
     kind = KINDS.get(type_name) or type_name.removeprefix("other.")
-    return SPECTATOR if kind == CAMERA and name in SPECTATOR_NAMES else kind
+    return SPECTATOR if kind == CAMERA and name.lower() in SPECTATOR_NAMES else kind
 
 
 def _scan(row: Table) -> Scan:

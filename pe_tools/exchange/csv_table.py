@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pe_core.base.errors import InputError, shown
+from pe_core.base.errors import InputError, plural, shown
 from pe_core.base.files import csv_text, unmarked
 from pe_core.base.values import FINITE, Number, choice
 from pe_core.sensors.camera.kind import FOV_DEG
@@ -32,6 +32,8 @@ COLUMNS = ("name", "kind", "model", *POSITION_KEYS, *ROTATION_KEYS, "fusion", *L
 PARAMETERS = "parameters"
 """Column of a rig with sensors whose models have neither lens nor beams: tables as JSON."""
 COMMENTS = ("#", '"#')
+SURPLUS = ""
+"""Column of the cells behind the last one of the header."""
 DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+", re.ASCII)
 """A number of a spreadsheet in another language; with three decimals it could be one of thousands,
 so it is not read."""
@@ -84,7 +86,7 @@ def read(path: Path) -> PortableRig:
     numbered = [(n, line) for n, line in enumerate(text.splitlines(), 1) if not _is_empty(line)]
     values.require_at_most(path, "file", len(numbered), values.MAX_FRAMES, "rows")
     separator, lines = separated(numbered)
-    rows = csv.DictReader((line for _, line in lines), delimiter=separator)
+    rows = csv.DictReader((line for _, line in lines), restkey=SURPLUS, delimiter=separator)
     try:
         for key in ("name", *POSITION_KEYS, *ROTATION_KEYS):
             if key not in (rows.fieldnames or ()):
@@ -103,8 +105,11 @@ def _is_empty(line: str) -> bool:
 
 def _sensor(path: Path, place: str, row: Mapping[str, Any]) -> PortableSensor:
     """Return the sensor of a row, `place`; one of unknown kind has its cells as entry."""
-    # Cells that a row lacks or has too many are no texts.
-    cells = {k: unmarked(c) if isinstance(c, str) else c for k, c in row.items()}
+    if surplus := [cell for cell in row.get(SURPLUS, []) if cell.strip()]:
+        expected = "as many cells as the header has columns, and a decimal point"
+        raise InputError(path, place, expected, f"{plural(len(surplus), 'cell')} more")
+    # Cells that a row lacks are no texts.
+    cells = {k: unmarked(c) if isinstance(c, str) else c for k, c in row.items() if k != SURPLUS}
 
     def number(key: str, rule: Number = FINITE) -> float:
         cell = cells[key]

@@ -43,6 +43,9 @@ OPTICAL_NAME = re.compile("[_/]?optical(_frame|_link)?$")  # End of such names i
 OPTICAL_TILT = math.radians(45.0)
 """A camera has optical axes if its y axis is nearer than this to the vertical [rad].
 If it looks ahead, its roll is then 45 to 135 degrees."""
+UPSIDE_DOWN = math.radians(10.0)
+"""A camera in body axes that is upside down has a z axis that points down, as has an optical frame
+that looks down; its roll differs from 180 degrees by less than this [rad]."""
 ILLEGAL, ILLEGAL_IN_TF = (re.compile(f"[^A-Za-z0-9_{more}]+") for more in ("", "/"))
 AXES = (
     "x forward, y left, z up; metres, radians. NAME_optical looks along z, x right, y down (REP "
@@ -108,11 +111,19 @@ def seen_from(outer: Pose, inner: Pose) -> Pose:
     return pose_of(product(back, inner.ground_from_sensor), turned(back, (x, y, z)))
 
 
+def turn_between(a: Pose, b: Pose) -> float:
+    """Return the angle by which two poses are turned against each other [rad]."""
+    cosine = (float((a.ground_from_sensor * b.ground_from_sensor).sum()) - 1.0) / 2.0
+    return math.acos(min(1.0, max(-1.0, cosine)))
+
+
 def is_optical(name: str, pose: Pose) -> bool:
     """Whether a camera's frame has optical axes: its name says so, or y is the vertical axis, and
-    not z. `pose` is that on the vehicle."""
-    vertical = abs(float(pose.ground_from_sensor[2, 1]))
-    return bool(OPTICAL_NAME.search(name)) or vertical > math.cos(OPTICAL_TILT)
+    not z, or y and z both point down. `pose` is that on the vehicle."""
+    _, y_up, z_up = pose.ground_from_sensor[2].tolist()
+    is_vertical = abs(y_up) > math.cos(OPTICAL_TILT)
+    looks_down = z_up < 0.0 and y_up < -math.sin(UPSIDE_DOWN)
+    return bool(OPTICAL_NAME.search(name)) or is_vertical or looks_down
 
 
 def body_of_optical(pose: Pose) -> Pose:
@@ -120,7 +131,9 @@ def body_of_optical(pose: Pose) -> Pose:
     return pose_of(product(pose.ground_from_sensor, BODY_FROM_OPTICAL.T), pose.position)
 
 
-TURNED = "a frame of this name, or whose y axis is vertical, is optical: z is taken as forward"
+TURNED = (
+    "a frame of this name, or whose y axis points up or down, is optical: z is taken as forward"
+)
 TURNED_APART = "its optical frame looks elsewhere than its link, by {:.3g} deg; it is followed"
 NOT_TURNED = "its optical frame is turned as its own frame: x is taken as forward"
 APART = math.radians(1.0)  # Optical axes nearer than this to the x axis of the link are along it

@@ -97,7 +97,9 @@ def _last(calibrations: Sequence[PortableSensor]) -> PortableSensor:
     if all(same):
         return last
     apart = max(math.dist(each.pose.position, last.pose.position) for each in calibrations)
-    note = f"the file has {len(calibrations)} calibrations, up to {apart:.3f} m from the last"
+    turned = max(frames.turn_between(each.pose, last.pose) for each in calibrations)
+    note = f"the file has {len(calibrations)} calibrations, up to {apart:.3f} m and "
+    note += f"{math.degrees(turned):.2f} deg from the last"
     return replace(last, told="; ".join(filter(None, (f"{note}, which is used", last.told))))
 
 

@@ -166,7 +166,7 @@ def detect_format(path: Path) -> RigFormat:
         if names & set(row.files):
             return row
     ending = {".csv": "csv", ".urdf": "urdf", ".xacro": "urdf", ".sh": "ros", ".xml": "ros"}
-    ending |= {".sdf": "urdf", ".txt": "kitti"}
+    ending |= {".sdf": "urdf", ".txt": "kitti", ".launch": "ros"}
     if path.suffix.lower() in ending:
         return RIG_FORMATS[ending[path.suffix.lower()]]
     expected = f"a file name of a known format, or the name of a format: {', '.join(RIG_FORMATS)}"

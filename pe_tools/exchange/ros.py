@@ -41,6 +41,8 @@ NODE = re.compile(r"<node\b([^<]*)")
 ATTRIBUTE = re.compile(r"""(?<![\w.:-])([\w.:-]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 CALL = re.compile(rf"{PUBLISHER}[\"']?([^<\"'\n]*)")
 """Nodes of a launch file up to the next tag, their attributes, and calls in other files."""
+END_WORDS = frozenset(("&", "&&", "|", "||", ";", ">", ">>", "2>&1", "#", "--ros-args"))
+"""Words behind the arguments of a call."""
 POSITIONAL = ("x", "y", "z", "yaw", "pitch", "roll")
 POSITIONAL_QUATERNION = ("x", "y", "z", "qx", "qy", "qz", "qw")
 """Numbers before both frames in a call without options; ROS 1 has a period [ms] after these."""
@@ -148,6 +150,7 @@ def _transform(path: Path, field: str, args: str) -> tuple[str, str, Pose]:
         words = shlex.split(EQUALS.sub(r"\1 ", args))
     except ValueError as error:
         raise InputError(path, field, "arguments", error) from None
+    words = _until_end(words)
     options = _positional(words) or dict(zip(words[::2], words[1::2], strict=False))
     ends = [options.get(f"--{end}", "") for end in ENDS]
     if not all(ends):
@@ -163,6 +166,14 @@ def _transform(path: Path, field: str, args: str) -> tuple[str, str, Pose]:
         rotation = frames.from_quaternion(path, field, figures(QUATERNION))
         return ends[0], ends[1], frames.pose_of(rotation, position)
     return ends[0], ends[1], values.pose_from(path, field, position, figures(RPY))
+
+
+def _until_end(words: Sequence[str]) -> list[str]:
+    """Return the words of a call up to the shell's end of a command, or ROS's own arguments."""
+    ends = (k for k, word in enumerate(words) if word in END_WORDS or word.endswith(";"))
+    end = next(ends, len(words))
+    last = [word[:-1] for word in words[end : end + 1] if word.endswith(";") and word != ";"]
+    return [*words[:end], *last]
 
 
 def _positional(words: Sequence[str]) -> dict[str, str]:

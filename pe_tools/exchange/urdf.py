@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from pe_core.base.errors import InputError, shown
+from pe_core.base.errors import InputError, plural, shown
 from pe_core.base.files import decode_text, read_bytes
 from pe_core.geometry.poses import Pose
 from pe_tools.formats.xml_text import parse_xml
@@ -151,6 +151,10 @@ def _read(path: Path) -> tuple[PortableRig, list[str]]:
         sensors = [_sensor_of_link(link, poses) for link in links]
     if not sensors:
         raise InputError(path, "link", "links of sensors", "none")
+    if strays := [name for name in blocks if name not in poses]:
+        count = plural(sum(len(blocks[name]) for name in strays), "Gazebo element")
+        listed = ", ".join(map(shown, strays))
+        lines = [*lines, f"left out, {count} on links that the robot does not have: {listed}"]
     line = _origin_line(root, in_root, origin)
     noted = [replace(s, told="; ".join(filter(None, [s.told, line]))) for s in sensors]
     return tuple(noted), lines

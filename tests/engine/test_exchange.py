@@ -101,6 +101,7 @@ def test_carla_s_ground_truth_and_spectator_are_no_sensors(tmp_path):
         *(spawned(f"camera.{kind}", kind, **picture) for kind in truths),
         spawned("lidar.ray_cast_semantic", "semantic", **beams),
         spawned("camera.rgb", "rgb_view", **picture),
+        spawned("camera.rgb", "Spectator", **picture),
         spawned("camera.dvs", "events", **picture),
     ]
     objects = [{"type": "vehicle.a.b", "id": "ego_vehicle", "sensors": rows}]
@@ -109,7 +110,10 @@ def test_carla_s_ground_truth_and_spectator_are_no_sensors(tmp_path):
     assert [(s.name, s.kind) for s in found.rig] == [("front", "camera"), ("top", "lidar")]
     (line,) = (line for line in found.lines if line.startswith("left out"))
     assert f"6 ground truth sensors ({', '.join(truths)}, semantic)" in line
-    assert "1 spectator sensor (rgb_view)" in line and "1 camera.dvs sensor (events)" in line
+    assert (
+        "2 spectator sensors (rgb_view, Spectator)" in line
+        and "1 camera.dvs sensor (events)" in line
+    )
     back, _ = rig_files(found.rig, "carla", passthrough=found.passthrough)
     again = json.loads(back["objects.json"])["objects"][0]["sensors"]
     assert [row["type"] for row in again] == [row["type"] for row in rows]
@@ -263,6 +267,7 @@ BAD = [
     ("model", ("rig.sdf", "<sdf/>")),
     ("y_m", ("rig.csv", "name,x_m\na,1\n")),
     ("row 1, z_m", ("rig.csv", "name,x_m,y_m,z_m,roll_deg,pitch_deg,yaw_deg\na,1,2,x,0,0,0\n")),
+    ("row 1", ("rig.csv", "name,x_m,y_m,z_m,roll_deg,pitch_deg,yaw_deg\na,1,8,2,0,5,0,0,0\n")),
     ("row 1, z_m", ("rig.csv", "name;x_m;y_m;z_m;roll_deg;pitch_deg;yaw_deg\na;1;2;1,8;0;0;0\n")),
     ("objects", ("objects.json", '{"objects": []}')),
     ("file", ("objects.json", '{"objects": [')),
@@ -494,6 +499,19 @@ def test_several_calibrations_of_a_channel_are_told(tmp_path):
         assert camera.pose.position == pytest.approx((shift - 1.4, 0.0, 1.5))
         lines = [line for line in found.lines if "2 calibrations" in line]
         assert len(lines) == told and all("0.900 m" in line for line in lines)
+
+
+def test_a_calibration_that_is_turned_alone_says_by_which_angle(tmp_path):
+    nuimages(tmp_path, [])
+    path = tmp_path / "calibrated_sensor.json"
+    (row,) = json.loads(path.read_text())
+    half = math.radians(30.0) / 2.0
+    turned = row | {"rotation": [math.cos(half), 0.0, 0.0, math.sin(half)]}
+    straight = row | {"rotation": [1.0, 0.0, 0.0, 0.0]}
+    path.write_text(json.dumps([turned, straight]))
+    found = pt.import_rig(tmp_path, reference=pe.Reference(-1.4, 0.3))
+    (line,) = [line for line in found.lines if "2 calibrations" in line]
+    assert "0.000 m and 30.00 deg" in line
 
 
 def test_of_six_numbers_of_nuimages_the_last_is_left_out_and_a_seventh_is_too_many(tmp_path):

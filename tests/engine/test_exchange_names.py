@@ -148,8 +148,11 @@ OPTICAL = {
     "low/camera_link": (0.0, 0.1, 0.0, -HALF - 0.4, 0.0, -HALF),
     "side/camera_link": (0.0, 0.5, 0.0, 0.0, 0.3, HALF),
     "down_camera_optical_link": (0.5, 0.0, 0.0, math.pi, 0.0, -HALF),
+    "steep/camera_link": (0.5, 0.5, 0.0, -HALF - 1.1, 0.0, -HALF),
+    "turned/camera_link": (0.5, 1.0, 0.0, math.pi - 0.1, 0.3, 0.0),
 }
-"""By roll, by roll, nose down by 0.4, in body axes, by name: z points down, y to the rear."""
+"""By roll, by roll, nose down by 0.4, in body axes, by name: z points down, y to the rear; nose
+down by 1.1; in body axes upside down."""
 
 
 def test_an_optical_frame_of_a_kit_looks_along_z(tmp_path):
@@ -162,11 +165,13 @@ def test_an_optical_frame_of_a_kit_looks_along_z(tmp_path):
         "low": [[math.cos(0.4), 0, -math.sin(0.4)], [math.sin(0.4), 0, math.cos(0.4)]],
         "side": [[0, math.cos(0.3), -math.sin(0.3)], [0, math.sin(0.3), math.cos(0.3)]],
         "down_camera_optical_link": [[0, 0, -1], [1, 0, 0]],
+        "steep": [[math.cos(1.1), 0, -math.sin(1.1)], [math.sin(1.1), 0, math.cos(1.1)]],
+        "turned": pe.Pose((0, 0, 0), (math.pi - 0.1, 0.3, 0.0)).ground_from_sensor[:, (0, 2)].T,
     }
     for name, rows in expected.items():
         assert np.abs(np.array(axes[name]) - rows).max() < 1e-5, name
     (line,) = [line for line in found.lines if "optical" in line and "taken" in line]
-    assert line.startswith("FRONT, BACK, low, down_camera_optical_link: ")
+    assert line.startswith("FRONT, BACK, low, down_camera_optical_link, steep: ")
 
 
 def test_an_optical_frame_of_a_kit_is_written_as_one(tmp_path):
@@ -328,6 +333,10 @@ FORMS = {
     "</launch>",
     "b.launch.xml": '<launch><node args="{0}" name=\'it\' pkg="tf" type="{1}"/></launch>',
     "c.sh": "#!/bin/sh\nros2 run tf2_ros {1} {0}\n",
+    "d.sh": "ros2 run tf2_ros {1} {0} &\n",
+    "e.sh": "ros2 run tf2_ros {1} {0}; sleep 1\n",
+    "f.sh": "ros2 run tf2_ros {1} {0} --ros-args -r __node:=it > log &\n",
+    "g.launch": '<launch><node args="{0}" name="it" pkg="tf" type="{1}"/></launch>',
 }
 
 
@@ -335,7 +344,7 @@ FORMS = {
 @pytest.mark.parametrize("name", FORMS)
 def test_a_transform_is_read_in_each_form(args, name, tmp_path):
     (tmp_path / name).write_text(FORMS[name].format(args, CALL))
-    (lidar,) = pt.import_rig(tmp_path / name, "ros").rig
+    (lidar,) = pt.import_rig(tmp_path / name).rig
     assert lidar.name == "lidar" and lidar.pose.position == (-0.5, 0.7, 1.5)
     assert lidar.pose.rpy == pytest.approx(POSITIONAL[args], abs=1e-12)
 

@@ -143,6 +143,14 @@ def test_links_beside_gazebo_s_sensors_are_told(tmp_path):
     assert line in read(tmp_path, robot(LINKS, block, imu)).lines, "not all on the base are read"
 
 
+def test_gazebo_s_sensors_on_links_that_are_not_there_are_told(tmp_path):
+    blocks = "".join(f'<gazebo reference="{link}">{FRONT}</gazebo>' for link in ("mast", "gone"))
+    found = read(tmp_path, robot([MAST], blocks))
+    assert [sensor.name for sensor in found.rig] == ["mast"]
+    (line,) = [line for line in found.lines if "gone" in line]
+    assert line.startswith("left out, 1 ")
+
+
 def test_links_stand_in_the_robot_itself(tmp_path):
     plugin = '<gazebo><plugin name="p" filename="x.so"><plot><link>lidar</link></plot></plugin>'
     rows = [("base_link", "lidar", "0 0 1.8", "fixed")]

@@ -1,5 +1,6 @@
 """Formats that other packages read: found by entry points, turned as all are; told when missing."""
 
+import re
 import sys
 from importlib.metadata import EntryPoint
 
@@ -184,3 +185,15 @@ def test_collada_s_indices_are_within_its_vertices(monkeypatch, tmp_path, name, 
     wrong = wrong.replace("<vcount>4<", "<vcount>3<")
     with pytest.raises(pe.InputError, match=r"car\.dae"):
         read_dae(monkeypatch, tmp_path, dae(points, wrong))
+
+
+@pytest.mark.parametrize(
+    ("element", "text"), [("vcount", "4 x"), ("vcount", "x 4"), ("p", "0 1 2 3.5")]
+)
+def test_collada_s_numbers_are_numbers_to_their_end(monkeypatch, tmp_path, element, text):
+    """What NumPy reads up to the first letter would be a part of the shape."""
+    whole = dae(*AREAS["a dart"][:2])
+    wrong = re.sub(f"<{element}>[^<]*<", f"<{element}>{text}<", whole)
+    assert wrong != whole
+    with pytest.raises(pe.InputError, match=r"car\.dae"):
+        read_dae(monkeypatch, tmp_path, wrong)

@@ -256,6 +256,12 @@ def test_indices_of_an_obj_may_count_backwards(tmp_path: Path) -> None:
     assert meshes[0].triangles.tolist() == meshes[1].triangles.tolist()
 
 
+def ply_text_face(*rows):
+    """A text file with rows of faces as they are given."""
+    head = ply_ascii(POINTS, []).decode().replace("element face 0", f"element face {len(rows)}")
+    return "\n".join([head, *rows]).encode()
+
+
 BAD = [
     ("suffix", ("a.fbx", b"")),
     ("file", ("a.npz", cut(npz_bytes(triangles=BOX)))),
@@ -273,6 +279,10 @@ BAD = [
     ("file", ("a.obj", f"v 1 2\n{CORNERS}{FACE}".encode())),
     ("file", ("a.ply", ply_ascii() + b" one")),
     ("file", ("a.ply", cut(ply_binary(">")))),
+    ("file", ("a.ply", ply_text_face("-4 0 1 2 3"))),
+    ("file", ("a.ply", ply_text_face("nan 0 1 2 3"))),
+    ("file", ("a.ply", ply_text_face("2.5 0 1 2 3"))),
+    ("file", ("a.ply", ply_text_face("4 0 1 2 3", "-1"))),
     ("format", ("a.ply", ply_ascii().replace(b"ascii", b"text"))),
     ("header", ("a.ply", ply_ascii().replace(b"uchar int", b"uchar word"))),
     ("header", ("a.ply", b"ply\nformat ascii 1.0\n")),
@@ -285,6 +295,9 @@ BAD = [
     ("scene", ("a.glb", changed("extensionsRequired", ["KHR_draco_mesh_compression"]))),
     ("scene", ("a.glb", changed("accessors", 0, "normalized", True))),
     ("scene", ("a.glb", changed("nodes", 0, "skin", 0))),
+    ("scene", ("a.glb", changed("nodes", 0, "children", [0]))),
+    ("scene", ("a.glb", changed("nodes", [{"mesh": 0, "children": [1]}, {"children": [0]}]))),
+    ("scene", ("a.glb", changed("nodes", 0, "children", [-1]))),
     ("scene", ("a.glb", glb_file(*gltf(mode=6)))),
 ]
 """Of each format what a reader could read as another shape, and what is no such file."""

@@ -98,6 +98,12 @@ def test_an_index_of_no_prototype_is_one_line(tmp_path):
         pt.read_mesh(layer(tmp_path, "main", wrong))
 
 
+def test_a_solid_along_no_axis_is_refused(tmp_path):
+    wrong = 'def Cone "m" {\nuniform token axis = "Q"\n}\n'
+    with pytest.raises(pe.InputError, match="/m, axis"):
+        pt.read_mesh(layer(tmp_path, "main", wrong))
+
+
 SOLIDS = [
     ("Cube", "double size = 2", 24.0),
     ("Sphere", "double radius = 1", 4 * np.pi),

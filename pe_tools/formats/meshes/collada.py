@@ -1,6 +1,7 @@
 """Collada (.dae), read by pycollada."""
 
 import io
+import warnings
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -40,7 +41,9 @@ def read_dae(path: Path, data: bytes) -> FoundMesh:
     root = parse_xml(source, data)
     skipped = _pruned(root)
     try:
-        document = collada.Collada(io.BytesIO(ElementTree.tostring(root)))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", DeprecationWarning)  # NumPy's, of text that is no number
+            document = collada.Collada(io.BytesIO(ElementTree.tostring(root)))
         nodes = [] if document.scene is None else document.scene.nodes
         pieces = []
         crossing = 0

@@ -70,9 +70,23 @@ class _PlyBody:
     def length(self, type_name: str, start: int) -> int:
         """The length of a list that begins at an item."""
         if not self.order:
-            return int(self.values[start : start + 1].sum())
+            return self._checked(float(self.values[start])) if start < len(self.values) else 0
         raw = self.values[start : start + self.size(type_name)].tobytes()
         return int.from_bytes(raw, "little" if self.order == "<" else "big")
+
+    def lengths(self, type_name: str, starts: NDArray[np.int64]) -> NDArray[np.int64]:
+        """The lengths of lists that begin at some items."""
+        lengths = self.take(type_name, starts)
+        for length in np.unique(lengths).tolist():
+            self._checked(length)
+        return lengths.astype(np.int64)
+
+    def _checked(self, length: float) -> int:
+        """The length of a list: a whole number of items that the file may have."""
+        if not 0 <= length <= len(self.values) or length != int(length):
+            expected = "lists of whole lengths that end in the file"
+            raise InputError(self.source, "file", expected, f"a length of {length:g}")
+        return int(length)
 
 
 def read_ply(path: Path, data: bytes) -> Mesh:
@@ -169,9 +183,10 @@ def _starts(body: _PlyBody, element: _Element, at: int) -> tuple[NDArray[np.int6
     return even, at
 
 
-def _lengths(body: _PlyBody, of: _Property, starts: NDArray[np.int64]) -> NDArray[np.int64]:
+def _lengths(body: _PlyBody, of: _Property, starts: NDArray[np.int64]) -> NDArray[Any]:
+    """The lengths of lists that would begin at some items, where it is not sure that they do."""
     whole = starts + body.size(of.length_type) <= len(body.values)
-    return body.take(of.length_type, starts[whole]).astype(np.int64)
+    return body.take(of.length_type, starts[whole])
 
 
 def _row(body: _PlyBody, element: _Element, at: int) -> tuple[list[int], int]:
@@ -207,7 +222,7 @@ def _polygons(
     if name is None or not columns[name][0].length_type:
         return np.zeros(0, np.int64), np.zeros(0, np.int64)
     of, starts = columns[name]
-    counts = body.take(of.length_type, starts).astype(np.int64)
+    counts = body.lengths(of.length_type, starts)
     within = np.arange(int(counts.sum())) - np.repeat(np.cumsum(counts) - counts, counts)
     firsts = np.repeat(starts + body.size(of.length_type), counts)
     corners = body.take(of.type, firsts + within * body.size(of.type))

@@ -10,11 +10,11 @@ import numpy as np
 from pxr import Gf, Tf, Usd, UsdGeom, UsdUtils
 
 from pe_core.base.arrays import Floats
-from pe_core.base.errors import InputError
+from pe_core.base.errors import InputError, require_name
 
 from .mesh import FoundMesh, Piece, found, mesh_notes, placed, require_room
 from .polygons import Corners, triangulate
-from .usd_solids import SOLIDS
+from .usd_solids import SOLIDS, TO_AXIS
 
 HIDDEN_PURPOSES = ("guide", "proxy")
 TIME = Usd.TimeCode.EarliestTime()
@@ -102,6 +102,9 @@ class _StageReading:
         if prim.IsA(UsdGeom.Mesh):
             return self._mesh(prim, UsdGeom.Mesh(prim))
         if kind in SOLIDS:
+            axis = prim.GetAttribute("axis").Get(TIME)
+            if axis is not None:
+                require_name(self.source, f"{prim.GetPath()}, axis", axis, TO_AXIS)
             solid: Callable[[Callable[[str], Any]], Floats] = SOLIDS[kind]
             return solid(lambda name: prim.GetAttribute(name).Get(TIME))
         if prim.IsA(UsdGeom.Gprim):

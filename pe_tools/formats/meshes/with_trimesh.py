@@ -123,7 +123,6 @@ def _glb(source: str, data: bytes) -> tuple[bytes, dict[str, Any]]:
     try:
         root = parse_json(source, data[20 : 20 + size])
         nodes, meshes, accessors = (root.get(k, []) for k in ("nodes", "meshes", "accessors"))
-        children = [child for node in nodes for child in node.get("children", [])]
         primitives = [each for mesh in meshes for each in mesh["primitives"]]
         held = [node for node in nodes if "mesh" in node]
         surfaces = sum(
@@ -132,7 +131,7 @@ def _glb(source: str, data: bytes) -> tuple[bytes, dict[str, Any]]:
         checks = {
             f"at most {MAX_NODES:,} nodes": len(nodes) <= MAX_NODES,
             f"at most {MAX_PLACED:,} surfaces": max(surfaces, len(primitives)) <= MAX_PLACED,
-            "one parent to a node": len(set(children)) == len(children),
+            "one parent to a node, and no circle": _are_trees(nodes),
             "meshes without skins": not any("skin" in node for node in nodes),
             "meshes in their basic shape": not any(
                 any(e.get("weights", ())) for e in [*nodes, *meshes]
@@ -156,6 +155,19 @@ def _glb(source: str, data: bytes) -> tuple[bytes, dict[str, Any]]:
         if not holds:
             raise InputError(source, "scene", expected, "another")
     return with_instances_as_nodes(source, data, root), {}
+
+
+def _are_trees(nodes: list[dict[str, Any]]) -> bool:
+    """Whether each node of a glTF has one parent at most, and is below a node without one."""
+    children = [node.get("children", []) for node in nodes]
+    inner = {child for row in children for child in row}
+    if len(inner) < sum(map(len, children)) or not inner <= set(range(len(nodes))):
+        return False
+    level = [number for number in range(len(nodes)) if number not in inner]
+    reached = len(level)
+    while level := [child for number in level for child in children[number]]:
+        reached += len(level)
+    return reached == len(nodes)
 
 
 _PREPARED: dict[str, Callable[[str, bytes], tuple[bytes, dict[str, Any]]]] = {

@@ -1,5 +1,6 @@
 """How processes are started anywhere, inside Blender too, and how they end with their parent."""
 
+import _thread
 import multiprocessing
 import multiprocessing.connection
 import os
@@ -7,7 +8,6 @@ import signal
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
-from functools import cache
 from importlib import import_module
 from multiprocessing import resource_tracker
 from types import ModuleType
@@ -25,6 +25,8 @@ they are gone."""
 SAFE_PATH = "PYTHONSAFEPATH"
 """Variable that keeps the folder of the script, or the current one, out of `sys.path`; as ``-P``.
 (Inside Blender, Python runs isolated and has its processes run so, too.)"""
+_environment_lock = _thread.RLock()
+"""Held while `SAFE_PATH` is set. Blender's own process, too, has it: `lazy_threads` is not for that."""
 BEGINNING = """
 import sys, types
 for name, folder in {packages!r}:
@@ -103,7 +105,7 @@ def _safe_path() -> Iterator[None]:
     Python starts them, and the one that tracks semaphores, with ``-c``: without `SAFE_PATH` a file
     ``pickle.py`` of the current folder would be run in place of Python's own module. One thread at
     a time: another one's end must not take the variable away."""
-    with _environment_lock():
+    with _environment_lock:
         before = os.environ.get(SAFE_PATH)
         os.environ[SAFE_PATH] = "1"
         try:
@@ -113,11 +115,6 @@ def _safe_path() -> Iterator[None]:
                 del os.environ[SAFE_PATH]
             else:
                 os.environ[SAFE_PATH] = before
-
-
-@cache
-def _environment_lock() -> Any:
-    return threads().RLock()
 
 
 @contextmanager

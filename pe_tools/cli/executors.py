@@ -9,10 +9,10 @@ import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
 from contextlib import closing, contextmanager, suppress
-from threading import Thread
 from typing import Any
 
 from pe_core.base.errors import InputError, shown
+from pe_core.base.lazy_threads import threads
 from pe_core.base.plugins import required_package
 from pe_core.search import no_processes
 from pe_core.search.payload import plugin_name
@@ -178,7 +178,7 @@ def _within(limit_s: float, call: Callable[[], Any]) -> Any:
         except BaseException as error:
             answer.set_exception(error)
 
-    Thread(target=run, daemon=True).start()  # nobody waits for it at the end
+    threads().Thread(target=run, daemon=True).start()  # nobody waits for it at the end
     try:
         return answer.result(limit_s)
     except TimeoutError as error:

@@ -33,12 +33,12 @@ AUGMENTED = 0.05
 """Weight of the sum beside the maximum: it drops placements that are only weakly efficient."""
 TIE = 1e-3  # Weight of the other objectives while the best value of one is looked for
 FrontValues = Mapping[str, float]
-OwnObjectives = Mapping[str, Callable[[Rig], float]]  # Functions from Python, by name
+FunctionsByName = Mapping[str, Callable[[Rig], float]]  # Functions from Python, by name
 
 
 def objectives_of(
     given: Sequence[str | Callable[[Rig], float]],
-) -> tuple[tuple[str, ...], OwnObjectives]:
+) -> tuple[tuple[str, ...], FunctionsByName]:
     """Return the names of objectives, and those that are functions. `InputError` unless they are
     two or more, each once, functions by a name of their own, and one depends on the placement."""
     names = [getattr(e, "__name__", type(e).__name__) if callable(e) else str(e) for e in given]
@@ -85,7 +85,7 @@ class FrontFigures:
         names: Sequence[str],
         evaluator: RigEvaluator,
         in_traffic: RigEvaluator | None = None,
-        own: OwnObjectives | None = None,
+        own: FunctionsByName | None = None,
     ) -> None:
         self._given = study, tuple(names), evaluator, in_traffic, own
         self._in_traffic = in_traffic

@@ -26,7 +26,7 @@ SAFE_PATH = "PYTHONSAFEPATH"
 """Variable that keeps the folder of the script, or the current one, out of `sys.path`; as ``-P``.
 (Inside Blender, Python runs isolated and has its processes run so, too.)"""
 _environment_lock = _thread.RLock()
-"""Held while `SAFE_PATH` is set; of `_thread`, as Blender's own process never has `lazy_threads`."""
+"""Held while `SAFE_PATH` is set. Of `_thread`: Blender's own process has no `lazy_threads`."""
 BEGINNING = """
 import sys, types
 for name, folder in {packages!r}:

@@ -22,9 +22,10 @@ from ..base.setting import (
     read_settings,
     settings_of,
     settings_table,
+    value_in_file,
 )
 from ..base.table_reader import Table, dumps, inline, load_toml
-from ..base.values import A_NAME, A_PATH, ANY
+from ..base.values import A_NAME, A_PATH, ANY, Angle
 from ..geometry.grids import PerceptionSpace
 from ..geometry.poses import Pose
 from ..metric.entropy import ApCurve
@@ -461,8 +462,11 @@ def settings_of_part(part: str) -> tuple[Setting, ...]:
 def panel_default(setting: Setting) -> Any:
     """Return the value that a setting has in a new scene, as the panel shows it."""
     assert setting.panel is not None
-    default = setting.default if setting.panel.default is None else setting.panel.default
-    if default is REQUIRED:
+    default = setting.panel.default
+    if default is None and setting.default is not REQUIRED:
+        is_angle = isinstance(setting.rule, Angle)  # in degrees, as in a file
+        default = value_in_file(setting, setting.default) if is_angle else setting.default
+    if default is None and setting.default is REQUIRED:
         return None
     return default if default is not None else setting.panel.none
 

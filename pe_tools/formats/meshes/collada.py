@@ -1,7 +1,6 @@
 """Collada (.dae), read by pycollada."""
 
 import io
-import warnings
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -17,6 +16,7 @@ from pe_core.base.errors import InputError
 from ..xml_text import parse_xml
 from .mesh import FoundMesh, Piece, found, mesh_notes, placed, require_room
 from .polygons import Corners, joined_ring, triangle_count, triangulate
+from .whole_numbers import refusing_unread_text
 
 UP = {"X_UP": "+x", "Y_UP": "+y", "Z_UP": "+z"}
 PACKED = b"PK\3\4"
@@ -41,8 +41,7 @@ def read_dae(path: Path, data: bytes) -> FoundMesh:
     root = parse_xml(source, data)
     skipped = _pruned(root)
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", DeprecationWarning)  # NumPy's, of text that is no number
+        with refusing_unread_text():
             document = collada.Collada(io.BytesIO(ElementTree.tostring(root)))
         nodes = [] if document.scene is None else document.scene.nodes
         pieces = []

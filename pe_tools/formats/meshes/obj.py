@@ -1,7 +1,6 @@
 """Wavefront OBJ: faces of any polygons, with the names of objects or groups."""
 
 import re
-import warnings
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ from pe_core.scene.mesh import Mesh
 
 from .mesh import make_mesh, mesh_notes, require_room
 from .polygons import triangle_count, triangulate
+from .whole_numbers import refusing_unread_text
 
 TEXT_UNFOLDS = 20  # Memory of a byte of text while it is read, at most (measured)
 VERTEX, FACE = b"v ", b"f "
@@ -99,8 +99,7 @@ def _numbers(
     if not counts.any():
         return np.zeros(0, dtype), counts
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", DeprecationWarning)  # NumPy's, of text that is no number
+        with refusing_unread_text():
             numbers = np.fromstring(text, dtype, sep=" ")
     except (DeprecationWarning, ValueError):
         numbers = np.zeros(0, dtype)

@@ -1,6 +1,5 @@
 """Stanford PLY: text and binary, with faces of any polygons."""
 
-import warnings
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ from pe_core.scene.mesh import Mesh
 
 from .mesh import make_mesh, mesh_notes, require_room
 from .polygons import triangle_count, triangulate
+from .whole_numbers import refusing_unread_text
 
 UNFOLDS = 16  # Memory of a byte of a file while it is read, at most (measured)
 MAX_HEADER_BYTES = 1 << 20
@@ -153,8 +153,7 @@ def _values(source: str, data: bytes, order: str) -> NDArray[Any]:
     if order:
         return np.frombuffer(data, np.uint8)
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", DeprecationWarning)  # NumPy's, of text that is no number
+        with refusing_unread_text():
             return np.fromstring(data, sep=" ") if data.strip() else np.zeros(0)
     except (DeprecationWarning, ValueError) as error:
         raise InputError(source, "file", "numbers behind the header", str(error)) from error

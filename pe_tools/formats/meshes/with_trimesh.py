@@ -2,7 +2,6 @@
 
 import io
 import re
-import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -17,6 +16,7 @@ from pe_core.scene.mesh import Mesh
 
 from .gltf_instances import INSTANCING, instance_count, with_instances_as_nodes
 from .mesh import Piece, fit_names, joined, make_mesh, mesh_notes, placed, require_room
+from .whole_numbers import refusing_unread_text
 
 UNFOLDS = 20  # Memory of a byte of a file while it is read, at most (measured)
 MAX_NODES, MAX_PLACED, MAX_JSON_BYTES = 200_000, 20_000, 32 << 20
@@ -47,8 +47,7 @@ def read_scene(path: Path, data: bytes) -> Mesh:
     if kind in _PREPARED:
         data, options = _PREPARED[kind](source, data)
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", DeprecationWarning)  # NumPy's, of text that is no number
+        with refusing_unread_text():
             scene = trimesh.load_scene(
                 io.BytesIO(data), file_type=kind, process=False, skip_materials=True, **options
             )

@@ -64,8 +64,6 @@ def store_search(scene: Scene, outcome: jobs.Outcome, surroundings: str) -> int:
     before = find_or_add_variant(scene, "Before optimize", start).key
     name = f"Optimized, seed {outcome.start.search.seed}"
     after = find_or_add_variant(scene, name, result).key
-    for number, other in enumerate(jobs.runners_up(outcome).values(), 1):
-        find_or_add_variant(scene, f"Runner-up {number}", _moved(records, other.rig))
     store_variant_scores(scene, outcome, surroundings)
     mark_active(scene, before)
     return after

@@ -25,7 +25,6 @@ from pe_core.study.file_names import (
     HISTORY,
     MESH,
     RESULT,
-    RUNNERS_UP,
     SCHEMA,
     SEARCH,
     STUDY,
@@ -47,7 +46,7 @@ def result_names(study: Study, kind: str) -> list[str]:
     given = [*[BOXES] * (prior.boxes is not None), *[GRID] * (prior.grid is not None)]
     areas = bool(areas_of(study.search.mounting))
     with_study = [STUDY, *[MESH] * vehicle, *[AREAS] * areas, *given]
-    of_search = [HISTORY, SEARCH, *RUNNERS_UP] * (kind == "optimize")
+    of_search = [HISTORY, SEARCH] * (kind == "optimize")
     return [*with_study, *of_search, RESULT]
 
 
@@ -93,8 +92,8 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
         data["change_stderr"] = outcome.change_errors
     data["ap_model"], data["returns"] = study.model.model, study.returns
     if is_search:
-        found = outcome.sensitivity
-        data["sensitivity"] = None if found is None else found.to_dict()
+        flat = outcome.flatness
+        data["flatness"] = None if flat is None else flat.to_dict()
         data["starts"] = [
             {"name": e.name, figure.key: figure.to_figure(e.entropy), "evaluations": e.evaluations}
             for e in outcome.starts
@@ -162,8 +161,6 @@ def write_outcome(
     if outcome.kind == "optimize":
         text = history_csv(outcome.history, outcome.figure)
         writers[HISTORY] = text.encode(errors="backslashreplace")
-        for name, each in runners_up(outcome).items():
-            writers[name] = study_text(each).encode()
         writers[SEARCH] = SearchState(outcome.start, outcome.inputs).to_bytes(
             {outcome.journal_name: outcome.evaluated}
         )
@@ -215,14 +212,6 @@ def history_csv(history: tuple[HistoryRow, ...], figure: SearchedFigure = IN_NAT
         best = figure.to_figure(row.entropy)
         rows.append([row.evaluation, row.round, best, *(v for p in poses for v in p)])
     return csv_text(rows)
-
-
-def runners_up(outcome: Outcome) -> dict[str, Study]:
-    """Return the studies of other optima that a search found, by the name of their file."""
-    found = outcome.sensitivity
-    ends = None if found is None else found.endings
-    rigs = [] if ends is None else [each.rig for each in ends.runners_up]
-    return {n: outcome.start.with_rig(rig) for n, rig in zip(RUNNERS_UP, rigs, strict=False)}
 
 
 def condition_lines(table: ConditionTable) -> list[str]:

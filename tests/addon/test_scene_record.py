@@ -146,7 +146,7 @@ def rich(car):
     settings.max_mass, settings.max_power, settings.max_data_rate = 90.0, 900.0, 9000.0
     own.may_be_left_out = True
     own.stays = True
-    settings.sensitivity, settings.front_objectives = "full", {"entropy", "height"}
+    settings.front_objectives = {"entropy", "height"}
     settings.start_poses = '[["other", {"eye": [2.1, 0.0, 1.1, 0.0, 0.0, 0.0]}]]'
     bpy.ops.pe.add_state()
     bpy.ops.pe.add_weather(weather="FOG")

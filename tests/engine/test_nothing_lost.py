@@ -60,7 +60,7 @@ def test_the_second_signal_ends_the_analysis(study, out):
         command.send(signal.SIGTERM)
         assert command.end() == SIGNALS[signal.SIGINT]
     data = result(out)
-    assert data["stopped"] and "robustness" not in data and data["sensitivity"] is None
+    assert data["stopped"] and "robustness" not in data and data["flatness"] is None
 
 
 def test_the_third_signal_ends_at_once_with_the_best_kept(study, out):

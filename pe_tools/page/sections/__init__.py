@@ -15,10 +15,10 @@ from .comparison import bill_of_materials, comparison
 from .score import (
     by_class_and_zone,
     conditions,
+    flatness,
     objects,
     overview,
     search_history,
-    sensitivity,
     sensor_loss,
     warnings_and_text,
 )
@@ -71,7 +71,7 @@ SECTIONS = (
     Section("sensors", "Sensors", sensor_details),
     Section("sensor-loss", "Loss of one sensor", sensor_loss),
     Section("search", "Search", search_history),
-    Section("sensitivity", "How sure the search is", sensitivity),
+    Section("flatness", "How flat the optimum is", flatness),
     Section("advice", "Warnings", warnings_and_text),
     Section("again", "Reproduction", reproduction, scripts=copy_script),
     Section("basis", "Assumptions", assumptions, True),

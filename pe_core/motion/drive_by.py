@@ -16,11 +16,12 @@ from ..base.values import rounded
 from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..sensors import PerceptionModel
-from .story import Story, outline
+from .story import CHANCE, RATE_HZ, Story, outline
 from .story_sight import SensorPair, StorySight
 from .tracks import KEPT, Confirmation, first_frame, longest_run
 
-CHANCES = (0.9, 0.99)
+CHANCES = (CHANCE, 0.99)
+"""Probabilities of a confirmed track whose moments are told."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,7 +173,7 @@ def drive_by(
 def _moments(story: Story, confirmed: Floats, away: Floats) -> dict[float, Moment | None]:
     """Return when a track is confirmed by each probability; `away` (K,) is its distance [m]."""
     moments: dict[float, Moment | None] = {}
-    for chance in sorted({*CHANCES, story.chance}):
+    for chance in CHANCES:
         k = first_frame(confirmed, chance)
         at = None if k is None else Moment(float(story.times[k]), rounded(float(away[k])))
         moments[chance] = at
@@ -181,11 +182,11 @@ def _moments(story: Story, confirmed: Floats, away: Floats) -> dict[float, Momen
 
 def _margin_and_loss(story: Story, confirmed: Floats, kept: Floats) -> tuple[float | None, float]:
     """Return a track's margin (None: never confirmed), and for how long it is lost [s]."""
-    first = first_frame(confirmed, story.chance)
+    first = first_frame(confirmed, CHANCE)
     if first is None:
         return None, 0.0
     margin_s = story.brake_s - story.before_s - float(story.times[first])
-    return rounded(margin_s), rounded(longest_run(kept[first:] < KEPT) / story.rate_hz)
+    return rounded(margin_s), rounded(longest_run(kept[first:] < KEPT) / RATE_HZ)
 
 
 def _widest(seams: Mapping[SensorPair, float]) -> tuple[float | None, tuple[str, ...]]:

@@ -15,7 +15,7 @@ from ..sensors import ObjectMeasurementCache, PerceptionModel
 from .clock import FrameClock, frame_rate, streams
 from .scan import exposed, factor_of, seam
 from .scenes import StoryScenes, story_scenes
-from .story import Story
+from .story import RATE_HZ, Story
 from .tracks import Confirmation
 
 SensorPair = tuple[str, str]
@@ -53,8 +53,8 @@ class StorySight:
         self.positions = where[watched]
         self._speeds = story.speeds[watched]
         self._bearings = {s.name: _bearings(s, self.positions) for s in rig}
-        self._turns_hz = {s.name: rates.get(s.kind, story.rate_hz) for s in rig}
-        self._frames_hz = {s.name: frame_rate(s, rates, story.rate_hz) for s in rig}
+        self._turns_hz = {s.name: rates.get(s.kind, RATE_HZ) for s in rig}
+        self._frames_hz = {s.name: frame_rate(s, rates, RATE_HZ) for s in rig}
         self._fused = FusedObjects(scenes.watched, np.ones(scenes.rows.size), model)
         self._fused.check(rig)
         self._measured = {
@@ -91,14 +91,14 @@ class StorySight:
         return found
 
     def _clock(self, rate_hz: float) -> FrameClock:
-        return FrameClock.of(len(self._story.times), self._story.rate_hz, rate_hz)
+        return FrameClock.of(len(self._story.times), RATE_HZ, rate_hz)
 
     def _at_last_frame(self, sensor: Sensor, by_exposure: Floats) -> Floats:
         """Return m (W * K) of a sensor's last frame, with the factor of its scan, from that of each
         exposure (E, W, K)."""
         clock = self._clock(self._frames_hz[sensor.name])
         bearings = self._bearings[sensor.name]
-        frame_s = 1.0 / self._story.rate_hz
+        frame_s = 1.0 / RATE_HZ
         m = by_exposure * factor_of(sensor, bearings, frame_s, self._turns_hz[sensor.name])
         exposures = np.arange(len(clock.frames)) % sensor.scan.exposures
         at_frames = m[exposures, :, clock.frames].T

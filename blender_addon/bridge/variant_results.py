@@ -53,7 +53,7 @@ def _is_rig(variant: Variant, rig: pe.Rig, returns: str) -> bool:
 
 def _scored_values(sensor: pe.Sensor) -> tuple[object, ...]:
     """Return what scores and key figures depend on; the catalogue has each model once."""
-    return sensor.name, id(sensor.model), sensor.fusion, sensor.pose, sensor.curve, sensor.scan
+    return sensor.name, id(sensor.model), sensor.fusion, sensor.pose, sensor.curve
 
 
 def store_search(scene: Scene, outcome: jobs.Outcome, surroundings: str) -> int:

@@ -120,7 +120,7 @@ def own_curve(layout: UILayout, _settings: PropertyGroup, context: Context) -> N
 
 @panel("Data Sheet", parent="PE_PT_sensor")
 def data_sheet(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
-    """What this sensor weighs, takes, sends and costs, where no sheet says so; how it scans"""
+    """What this sensor weighs, takes, sends and costs, where no sheet says so"""
     draw_declared(layout, context.active_object.perception_entropy, "sensor")
 
 

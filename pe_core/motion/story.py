@@ -167,12 +167,6 @@ class Story:
             headings.append(heading if sign > 0.0 else math.pi - heading)
         return np.array(where), np.array(headings)
 
-    @property
-    def speeds(self) -> Floats:
-        """Speeds (A, K) of the actors over the ground [m/s]."""
-        steps = [np.gradient(a.at(self.times)[0], 1.0 / RATE_HZ, axis=0) for a in self.actors]
-        return np.asarray(np.hypot(*np.moveaxis(np.array(steps), -1, 0)))
-
 
 def outline(vehicle: Vehicle | None) -> tuple[Floats, Floats]:
     """Return the lowest and highest corner (2,) of the vehicle as drawn, from above; of a car

@@ -1,6 +1,5 @@
 """The result files of a run in its output folder: result.json, history.csv, study.toml, and more.
-The files of a run are one set. `FileSet` writes them together, with result.json last; result.json
-lists the SHA-256 of each other file."""
+The files of a run are one set. `FileSet` writes them together, with result.json last."""
 
 import json
 import platform
@@ -11,9 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from pe_core.base.files import csv_text, read_bytes
-from pe_core.base.input_files import not_noting_inputs
-from pe_core.base.table_reader import dump_json, finite, parse_json
+from pe_core.base.files import csv_text
+from pe_core.base.table_reader import dump_json, finite
 from pe_core.scene.rig import Rig
 from pe_core.search import AXES, EvaluatedRig
 from pe_core.study.condition_table import ConditionScore, ConditionTable
@@ -34,7 +32,7 @@ from pe_core.study.study import EXPECTED_AP, Study
 from pe_core.version import __version__
 
 from ..wording import percent
-from .folder import PROGRAM, FileSet, Write, our_files, prepare_folder, sha256_of
+from .folder import PROGRAM, FileSet, Write, prepare_folder
 from .job import HistoryRow, Outcome
 from .searched_figure import IN_NATS, SearchedFigure
 from .study_export import fingerprint, inputs_of, study_text, study_writers
@@ -174,31 +172,14 @@ def add_to_result(
     writers: Mapping[str, Write | bytes],
     unwanted: Collection[str] = (),
 ) -> None:
-    """Write files of a run together with its result.json, which lists their SHA-256. The part "run"
-    of `data` is updated. `unwanted` files are removed, unless they are in `writers` or were not
-    written by this program. `InputError` if the folder cannot be written, or one of the files in it
-    was not written by this program."""
+    """Write files of a run together with its result.json. `unwanted` files are removed, unless they
+    are in `writers` or were not written by this program. `InputError` if the folder cannot be
+    written, or one of the files in it was not written by this program."""
     with FileSet(folder) as files:
         files.take_away(unwanted)
-        digests = {name: files.add(name, write) for name, write in writers.items()}
-        run = {**data["run"], "files": {**data["run"].get("files", {}), **digests}}
-        text = dump_json({**data, "run": run})
-        files.add(RESULT, text.encode(errors="backslashreplace"))
-    data["run"] = run
-
-
-@not_noting_inputs()
-def files_of_other_runs(folder: Path) -> list[str]:
-    """Return names of result files in a folder that do not belong to the run of its result.json.
-    They were written by an earlier run or an interrupted later run, or were changed by hand."""
-    try:
-        named = parse_json(RESULT, read_bytes(folder / RESULT))["run"]["files"]
-        ours = set(our_files(folder))
-        present = [n for n in BESIDE_RESULT if n in ours or n in named]
-        digests = {n: sha256_of(folder / n) for n in present}
-        return [n for n, digest in digests.items() if digest and digest != named.get(n)]
-    except (AttributeError, KeyError, TypeError, ValueError):
-        return []
+        for name, write in writers.items():
+            files.add(name, write)
+        files.add(RESULT, dump_json(data).encode(errors="backslashreplace"))
 
 
 def history_csv(history: tuple[HistoryRow, ...], figure: SearchedFigure = IN_NATS) -> str:

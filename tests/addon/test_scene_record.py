@@ -94,7 +94,7 @@ def rich(car):
     settings.prior, settings.returns = "highway", "road"
     assert bpy.ops.pe.add_focus(region="front") == {"FINISHED"}
     settings.targets, settings.traffic, settings.scenes = "objects", True, 24
-    settings.ap_model, settings.protocol_floor = "scans", 0.2
+    settings.ap_model = "scans"
     curve = settings.curves.add()
     curve.name, curve.own, curve.a, curve.b = "lidar", True, 0.2, 0.1
     curve.c = 0.1

@@ -89,18 +89,17 @@ class FocusRegion(NamedTuple):
     classes: tuple[str, ...] | None = None
 
 
-NO_BODY, HIDES = "NONE", "HIDES"
+NO_BODY = "NONE"
 BODY_ITEMS = (
     (NO_BODY, "None", "Not a test body"),
-    ("child", "Child", "A pedestrian; the track has to be confirmed"),
-    ("adult", "Adult", "A pedestrian; the track has to be confirmed"),
-    ("cyclist", "Cyclist", "The track has to be confirmed"),
-    ("car", "Car", "The track has to be confirmed"),
-    (HIDES, "Only Hides", "It only hides others, as a parked car does"),
+    ("child", "Child", "A pedestrian"),
+    ("adult", "Adult", "A pedestrian"),
+    ("cyclist", "Cyclist", "A cyclist"),
+    ("car", "Car", "A car"),
     ("pole", "Pole", "A thin post"),
     ("cone", "Cone", "A traffic cone"),
 )
-"""What an object is: which sensors see it, and in stories of its own animation."""
+"""What an object is: the sensors that see it are written beside it."""
 BEFORE_MOVE = 0
 """What the live score is compared with; any other number is the key of a variant."""
 

@@ -156,7 +156,7 @@ class _Stage(NamedTuple):
             return own
         data = bpy.data.cameras.new("Film")
         data.angle, data.clip_start = FOV, 0.05
-        way = -1.0 if driven.story.anchor == motion.REAR else 1.0
+        way = -1.0 if driven.story.speed < 0.0 else 1.0
         seen = [body.positions for body in moving.bodies if body.seen is not None]
         side = -1.0 if float(np.mean([at[:, 1].mean() for at in seen])) > 0.0 else 1.0
         reach = 2.4 if vehicle is None else float(np.abs(np.array(vehicle.bounds)[:, 0]).max())
@@ -191,7 +191,7 @@ def _street(stage: _Stage, story: motion.Story) -> None:
     dashes = np.concatenate([np.add(dash, (x, y, 0.0)) for x, y in starts])
     faces = np.arange(len(dashes)).reshape(-1, 4).tolist()
     lines = stage.mesh("lane", dashes, faces, DASH)
-    rate = (story.end_s - story.start_s) / max(stage.frames - 1, 1)
+    rate = -story.start_s / max(stage.frames - 1, 1)
     gone = [-story.speed * rate * k for k in range(stage.frames)]
     stage.keys(lines, "location", [(math.fmod(x, DASH_M + GAP_M), 0.0, 0.0) for x in gone])
 

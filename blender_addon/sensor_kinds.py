@@ -8,21 +8,13 @@ import math
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, cast
+from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from .engine import graphics, kinds, pe, studies
-
-Pixels = NDArray[np.float32]
-"""(H, W, 4) sRGB, the top row first."""
+from .engine import catalog, kinds, pe, studies
 
 DEFAULT_MODEL = "Pandar64"
 LONGEST_LINE = 4096
 """Letters of a line with the keys of a table."""
-PIXELS_PER_DEG = 3
-"""Of a picture of ranges: a full circle then fits into the editor that is made of the 3D view."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,9 +108,6 @@ class KindRow:
     """Whether a housing is drawn with a lens, not with a window."""
     camera: Callable[[Any], pe.Camera] | None = None
     """From a model to the camera for Blender's view; None without a view."""
-    pixels: Callable[[pe.Sensor, pe.Vehicle | None], Pixels] | None = None
-    legend: str = ""
-    """From a sensor and its vehicle to a picture, made on a thread; what its colours are."""
 
 
 CAN = pe.Housing("cylinder", (0.1, 0.1, 0.09), (0.0, 0.0, 0.045), "typical size")
@@ -126,8 +115,6 @@ VISOR = pe.Housing("box", (0.1, 0.13, 0.05), (0.05, 0.0, 0.025), "typical size")
 SMALL_BOX = pe.Housing("box", (0.045, 0.03, 0.03), (0.0225, 0.0, 0.0145), "typical size")
 RADAR_BOX = pe.Housing("box", (0.03, 0.13, 0.09), (0.015, 0.0, 0.0), "typical size")
 MEMBRANE = pe.Housing("box", (0.02, 0.03, 0.03), (0.01, 0.0, 0.0), "typical size")
-FIELD_PX = 3
-"""Pixels of a picture for each of its ranges and azimuths."""
 CAN_FOV = math.radians(200.0)
 """A LiDAR that looks around less than this has its back to something: no window all round."""
 
@@ -137,34 +124,12 @@ def _lidar_housing(model: pe.Lidar) -> pe.Housing:
     return CAN if high - low > CAN_FOV else VISOR
 
 
-def range_pixels(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Pixels:
-    """Return a LiDAR's ranges as a picture: a degree is as wide as it is high."""
-    picture = kinds.range_picture(sensor, vehicle)
-    angles = picture.elevations, picture.azimuths
-    rows, columns = (graphics.even_angles(axis, PIXELS_PER_DEG) for axis in angles)
-    farthest = cast(pe.Lidar, sensor.model).max_range
-    colors = graphics.range_colors(picture, farthest)[np.ix_(rows, columns)]
-    return np.concatenate([colors, np.ones((*colors.shape[:2], 1))], axis=2).astype(np.float32)
-
-
-def field_pixels(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> Pixels:
-    """Return what a radar or an ultrasonic sensor detects by range (upwards) and azimuth."""
-    picture = kinds.kind_of(sensor).field_picture(sensor, vehicle)
-    assert picture is not None, "kinds with this function have pictures"
-    colors = graphics.field_colors(picture)
-    colors = np.repeat(np.repeat(colors, FIELD_PX, axis=0), FIELD_PX, axis=1)
-    return np.concatenate([colors, np.ones((*colors.shape[:2], 1))], axis=2).astype(np.float32)
-
-
 ROWS = {
     "lidar": KindRow(
         Mount(DEFAULT_MODEL, False, 1.8, "SPHERE", 0.12),
         _lidar_housing,
         own_about="Beams of channels that are evenly spread",
         own_fields=tuple(studies.settings_of(OwnLidar)),
-        pixels=range_pixels,
-        legend="near is bright, far is dark by metres; orange: occluded by the vehicle; "
-        "grey: nothing in range",
     ),
     "camera": KindRow(
         Mount("Camera 90 deg", True, 1.5, "ARROWS", 0.25),
@@ -178,17 +143,11 @@ ROWS = {
         Mount("Continental ARS408-21", True, 0.5, "CONE", 0.12),
         lambda _model: RADAR_BOX,
         own_about="Modes with their azimuths and ranges, as a study's table has them",
-        pixels=field_pixels,
-        legend="ranges upwards, azimuths across: many detections of a car are bright; orange: "
-        "occluded by the vehicle; grey: not detected",
     ),
     "ultrasonic": KindRow(
         Mount("Bosch Ultrasonic 3.1", True, 0.5, "CIRCLE", 0.05),
         lambda _model: MEMBRANE,
         own_about="A cone and a range, as a study's table has them",
-        pixels=field_pixels,
-        legend="ranges upwards, azimuths across: where a post returns an echo; orange: occluded by "
-        "the vehicle; grey: no echo",
     ),
 }
 OTHER = KindRow(Mount(None, True, 1.5, "ARROWS", 0.25), lambda _model: SMALL_BOX)
@@ -198,6 +157,14 @@ OTHER = KindRow(Mount(None, True, 1.5, "ARROWS", 0.25), lambda _model: SMALL_BOX
 def row_of(kind: str) -> KindRow:
     """Return how sensors of a kind are treated."""
     return ROWS.get(kind, OTHER)
+
+
+def has_view(model: str) -> bool:
+    """Whether Blender's view can look through sensors of this model."""
+    try:
+        return row_of(catalog.load(model).kind).camera is not None
+    except pe.InputError:
+        return False
 
 
 def mount_of(kind: str) -> Mount:

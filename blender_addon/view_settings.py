@@ -207,9 +207,6 @@ class ViewSettings:
     show_bodies: bool = _switch(
         True, "Test Bodies", "Write beside each test body which sensors see it, and with how much"
     )
-    show_inset: bool = _switch(
-        False, "Picture in View", "Show what the selected sensor sees in a corner of the 3D view"
-    )
     show_cameras: bool = _switch(
         False,
         "Camera Strip",

@@ -1,6 +1,6 @@
 """What all drawers in 3D views share: handlers, text and plates in corners, redraw.
 
-The live score, the inset picture, legends and labels are written by the functions
+The live score, pictures of cameras, legends and labels are written by the functions
 of this module, in pixels of a region. A drawer reserves the box of its plate at each redraw, or
 releases it; a plate that is drawn later in the same redraw is put above it. Boxes are plain numbers
 by region; no object of Blender's is held.

@@ -13,7 +13,6 @@ from .scene import (
     Pose,
     Reference,
     Rig,
-    ScanTiming,
     Sensor,
     State,
     Vehicle,
@@ -84,7 +83,7 @@ __all__ += ["Focus", "Front", "Goals", "GroundMap", "GroundSight", "Housing", "I
 __all__ += ["KannalaBrandt", "Lidar", "Mesh", "MeshAxes", "Method", "Motion", "MountArea"]
 __all__ += ["Mounting", "NoGo", "ObjectClass", "ObjectEvaluator", "ObjectScore", "Objective"]
 __all__ += ["Objects", "Option", "PartScore", "PerceptionModel", "PerceptionSpace", "Pinhole"]
-__all__ += ["Pose", "Prior", "Reach", "Reference", "Rig", "RigEvaluator", "ScanTiming", "Scatter"]
+__all__ += ["Pose", "Prior", "Reach", "Reference", "Rig", "RigEvaluator", "Scatter"]
 __all__ += ["Schedule", "Score", "Search", "SearchRun", "SearchSpace", "Selection", "Sensor"]
 __all__ += ["SensorScore", "Sight", "Slot", "SlotMount", "Start", "State", "Step", "Stop", "Study"]
 __all__ += ["SurfaceMount", "TargetRule", "Tolerance", "Vehicle", "Wanted", "Weather"]

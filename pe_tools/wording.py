@@ -143,10 +143,6 @@ WARNINGS: Mapping[str, Callable[..., str]] = {
         f"{joined(curves)} with c: AP = a ln m - c ln R + b, not the paper's; compare these scores "
         "with such scores alone"
     ),
-    "protocol_floor": lambda _, floor: (
-        f"recall and precision up to {floor:g} do not count, as in the protocol of nuScenes: "
-        "compare it with such figures alone"
-    ),
     "returns": lambda _: (
         "as measured in real traffic, not each beam as in the paper: compare these scores with "
         "such scores alone"

@@ -274,7 +274,7 @@ def result_schema() -> dict[str, Any]:
         **{"robustness": some, "requirements": rows, "conditions": some, "starts": rows},
         **{"objective": TEXT, "expected_ap": some, "figures": both, "cost": TEXT},
         **{
-            "sensitivity": {"type": ["object", "null"]},
+            "flatness": {"type": ["object", "null"]},
             "stop_reason": {"type": ["string", "null"]},
             "seed_scatter": {"type": ["number", "null"]},
         },

@@ -95,7 +95,6 @@ from .time import (
     clear_stale_stories,
     confirmation_of,
     frame_rate,
-    read_animation,
     store_driven,
     story_of,
     story_signatures,

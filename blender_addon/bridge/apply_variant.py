@@ -95,7 +95,6 @@ def _write_settings(obj: Object, record: SensorRecord) -> None:
     settings.rack = record.rack
     settings.stays, settings.order = record.stays, record.order
     write_values(settings, record.sheet)
-    write_values(settings, record.scan)
     if record.color is not None and record.color != color_of(obj):
         settings.color = graphics.rgb_of(record.color)
     if settings.mount != record.mount:

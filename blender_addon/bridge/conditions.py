@@ -140,10 +140,7 @@ def _state_of(row: PropertyGroup) -> geometry.State:
 
 
 def _weather_of(row: PropertyGroup) -> pe.Weather:
-    values = values_of(row, pe.Weather)
-    if not row.night:
-        values["lit_m"] = None
-    return pe.Weather(row.name, **values)
+    return pe.Weather(row.name, **values_of(row, pe.Weather))
 
 
 def read_states(scene: Scene) -> list[str]:

@@ -11,11 +11,11 @@ from ..engine import pe
 from .conditions import conditions_signature
 from .own_sensors import own_sensors_signature
 from .prior import prior_signature
-from .rig import last_written_pose, pose_of_matrix, scan_of, sensor_objects, view_layer_of
+from .rig import last_written_pose, pose_of_matrix, sensor_objects, view_layer_of
 from .scene_settings import settings_signature, targets_signature
 
 SensorState = tuple[object, ...]
-"""Model, fusion group, pose, its own AP curve or None, and its scan; empty for a hidden sensor."""
+"""Model, fusion group, pose and its own AP curve or None; empty for a hidden sensor."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def _sensor_state(obj: Object, visible: bool) -> SensorState:
         where = placement.tolist()
     numbers = settings.curve_a, settings.curve_b, settings.curve_c
     curve = numbers if settings.own_curve else None
-    return settings.model, settings.fusion, where, curve, scan_of(settings)
+    return settings.model, settings.fusion, where, curve
 
 
 def _placed(state: SensorState, pose: pe.Pose) -> SensorState:

@@ -159,7 +159,6 @@ def _sensor_records(study: pe.Study) -> tuple[SensorRecord, ...]:
                 color=sensor.color,
                 order=order,
                 sheet=sensor.sheet,
-                scan=sensor.scan,
                 **_options(study.selection, name, mount),
             )
         )

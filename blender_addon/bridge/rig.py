@@ -51,7 +51,7 @@ def sensor_from_object(obj: Object, depsgraph: Depsgraph) -> pe.Sensor:
         model = kinds.returning(catalog.load(settings.model), returns)
         pose = pose_of(obj, depsgraph)
         fusion, color = settings.fusion or None, color_of(obj)
-        own = curve_of(settings), color, sheet_of(settings), scan_of(settings)
+        own = curve_of(settings), color, sheet_of(settings)
         return pe.Sensor(obj.name, model, pose, fusion, *own)
     except pe.InputError as error:
         raise error.within("scene", f"sensor {obj.name!r}") from None
@@ -60,11 +60,6 @@ def sensor_from_object(obj: Object, depsgraph: Depsgraph) -> pe.Sensor:
 def sheet_of(settings: PropertyGroup) -> pe.DataSheet:
     """Return what is known of a sensor or a model to choose, besides what the catalogue has."""
     return pe.DataSheet(**values_of(settings, pe.DataSheet))
-
-
-def scan_of(settings: PropertyGroup) -> pe.ScanTiming:
-    """Return when a sensor's frames begin, and which way its scan turns."""
-    return pe.ScanTiming(**values_of(settings, pe.ScanTiming))
 
 
 def color_of(obj: Object) -> str | None:

@@ -21,7 +21,6 @@ from .rig import (
     pose_from_numbers,
     pose_of,
     pose_of_matrix,
-    scan_of,
     sensor_objects,
     sheet_of,
     view_layer_of,
@@ -72,7 +71,6 @@ class SensorRecord:
     rack: str = ""
     curve: pe.ApCurve | None = None
     sheet: pe.DataSheet = field(default_factory=pe.DataSheet)
-    scan: pe.ScanTiming = field(default_factory=pe.ScanTiming)
     intrinsics: Any = None  # the engine's model, where the catalogue may not have it
 
     locked: tuple[str, ...] = ()
@@ -90,8 +88,7 @@ class SensorRecord:
     @property
     def scored(self) -> tuple[object, ...]:
         """The values that a score and its key figures depend on."""
-        own = self.curve, self.scan
-        return self.name, self.model, self.fusion, self.numbers, self.visible, *own
+        return self.name, self.model, self.fusion, self.numbers, self.visible, self.curve
 
     @property
     def identity(self) -> tuple[object, ...]:
@@ -145,7 +142,6 @@ def record_of_object(obj: Object, depsgraph: Depsgraph, layer: ViewLayer) -> Sen
         rack=settings.rack,
         curve=curve,
         sheet=sheet_of(settings),
-        scan=scan_of(settings),
         **_object_fields(obj),
     )
 
@@ -205,7 +201,6 @@ def _record_of_table(scene: Scene, table: dict[str, Any]) -> SensorRecord:
     own = None if curve is None else pe.ApCurve(*curve)
     obj = _object_named(scene, table["name"])
     known: dict[str, Any] = {"sheet": pe.DataSheet(**values.pop("sheet"))}
-    known["scan"] = pe.ScanTiming(**values.pop("scan"))
     return SensorRecord(**values, pose=pose, curve=own, **known, **_object_fields(obj))
 
 
@@ -224,7 +219,7 @@ def write_records(variant: PropertyGroup, records: Sequence[SensorRecord]) -> No
     for record in records:
         curve = None if record.curve is None else astuple(record.curve)
         own = {key: getattr(record, key) for key in STORED}
-        tables = {key: asdict(getattr(record, key)) for key in ("sheet", "scan")}
+        tables = {"sheet": asdict(record.sheet)}
         rows.append(own | {"pose": record.numbers, "curve": curve} | tables)
     variant.sensors = json.dumps(rows)
 
@@ -242,7 +237,6 @@ def record_of_sensor(sensor: pe.Sensor) -> SensorRecord:
         intrinsics=sensor.model,
         color=sensor.color,
         sheet=sensor.sheet,
-        scan=sensor.scan,
     )
 
 
@@ -271,7 +265,7 @@ def sensor_of(record: SensorRecord, source: str = "variant") -> pe.Sensor:
     model, or the name or the fusion group is impossible."""
     try:
         model = record.intrinsics or catalog.load(record.model)
-        own = record.fusion or None, record.curve, record.color, record.sheet, record.scan
+        own = record.fusion or None, record.curve, record.color, record.sheet
         return pe.Sensor(record.name, model, record.pose, *own)
     except pe.InputError as error:
         raise error.within(source, f"sensor {record.name!r}") from None

@@ -8,13 +8,8 @@ from typing import Any
 from bpy.types import Object, PropertyGroup, Scene
 from mathutils import Vector
 
-from ..choices import NO_BODY
-from ..engine import motion, pe, requirements, studies
+from ..engine import motion, pe, studies
 from .scene_settings import values_of, write_values
-from .vehicle import in_surroundings
-
-DIGITS = 4
-"""Decimals of times [s], positions [m] and headings [deg] that are read from an animation."""
 
 
 def time_of(settings: PropertyGroup) -> dict[str, Any]:
@@ -66,51 +61,11 @@ def frame_rate(scene: Scene) -> float:
     return scene.render.fps / scene.render.fps_base
 
 
-def read_animation(scene: Scene) -> str:
-    """Return what the test bodies of a scene do, frame by frame, round the vehicle: a row's table.
-    The last frame is time 0. `InputError` when no object is a test body."""
-    bodies = [
-        each
-        for each in scene.objects
-        if each.perception_entropy.body != NO_BODY
-        and (each.animation_data or not in_surroundings(each))
-    ]
-    if not bodies:
-        raise pe.InputError("scene", "test bodies", "an object with one, in Vehicle Part", "none")
-    frames, shown = range(scene.frame_start, scene.frame_end + 1), scene.frame_current
-    rate = frame_rate(scene)
-    paths: dict[str, list[list[float]]] = {each.name: [] for each in bodies}
-    try:
-        for frame in frames:
-            scene.frame_set(frame)
-            seconds = round((frame - scene.frame_end) / rate, DIGITS)
-            for each in bodies:
-                paths[each.name].append([seconds, *(round(v, DIGITS) for v in body_place(each))])
-    finally:
-        scene.frame_set(shown)
-    actors = [_test_body(each, paths[each.name]) for each in bodies]
-    start = {"start_s": round((frames[0] - frames[-1]) / rate, DIGITS), "anchor": motion.ORIGIN}
-    return json.dumps({"title": "Own animation", **start, "body": actors})
-
-
 def body_place(obj: Object) -> tuple[float, float, float]:
     """Return x and y of the middle of a test body [m], and its heading [deg]."""
     matrix = obj.matrix_world
     x, y, _ = matrix @ (sum(map(Vector, obj.bound_box), Vector()) / 8.0)
     return x, y, math.degrees(matrix.to_euler().z)
-
-
-def _test_body(obj: Object, path: list[list[float]]) -> dict[str, Any]:
-    """Return the table of an object as a body of a story; an empty one has the usual size."""
-    kind = obj.perception_entropy.body
-    usual = requirements.BODIES.get(kind)
-    size = [round(side, DIGITS) for side in obj.dimensions]
-    if usual is not None and not all(size):
-        own: dict[str, Any] = {"body": kind}
-    else:
-        own = {"body": f"own {kind}", "size": size}
-        own |= {} if usual is None else {"class": usual.class_name}
-    return {"name": obj.name, **own, "watched": usual is not None, "path": path}
 
 
 def story_signatures(settings: PropertyGroup, scene: str) -> dict[str, str]:

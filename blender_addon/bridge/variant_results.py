@@ -53,7 +53,7 @@ def _is_rig(variant: Variant, rig: pe.Rig, returns: str) -> bool:
 
 def _scored_values(sensor: pe.Sensor) -> tuple[object, ...]:
     """Return what scores and key figures depend on; the catalogue has each model once."""
-    return sensor.name, id(sensor.model), sensor.fusion, sensor.pose, sensor.curve, sensor.scan
+    return sensor.name, id(sensor.model), sensor.fusion, sensor.pose, sensor.curve
 
 
 def store_search(scene: Scene, outcome: jobs.Outcome, surroundings: str) -> int:
@@ -64,8 +64,6 @@ def store_search(scene: Scene, outcome: jobs.Outcome, surroundings: str) -> int:
     before = find_or_add_variant(scene, "Before optimize", start).key
     name = f"Optimized, seed {outcome.start.search.seed}"
     after = find_or_add_variant(scene, name, result).key
-    for number, other in enumerate(jobs.runners_up(outcome).values(), 1):
-        find_or_add_variant(scene, f"Runner-up {number}", _moved(records, other.rig))
     store_variant_scores(scene, outcome, surroundings)
     mark_active(scene, before)
     return after

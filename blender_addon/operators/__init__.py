@@ -10,7 +10,6 @@ from . import (
     exports,
     first_steps,
     handles,
-    inset,
     known_rigs,
     look_through,
     mounts,
@@ -23,6 +22,7 @@ from . import (
     surroundings,
     upright,
     variants,
+    view_pictures,
     where,
 )
 from .add_sensor import Offer, models, offers
@@ -36,7 +36,7 @@ from .requirements import ShownVerdict, shown_verdicts
 def register() -> None:
     """Add keys, draw handlers and listeners of operators."""
     shortcuts.register()
-    inset.register()
+    view_pictures.register()
 
 
 def unregister() -> None:
@@ -44,5 +44,5 @@ def unregister() -> None:
     running_job.unregister()
     placement.end()
     exports.unregister()
-    inset.unregister()
+    view_pictures.unregister()
     shortcuts.unregister()

@@ -18,10 +18,8 @@ from .. import bridge, viewport
 from ..engine import pe
 from ..overlay import surroundings
 from . import sensor_pictures
-from .sensor_pictures import InsetCamera, PictureSize, PictureView
+from .sensor_pictures import PictureSize, PictureView, ViewportPicture
 
-CORNER = "inset"
-"""The plate whose picture is rendered with every change; those of other plates in turn."""
 STILL_S = 0.25
 """How long after the last change all pictures that are out of date are rendered."""
 NEAR_M, FAR_M = 0.02, 500.0
@@ -58,7 +56,7 @@ _change_count = 0
 _rendering = False
 _rendered_count, _rest_at = 0, 0.0
 """How often it had changed when pictures were rendered last, and when all others will be."""
-_pictures: dict[PictureKey, tuple[Hashable, InsetCamera]] = {}
+_pictures: dict[PictureKey, tuple[Hashable, ViewportPicture]] = {}
 """Pictures, with what they were made from."""
 _requested: dict[PictureKey, WantedPicture] = {}
 """Pictures that are to be rendered, in turn."""
@@ -132,7 +130,7 @@ def look_of(pose: pe.Pose, model: pe.Camera) -> Exposure:
 
 def picture(
     context: bpy.types.Context, plate: str, name: str, look: Exposure, size: PictureSize
-) -> InsetCamera | None:
+) -> ViewportPicture | None:
     """Return the latest picture of a look; request a new one if anything has changed."""
     key, shading = PictureKey(context.region.as_pointer(), plate, name), context.space_data.shading
     shown = shading.type, shading.light, shading.color_type
@@ -154,16 +152,16 @@ def render_requested(rest: bool = False) -> None:
     global _rendered_count, _rest_at
     is_moving = not rest and _rendered_count != _change_count
     _rendered_count, _rest_at = _change_count, time.monotonic() + STILL_S
-    in_turn = [key for key in _requested if key.plate != CORNER]
-    now = [each for each in _requested if not (is_moving and each in in_turn[1:])]
+    in_turn = list(_requested)
+    now = in_turn[:1] if is_moving else in_turn
     for key in now:
         wanted, view = _requested.pop(key), _view_of(key.region)
         if view is not None:
             cached = _pictures.get(key)
-            camera = cached[1] if cached is not None else InsetCamera()
+            camera = cached[1] if cached is not None else ViewportPicture()
             _render(view, camera, wanted)
             _pictures[key] = wanted.made_of, camera
-    if not is_moving or any(key.plate == CORNER for key in now):
+    if not is_moving:
         viewport.redraw_editors()
     if is_moving and in_turn and not bpy.app.timers.is_registered(render_rest):
         bpy.app.timers.register(render_rest, first_interval=STILL_S)
@@ -188,7 +186,7 @@ def _view_of(pointer: int) -> PictureView | None:
     return None
 
 
-def _render(view: PictureView, camera: InsetCamera, wanted: WantedPicture) -> None:
+def _render(view: PictureView, camera: ViewportPicture, wanted: WantedPicture) -> None:
     """Render a picture by the viewport, without overlays."""
     global _rendering
     look, overlay = wanted.look, view.space.overlay

@@ -78,9 +78,7 @@ def add_weather(context: bpy.types.Context, weather: str) -> None:
         setattr(row, *STARTS[weather])
 
 
-ANIMATED = "animated"
-STORY_ITEMS = [(ANIMATED, "Own Animation", "Test bodies, as keyframes move them")]
-STORY_ITEMS += [(name, each.title, each.source) for name, each in motion.stories().items()]
+STORY_ITEMS = [(name, each.title, each.source) for name, each in motion.stories().items()]
 
 
 @operator(
@@ -90,27 +88,21 @@ STORY_ITEMS += [(name, each.title, each.source) for name, each in motion.stories
 )
 def add_story(context: bpy.types.Context, story: str) -> None:
     """Add a story of what moves: when is it confirmed, and does the vehicle stop in time?"""
-    table = bridge.read_animation(context.scene) if story == ANIMATED else ""
     row = STORY_ROWS.add(context.scene, story)
     name = row.name
-    if table:
-        row.animated, row.table = True, table
-    else:
-        bridge.write_story(row, motion.stories()[story])
-        row.name = name
+    bridge.write_story(row, motion.stories()[story])
+    row.name = name
 
 
 @operator("Play", signal=signals.study_changed, unless=STORY_ROWS.unless_selected)
 def play_story(context: bpy.types.Context) -> None:
-    """Play the selected story from its first frame; an own animation is read again. Again: stop"""
+    """Play the selected story from its first frame. Again: stop"""
     scene, settings = context.scene, context.scene.perception_entropy
     row = settings.stories[settings.story_index]
     playing = context.screen is not None and context.screen.is_animation_playing
     if not playing:
-        if row.animated:
-            row.table = bridge.read_animation(scene)
         story = bridge.story_of(row)
-        frames = round((story.end_s - story.start_s) * bridge.frame_rate(scene))
+        frames = round(-story.start_s * bridge.frame_rate(scene))
         scene.frame_end = scene.frame_start + frames
         scene.frame_set(scene.frame_start)
         settings.view.show_story = settings.show_overlay = True

@@ -115,7 +115,6 @@ def replace_sensors(
             curve=sensor.curve,
             color=sensor.color,
             sheet=sensor.sheet,
-            scan=sensor.scan,
         )
         for sensor in sensors
     )

@@ -1,4 +1,4 @@
-"""Look through a sensor: a camera's view, or the picture of another kind in a corner.
+"""Look through a camera.
 
 While a view shows what a camera sees, Blender overwrites its rotation, and loses whether it was
 orthographic. The states of views are kept here: undo would take them away from the scene.
@@ -82,24 +82,20 @@ def _copied(value: Any) -> Any:
 
 
 @operator("Look Through", mode="Look Through works in Object Mode", name=NAME)
-def look_through(context: bpy.types.Context, name: str) -> str | None:
-    """Show what this sensor sees: through a camera (press again to come back), or as a picture"""
+def look_through(context: bpy.types.Context, name: str) -> None:
+    """Show what this camera sees (press again to come back)"""
     scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
     obj = chosen_sensor(context, name)
     sensor = bridge.sensor_from_object(obj, depsgraph)
     row = row_of(sensor.kind)
-    if row.pixels is not None:
-        scene.perception_entropy.view.show_inset = True
-        return f"{sensor.name}: {row.legend}"
     if row.camera is None:
         what = kind_label(sensor.kind)
-        raise Refused(f"{obj.name}: there is no picture of sensors of kind {what}")
+        raise Refused(f"{obj.name} is no camera but of kind {what}: nothing to look through")
     if looking_through(scene) == obj:
         come_back(scene)
     else:
         bridge.look_through(scene, obj, row.camera(sensor.model))
         look_along(scene, context.area)
-    return None
 
 
 def _unless_looking(context: bpy.types.Context) -> str | None:

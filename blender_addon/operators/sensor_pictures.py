@@ -1,4 +1,4 @@
-"""Pictures of what sensors see: textures for a corner of the 3D view."""
+"""Pictures of what cameras see: textures over the 3D view."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -10,8 +10,7 @@ from gpu_extras.presets import draw_texture_2d
 from mathutils import Matrix
 
 from .. import bridge, viewport
-from ..engine import catalog, graphics, pe
-from ..sensor_kinds import Pixels
+from ..engine import catalog, pe
 
 TITLE_PX, PAD_PX = 20.0, 6.0
 WIDTH_SHARE, MAX_HEIGHT_SHARE, MAX_WIDTH_PX = 0.3, 0.4, 380.0
@@ -37,7 +36,7 @@ class PictureView(NamedTuple):
     region: bpy.types.Region
 
 
-class InsetCamera:
+class ViewportPicture:
     """A picture that the viewport renders."""
 
     def __init__(self) -> None:
@@ -82,27 +81,6 @@ class InsetCamera:
         if self._offscreen is not None:
             self._offscreen.free()
         self._offscreen, self.size = None, (0, 0)
-
-
-class PixelImage:
-    """A picture of pixels, uploaded when it is drawn first."""
-
-    def __init__(self, pixels: Pixels) -> None:
-        self.height, self.width = pixels.shape[:2]
-        upwards = pixels[::-1]
-        self._pixels = np.ascontiguousarray(
-            upwards if TAKES_SRGB else graphics.linear(upwards), np.float32
-        )
-        self._texture: gpu.types.GPUTexture | None = None
-
-    @property
-    def texture(self) -> gpu.types.GPUTexture:
-        """Its texture."""
-        if self._texture is None:
-            data = gpu.types.Buffer("FLOAT", self._pixels.size, self._pixels.ravel())
-            size = (self.width, self.height)
-            self._texture = gpu.types.GPUTexture(size, format="RGBA16F", data=data)
-        return self._texture
 
 
 def draw_picture(

@@ -327,8 +327,7 @@ def _requirements(request: ViewRequest, cache: LayerCache, _name: str) -> graphi
 def _story_keys(request: ViewRequest) -> dict[str, Hashable]:
     if request.story is None:
         return {}
-    scans = tuple(each.sensor.scan for each in request.counted)
-    rule = request.confirmation, request.rates, scans, request.prior_key
+    rule = request.confirmation, request.rates, request.prior_key
     chosen = request.story, request.rate_hz, rule
     return {name: (key, chosen) for name, key in _rig_keys(prior=False)(request).items()}
 

@@ -87,9 +87,6 @@ def seen_in_time(layout: UILayout, settings: PropertyGroup, context: Context) ->
             draw_sentence(layout, context, f"Stops in {sight.shown_end(told['stop_m']):.1f} m")
         for body in told.get("bodies", ()):
             draw_sentence(layout, context, _body_text(body))
-            if "seam_m" in body:
-                pair, most = " and ".join(body["seam_of"]), sight.shown_end(body["seam_m"])
-                draw_sentence(layout, context, f"{pair} see it up to {most:.1f} m apart")
         draw_declared(layout, row, "story")
         layout.separator()
     draw_declared(layout, settings, "time")

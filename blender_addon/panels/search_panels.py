@@ -27,7 +27,7 @@ def search(layout: UILayout, settings: PropertyGroup, _context: Context) -> None
     draw_properties(layout, settings, (*own, "evaluations", "seed"))
     if settings.targets != OBJECTS:
         by_ap = settings.objective == EXPECTED_AP
-        names = ("scenes", "ap_model", "protocol_floor") if by_ap else ("search_samples",)
+        names = ("scenes", "ap_model") if by_ap else ("search_samples",)
         draw_properties(layout, settings, names)
     draw_declared(layout, settings, "search", ELSEWHERE)
 

@@ -5,6 +5,7 @@ from bpy.types import Context, Object, PropertyGroup, UILayout
 from ..bridge import holder_of, in_surroundings
 from ..panel_text import draw_label, is_simple
 from ..properties import AXIS_LABELS
+from ..sensor_kinds import has_view
 from .layout import draw_declared, draw_sentence, panel
 
 POSITION_LABELS = ("X", "Y", "Height")
@@ -25,10 +26,8 @@ def sensor(layout: UILayout, _settings: PropertyGroup, context: Context) -> None
     if not is_simple(context.scene):
         layout.prop(settings, "fusion")
     draw_pose(layout, context, obj)
-    row = layout.row(align=True)
-    row.operator("pe.look_through", icon="VIEW_CAMERA").name = obj.name
-    view = context.scene.perception_entropy.view
-    row.prop(view, "show_inset", toggle=True, icon="IMAGE_PLANE")
+    if has_view(settings.model):
+        layout.operator("pe.look_through", icon="VIEW_CAMERA").name = obj.name
     row = layout.row()
     row.operator_context = "INVOKE_DEFAULT"
     row.operator("pe.place_sensor", text="Drag Along Surface", icon="VIEW_PAN").sensor = obj.name
@@ -121,7 +120,7 @@ def own_curve(layout: UILayout, _settings: PropertyGroup, context: Context) -> N
 
 @panel("Data Sheet", parent="PE_PT_sensor")
 def data_sheet(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
-    """What this sensor weighs, takes, sends and costs, where no sheet says so; how it scans"""
+    """What this sensor weighs, takes, sends and costs, where no sheet says so"""
     draw_declared(layout, context.active_object.perception_entropy, "sensor")
 
 

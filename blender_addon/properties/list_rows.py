@@ -188,7 +188,6 @@ class PE_Story(StoryFields, Switched, PropertyGroup):
     """A story of what moves round the vehicle; the row has its name."""
 
     table: text("Story", "What the fields do not have, as JSON: preset, bodies", update=changed)
-    animated: switch("Animated", "Its bodies are objects of this scene")
     result: text("Result", "When its tracks are confirmed, as JSON")
 
 

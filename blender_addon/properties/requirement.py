@@ -42,9 +42,7 @@ USUAL: dict[str, TableData] = {
 """With what a shape begins."""
 SHAPE_KEYS = ("x", "y", "polygon", "ring", "path", "spots")
 USUAL_BODY, USUAL_BLIND_M2 = "adult", 0.5
-NOT_OF_GROUND = (
-    *("sensors", "kinds", "of", "points", "pixels", "pixels_high", "per_degree", "share", "ap"),
-)
+NOT_OF_GROUND = (*("sensors", "kinds", "of", "points", "pixels", "share", "ap"),)
 OF_GROUND = ("blind_m2", "blind_out", "blind_height")
 ZERO_COUNTS = ("blind_m2",)
 """Settings that are asked for at 0, too."""

@@ -106,10 +106,9 @@ def racks_of_scene(_settings: PropertyGroup, context: Context, _typed: str) -> l
 
 CurveFields: Any = group_of(pe.ApCurve, prefix="curve_")
 SheetFields: Any = group_of(pe.DataSheet)
-ScanFields: Any = group_of(pe.ScanTiming)
 
 
-class PE_ObjectSettings(GroundPose, CurveFields, SheetFields, ScanFields, PropertyGroup):
+class PE_ObjectSettings(GroundPose, CurveFields, SheetFields, PropertyGroup):
     """What makes an object a sensor, and its part in the last result."""
 
     is_sensor: switch(

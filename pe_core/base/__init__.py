@@ -1,7 +1,7 @@
 """Values and files: checks of input values, files read and written whole, TOML, JSON, XML, YAML."""
 
 from .arrays import Flags, Floats, Ints, Singles
-from .errors import available_bytes, require_memory
+from .errors import available_bytes
 from .files import csv_text, decode_text, named_path, read_bytes, require_new, write_bytes
 from .input_files import note_input
 from .recent_cache import RecentCache

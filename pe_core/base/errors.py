@@ -182,15 +182,6 @@ def available_bytes() -> int | None:
     return min(_limits(), default=None)
 
 
-def require_memory(source: object, field: str, needed: int) -> None:
-    """Refuse work that needs more than the available memory. `InputError` with the needed and the
-    available memory."""
-    available = available_bytes()
-    if available is not None and needed > available:
-        expected = f"what fits in the {size_text(available)} of memory that are free"
-        raise InputError(source, field, expected, f"about {size_text(needed)}")
-
-
 @contextmanager
 def report_memory_errors(source: object) -> Iterator[None]:
     """Turn a `MemoryError` or `RecursionError` into an `InputError` of one line."""

@@ -20,7 +20,7 @@ from contextlib import contextmanager, suppress
 from difflib import SequenceMatcher
 from pathlib import Path
 
-from .errors import InputError, require_memory, size_text
+from .errors import InputError, size_text
 from .input_files import note_input, refuse_input
 
 MESH_BYTES = 2 << 30
@@ -56,7 +56,6 @@ _FORMULA = re.compile(rf"{MARK}*[#=+\-@\t\r\uff1d\uff0b\uff0d\uff20]")
 """Apostrophes count: a text that has one already gets another, so that it can be told apart."""
 _NUMBERS = re.compile(rf"{NUMBER.pattern}( {NUMBER.pattern})*", re.ASCII)
 MAX_STEM = 100
-_RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 
 
 def read_bytes(path: Path, max_bytes: int = TEXT_BYTES) -> bytes:
@@ -321,7 +320,6 @@ def _read(path: Path, max_bytes: int) -> bytes:
         status = os.fstat(handle)
         _require_regular(path, status, "a readable file")
         _require_size(path, status.st_size, max_bytes)
-        require_memory(path, "size", status.st_size)
         data = b"".join(_chunks(handle, status.st_size, max_bytes))
     finally:
         os.close(handle)
@@ -393,16 +391,10 @@ def unmarked(cell: str) -> str:
     return cell[1:] if cell.startswith(MARK) and _FORMULA.match(cell) else cell
 
 
-def is_reserved(name: str) -> bool:
-    """Whether Windows keeps a name for a device, whatever its suffix: no file can have it."""
-    return _RESERVED.fullmatch(name) is not None
-
-
 def file_stem(name: str, default: str, *, joint: str = "_", max_length: int = MAX_STEM) -> str:
     """Return a name as that of a file, without suffix: ASCII letters, digits, ``-`` and ``_``.
     `default` says what the thing is; it stands for a name without such letters, and `joint` for one
     or several other characters."""
     plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
     stem = re.sub("[^A-Za-z0-9_-]+" if joint == "_" else "[^A-Za-z0-9]+", joint, plain)
-    stem = stem.strip(joint)[:max_length].strip(joint) or default
-    return f"{stem}{joint}{default}" if is_reserved(stem) else stem
+    return stem.strip(joint)[:max_length].strip(joint) or default

@@ -92,16 +92,6 @@ def ranged(m: Any, curve: ApCurve, distance: Floats) -> Any:
     return m * np.maximum(distance, NEAREST_M) ** (-curve.c / curve.a) if curve.c else m
 
 
-def above_floor(ap: Floats, floor: float) -> Floats:
-    """Return max(AP - floor, 0) / (1 - floor): AP as nuScenes counts it; AP itself for 0.
-
-    Its metric leaves out recall and precision up to a floor, 0.1 (arXiv 1903.11027; `calc_ap` of
-    nutonomy/nuscenes-devkit). It is exact for a detector of full precision up to some recall, and
-    for one of the same precision at each recall.
-    """
-    return np.maximum(ap - floor, 0.0) / (1.0 - floor) if floor else ap
-
-
 def sigma_of(ap: ArrayLike) -> Floats:
     """sigma = 1 / AP - 1, eq. 5."""
     return 1.0 / np.asarray(ap, dtype=float) - 1.0

@@ -51,12 +51,8 @@ class FrameClock:
 
 
 def frame_rate(sensor: Sensor, rates: Mapping[str, float], story_hz: float) -> float:
-    """Return the frames of a sensor in a second [Hz], at most the story's.
-
-    `rates` are those of whole patterns by kind; of a pattern of several exposures each is a frame.
-    """
-    rate = rates.get(sensor.kind)
-    return story_hz if rate is None else min(rate * sensor.scan.exposures, story_hz)
+    """Return the frames of a sensor in a second [Hz], at most the story's; `rates` are by kind."""
+    return min(rates.get(sensor.kind, story_hz), story_hz)
 
 
 def streams(rig: Rig, hz: Mapping[str, float]) -> dict[float, list[str]]:

@@ -16,11 +16,12 @@ from ..base.values import rounded
 from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..sensors import PerceptionModel
-from .story import Story, outline
-from .story_sight import SensorPair, StorySight
+from .story import CHANCE, RATE_HZ, Story, outline
+from .story_sight import StorySight
 from .tracks import KEPT, Confirmation, first_frame, longest_run
 
-CHANCES = (0.9, 0.99)
+CHANCES = (CHANCE, 0.99)
+"""Probabilities of a confirmed track whose moments are told."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,10 +41,7 @@ class SeenBody:
     `by_sensor`: AP of each sensor alone.
     `positions` (K, 2): In the ground frame [m].
     `moments`: When it is confirmed, by probability; None: never in the story.
-    `lost_s`: Longest time for which it is lost after it was confirmed, by the story's probability
-        [s].
-    `seam_m, seam_of`: The widest distance at which two sensors that both see it see it apart (eq.
-        T4), and which two; None: not known.
+    `lost_s`: Longest time for which it is lost after it was confirmed, by `CHANCE` [s].
     `margin_s`: How long before the last moment at which the vehicle can stop, less the time that
         the story asks for [s]; negative: too late. None: never confirmed.
     """
@@ -56,8 +54,6 @@ class SeenBody:
     moments: Mapping[float, Moment | None]
     lost_s: float
     margin_s: float | None
-    seam_m: float | None = None
-    seam_of: tuple[str, ...] = ()
 
     @property
     def is_met(self) -> bool:
@@ -73,8 +69,7 @@ class SeenBody:
         """Return verdict and moments as plain JSON data."""
         moments = {f"{p:g}": None if at is None else asdict(at) for p, at in self.moments.items()}
         verdict = {"name": self.name, "met": self.is_met, "margin_s": self.margin_s}
-        seam = {} if self.seam_m is None else {"seam_m": self.seam_m, "seam_of": [*self.seam_of]}
-        return verdict | {"confirmed": moments, "lost_s": self.lost_s} | seam
+        return verdict | {"confirmed": moments, "lost_s": self.lost_s}
 
     def to_dict(self) -> dict[str, Any]:
         """Return all of it as plain JSON data."""
@@ -135,23 +130,21 @@ def drive_by(
 ) -> DriveBy:
     """Return a story as a rig sees it.
 
-    `rates` are those of scans and exposures by kind [Hz]; a kind without one has the story's. A
+    `rates` are the frames of sensors by kind [Hz]; a kind without one has the story's. A
     sensor of a lower rate than the story's has fewer frames that confirm a track (`clock`).
 
     `InputError` when a sensor has an AP curve of its own, or a class has none.
     """
     confirmation = confirmation or Confirmation()
     sight = StorySight(story, rig, vehicle, model or PerceptionModel(), rates or {})
-    whole = sight.ap(None, confirmation)
-    alone = {sensor.name: sight.ap([sensor.name], confirmation) for sensor in rig}
+    whole = sight.ap()
+    alone = {sensor.name: sight.ap([sensor.name]) for sensor in rig}
     track = sight.track(confirmation)
-    seams = sight.seams(alone)
     away = _distance(sight.positions, vehicle)
     bodies = []
     for k, actor in enumerate(actor for actor in story.actors if actor.watched):
         moments = _moments(story, track.confirmed[k], away[k])
         margin_s, lost_s = _margin_and_loss(story, track.confirmed[k], track.kept[k])
-        seam_m, seam_of = _widest({pair: float(apart[k].max()) for pair, apart in seams.items()})
         bodies.append(
             SeenBody(
                 name=actor.name,
@@ -162,8 +155,6 @@ def drive_by(
                 moments=moments,
                 lost_s=lost_s,
                 margin_s=margin_s,
-                seam_m=seam_m,
-                seam_of=seam_of,
             )
         )
     return DriveBy(story, tuple(bodies))
@@ -172,7 +163,7 @@ def drive_by(
 def _moments(story: Story, confirmed: Floats, away: Floats) -> dict[float, Moment | None]:
     """Return when a track is confirmed by each probability; `away` (K,) is its distance [m]."""
     moments: dict[float, Moment | None] = {}
-    for chance in sorted({*CHANCES, story.chance}):
+    for chance in CHANCES:
         k = first_frame(confirmed, chance)
         at = None if k is None else Moment(float(story.times[k]), rounded(float(away[k])))
         moments[chance] = at
@@ -181,19 +172,11 @@ def _moments(story: Story, confirmed: Floats, away: Floats) -> dict[float, Momen
 
 def _margin_and_loss(story: Story, confirmed: Floats, kept: Floats) -> tuple[float | None, float]:
     """Return a track's margin (None: never confirmed), and for how long it is lost [s]."""
-    first = first_frame(confirmed, story.chance)
+    first = first_frame(confirmed, CHANCE)
     if first is None:
         return None, 0.0
     margin_s = story.brake_s - story.before_s - float(story.times[first])
-    return rounded(margin_s), rounded(longest_run(kept[first:] < KEPT) / story.rate_hz)
-
-
-def _widest(seams: Mapping[SensorPair, float]) -> tuple[float | None, tuple[str, ...]]:
-    """Return the widest seam [m], and of which two sensors it is; None without any."""
-    if not seams:
-        return None, ()
-    pair = max(seams, key=lambda each: seams[each])
-    return rounded(seams[pair]), pair
+    return rounded(margin_s), rounded(longest_run(kept[first:] < KEPT) / RATE_HZ)
 
 
 def _distance(positions: Floats, vehicle: Vehicle | None) -> Floats:

@@ -1,8 +1,8 @@
 """Stories: what moves round the vehicle, and how the vehicle has to stop for it.
 
-At time 0 the vehicle, driving on at its speed, is where the story says: `anchor` is its foremost
-(or rearmost) plane then. Positions are metres beyond that plane, and to the left of the centre
-line, on the ground that does not move; of the anchor `ORIGIN` in the vehicle's ground frame.
+At time 0 the vehicle, driving on at its speed, is where the story says: positions are metres beyond
+its foremost plane then (reversing: its rearmost one), and to the left of the centre line, on the
+ground that does not move. A story begins with the first path, and ends at time 0.
 """
 
 import math
@@ -17,28 +17,30 @@ import numpy as np
 from ..base.arrays import Floats
 from ..base.errors import InputError, one_of, shown
 from ..base.files import decode_text, read_bytes
-from ..base.setting import FLAG, OneOf, Panel, check_settings, read_settings, setting
+from ..base.setting import FLAG, Panel, check_settings, read_settings, setting
 from ..base.table_reader import Table, load_toml
 from ..base.values import A_NAME, Number, listed, vector
 from ..scene.vehicle import Vehicle
 from ..scoring.requirements.bodies import BODIES, Body
 from ..scoring.targets.scene_layout import CAR_SIZE_M
 
-FRONT, REAR, ORIGIN = "front", "rear", "origin"
 KMH = 3.6
 SECOND = Number(-600.0, 600.0, unit="s", noun="time")
 METRE = Number(-1000.0, 1000.0, unit="m", noun="position")
 FILE = Path(__file__).with_name("stories.toml")
-MAX_FRAMES = 6000
+RATE_HZ = 10.0
+"""Frames in a second: most LiDARs'. Sensors with a rate of their own have a `FrameClock`."""
+CHANCE = 0.9
+"""Probability from which a track counts as confirmed; 0.99 is told beside it."""
+START_S = -6.0  # Time of the first frame where nothing moves
 
 
 @dataclass(frozen=True, slots=True)
 class Actor:
     """A body of a story, and its path: (time [s], x [m], y [m]), straight between them.
 
-    Where all have a fourth number, it is the heading [deg]; else it heads where it moves. Before
-    the first and after the last it stands. `watched`: whether it has to be confirmed; else it only
-    occludes.
+    It heads where it moves. Before the first and after the last it stands. `watched`: whether it
+    has to be confirmed; else it only occludes.
     """
 
     name: str
@@ -50,9 +52,7 @@ class Actor:
 
     def __post_init__(self) -> None:
         who = f"body {A_NAME.checked('story', 'name', self.name)!r}"
-        given = listed(self.path) or []
-        size = 4 if given and len(listed(given[0]) or ()) == 4 else 3
-        rows = [vector(who, "path", row, size, METRE) for row in given]
+        rows = [vector(who, "path", row, 3, METRE) for row in listed(self.path) or []]
         times = [SECOND.checked(who, "path", row[0]) for row in rows]
         if not rows or times != sorted(set(times)):
             raise InputError(who, "path", "[s, m, m] at times that increase", shown(self.path))
@@ -68,10 +68,8 @@ class Actor:
 
     def at(self, times: Floats) -> tuple[Floats, Floats]:
         """Return positions (K, 2) [m] and headings (K,) [rad] at some times."""
-        t, x, y, *turn = np.array(self.path).T
+        t, x, y = np.array(self.path).T
         where = np.column_stack([np.interp(times, t, x), np.interp(times, t, y)])
-        if turn:
-            return where, np.interp(times, t, np.unwrap(np.radians(turn[0])))
         leg = np.clip(np.searchsorted(t, times, side="right") - 1, 0, max(len(t) - 2, 0))
         headings = np.full(len(times), self.heading)
         if len(t) > 1:
@@ -92,8 +90,8 @@ class Story:
     preset: str = ""
     speed_kmh: float = setting(
         30.0,
-        Number(0.0, 250.0, unit="km/h"),
-        "Own speed [km/h]",
+        Number(-250.0, 250.0, unit="km/h"),
+        "Own speed [km/h]; negative: it reverses, and positions are from its rear",
         Panel("speed_kmh", "Own Speed (km/h)"),
     )
     deceleration: float = setting(
@@ -114,11 +112,6 @@ class Story:
         "How long before the last moment it has to be confirmed [s]",
         Panel("before_s", "Earlier By (s)"),
     )
-    chance: float = setting(0.9, Number(0.5, 0.999), "Probability of a confirmed track")
-    rate_hz: float = setting(10.0, Number(1.0, 100.0, unit="Hz"), "Frames in a second")
-    start_s: float = setting(-6.0, Number(-600.0, 0.0, unit="s"), "Time of the first frame")
-    end_s: float = setting(0.0, Number(-600.0, 600.0, unit="s"), "Time of the last frame")
-    anchor: str = setting(FRONT, OneOf((FRONT, REAR, ORIGIN)), "What positions are from")
     actors: tuple[Actor, ...] = field(default=())
 
     def __post_init__(self) -> None:
@@ -126,21 +119,27 @@ class Story:
         check_settings(self, who)
         if not any(actor.watched for actor in self.actors):
             raise InputError(who, "body", "at least one that is watched", "none")
-        frames = (self.end_s - self.start_s) * self.rate_hz
-        if not 1.0 <= frames <= MAX_FRAMES:
-            expected = f"1 to {MAX_FRAMES} frames from start_s to end_s"
-            raise InputError(who, "end_s", expected, f"{frames:g}")
+
+    @property
+    def start_s(self) -> float:
+        """Time of the first frame [s]: the first of a path, at least one frame before 0."""
+        first = min(actor.path[0][0] for actor in self.actors)
+        return min(first, -1.0 / RATE_HZ) if first < 0.0 else START_S
 
     @property
     def times(self) -> Floats:
-        """Times (K,) of the frames [s]."""
-        count = int((self.end_s - self.start_s) * self.rate_hz + 1e-6) + 1
-        return np.round(self.start_s + np.arange(count) / self.rate_hz, 9)
+        """Times (K,) of the frames [s]; the last one is at 0."""
+        return self.times_at(RATE_HZ)
+
+    def times_at(self, rate_hz: float) -> Floats:
+        """Return times (K,) from the first frame to 0, so many in a second [s]."""
+        count = int(-self.start_s * rate_hz + 1e-6) + 1
+        return np.round(self.start_s + np.arange(count) / rate_hz, 9)
 
     @property
     def speed(self) -> float:
         """Own speed [m/s]; backwards it is negative."""
-        return (-self.speed_kmh if self.anchor == REAR else self.speed_kmh) / KMH
+        return self.speed_kmh / KMH
 
     @property
     def brake_s(self) -> float:
@@ -152,27 +151,21 @@ class Story:
         """The stopping distance after a confirmed track, ``v latency + v^2 / (2 a)`` [m]."""
         return abs(self.speed * self.brake_s)
 
-    def positions(self, vehicle: Vehicle | None) -> tuple[Floats, Floats]:
-        """Return positions (A, K, 2) and headings (A, K) of the actors in the ground frame."""
+    def positions(
+        self, vehicle: Vehicle | None, times: Floats | None = None
+    ) -> tuple[Floats, Floats]:
+        """Return positions (A, K, 2) [m] and headings (A, K) [rad] of the actors in the ground
+        frame, at the times (K,) of the frames or at others [s]."""
         low, high = outline(vehicle)
-        planes = {FRONT: (1.0, high[0]), REAR: (-1.0, low[0]), ORIGIN: (1.0, 0.0)}
-        sign, plane = planes[self.anchor]
-        moved = (0.0 if self.anchor == ORIGIN else self.speed) * self.times
+        sign, plane = (-1.0, low[0]) if self.speed < 0.0 else (1.0, high[0])
+        times = self.times if times is None else times
         where, headings = [], []
         for actor in self.actors:
-            at, heading = actor.at(self.times)
-            x = plane + sign * at[:, 0] - moved
+            at, heading = actor.at(times)
+            x = plane + sign * at[:, 0] - self.speed * times
             where.append(np.column_stack([x, at[:, 1]]))
             headings.append(heading if sign > 0.0 else math.pi - heading)
         return np.array(where), np.array(headings)
-
-    @property
-    def speeds(self) -> Floats:
-        """Speeds (A, K) of the actors over the ground [m/s]."""
-        own = np.array((self.speed if self.anchor == ORIGIN else 0.0, 0.0))
-        step = 1.0 / self.rate_hz
-        steps = [own + np.gradient(a.at(self.times)[0], step, axis=0) for a in self.actors]
-        return np.asarray(np.hypot(*np.moveaxis(np.array(steps), -1, 0)))
 
 
 def outline(vehicle: Vehicle | None) -> tuple[Floats, Floats]:

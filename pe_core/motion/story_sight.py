@@ -1,8 +1,7 @@
-"""What a rig measures of the watched bodies of a story: AP, tracks, seams, frame by frame."""
+"""What a rig measures of the watched bodies of a story: AP and tracks, frame by frame."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import combinations
 
 import numpy as np
 
@@ -13,12 +12,10 @@ from ..scene.vehicle import Vehicle
 from ..scoring.targets.object_metric import FusedObjects
 from ..sensors import ObjectMeasurementCache, PerceptionModel
 from .clock import FrameClock, frame_rate, streams
-from .scan import exposed, factor_of, seam
+from .scan import factor_of
 from .scenes import StoryScenes, story_scenes
-from .story import Story
+from .story import RATE_HZ, Story
 from .tracks import Confirmation
-
-SensorPair = tuple[str, str]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,10 +48,9 @@ class StorySight:
         self._story = story
         self._rig = rig
         self.positions = where[watched]
-        self._speeds = story.speeds[watched]
         self._bearings = {s.name: _bearings(s, self.positions) for s in rig}
-        self._turns_hz = {s.name: rates.get(s.kind, story.rate_hz) for s in rig}
-        self._frames_hz = {s.name: frame_rate(s, rates, story.rate_hz) for s in rig}
+        self._turns_hz = {s.name: rates.get(s.kind, RATE_HZ) for s in rig}
+        self._frames_hz = {s.name: frame_rate(s, rates, RATE_HZ) for s in rig}
         self._fused = FusedObjects(scenes.watched, np.ones(scenes.rows.size), model)
         self._fused.check(rig)
         self._measured = {
@@ -62,57 +58,38 @@ class StorySight:
             for name, m in _measured(rig, scenes, vehicle).items()
         }
 
-    def ap(self, members: list[str] | None, confirmation: Confirmation) -> Floats:
-        """Return AP (W, K) of the last frames of some sensors, all by default, when boxes are as
-        late as `confirmation` says; 0 where nothing sees the body."""
+    def ap(self, members: list[str] | None = None) -> Floats:
+        """Return AP (W, K) of the last frames of some sensors, all by default; 0 where nothing sees
+        the body."""
         entropies, visible = self._fused.entropies(self._rig, self._measured, members)
         found = np.where(visible & (entropies < H_BLIND), ap_of_entropy(entropies), 0.0)
-        return confirmation.in_time(found.reshape(self._speeds.shape), self._speeds)
+        return np.asarray(found.reshape(self.positions.shape[:2]))
 
     def track(self, confirmation: Confirmation) -> Track:
         """Return the tracks, by the best stream at each frame (`clock`)."""
         confirmed, kept = [], []
         for rate, names in streams(self._rig, self._frames_hz).items():
             clock = self._clock(rate)
-            found = self.ap(names, confirmation)[:, clock.frames]
+            found = self.ap(names)[:, clock.frames]
             confirmed.append(clock.held(confirmation.confirmed(found, clock.frame_s)))
             kept.append(clock.held(confirmation.kept(found, clock.frame_s)))
         return Track(np.max(confirmed, axis=0), np.max(kept, axis=0))
 
-    def seams(self, alone: Mapping[str, Floats]) -> dict[SensorPair, Floats]:
-        """Return how far apart two sensors see the bodies (W, K) [m], eq. T4, where both see them;
-        of pairs of which it is known. `alone`: AP (W, K) of each sensor alone."""
-        found = {}
-        for one, other in combinations(self._rig, 2):
-            apart = seam((one, other), self._bearings, self._turns_hz, self._speeds)
-            if apart is not None:
-                both = (alone[one.name] > 0.0) & (alone[other.name] > 0.0)
-                found[one.name, other.name] = apart * both
-        return found
-
     def _clock(self, rate_hz: float) -> FrameClock:
-        return FrameClock.of(len(self._story.times), self._story.rate_hz, rate_hz)
+        return FrameClock.of(len(self._story.times), RATE_HZ, rate_hz)
 
-    def _at_last_frame(self, sensor: Sensor, by_exposure: Floats) -> Floats:
-        """Return m (W * K) of a sensor's last frame, with the factor of its scan, from that of each
-        exposure (E, W, K)."""
+    def _at_last_frame(self, sensor: Sensor, m: Floats) -> Floats:
+        """Return m (W * K) of a sensor's last frame, with the factor of its scan, from m (W, K)."""
         clock = self._clock(self._frames_hz[sensor.name])
         bearings = self._bearings[sensor.name]
-        frame_s = 1.0 / self._story.rate_hz
-        m = by_exposure * factor_of(sensor, bearings, frame_s, self._turns_hz[sensor.name])
-        exposures = np.arange(len(clock.frames)) % sensor.scan.exposures
-        at_frames = m[exposures, :, clock.frames].T
-        return np.asarray(clock.held(at_frames).ravel())
+        at_frames = m * factor_of(sensor, bearings, 1.0 / RATE_HZ, self._turns_hz[sensor.name])
+        return np.asarray(clock.held(at_frames[:, clock.frames]).ravel())
 
 
 def _measured(rig: Rig, scenes: StoryScenes, vehicle: Vehicle | None) -> dict[str, Floats]:
-    """Return m (E, W, K) of the watched bodies by sensor, for each exposure of its pattern."""
-    cache = ObjectMeasurementCache(scenes.objects, vehicle, True)
-    most = max(sensor.scan.exposures for sensor in rig)
-    by_exposure = [cache.measure(Rig([exposed(s, k) for s in rig])) for k in range(most)]
-    return {
-        sensor.name: np.stack([m[sensor.name][scenes.rows] for m in by_exposure]) for sensor in rig
-    }
+    """Return m (W, K) of the watched bodies by sensor."""
+    measured = ObjectMeasurementCache(scenes.objects, vehicle, True).measure(rig)
+    return {sensor.name: measured[sensor.name][scenes.rows] for sensor in rig}
 
 
 def _bearings(sensor: Sensor, where: Floats) -> Floats:

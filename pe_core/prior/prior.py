@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
-from ..base.errors import InputError, require_kind, require_memory, require_name, shown
+from ..base.errors import InputError, require_kind, require_name, shown
 from ..base.notebook import ShortRepr
 from ..base.setting import NAMES, Pair, Panel, check_settings, required_setting, setting
 from ..base.values import WEIGHT, Number, choice, listed
@@ -67,8 +67,6 @@ def density_of(name: str, given: Densities) -> float:
 
 FROM_BOXES, FROM_GRID, UNIFORM = "boxes", "grid", "uniform"
 MODELS = (*SHIPPED, UNIFORM, FROM_BOXES, FROM_GRID)
-CLASS_BYTES = 32
-"""Memory of a score per class and column of the space [bytes] (measured: 29)."""
 
 
 EVERYWHERE = (-math.inf, math.inf)
@@ -281,7 +279,6 @@ class Prior(ShortRepr):
         and columns do not fit in memory.
         """
         names = self.class_names
-        require_memory("prior", "classes", len(names) * math.prod(space.shape[:2]) * CLASS_BYTES)
         shapes = self._shapes(space)
         grounds = [
             ground * self._weights(name, space)

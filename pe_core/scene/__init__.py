@@ -7,7 +7,6 @@ from .mesh import BodyShape
 from .named_places import PLACE_NAMES, NamedPlace, named_places
 from .objects import Objects
 from .rig import Housing, Rig, Sensor, cuts_body
-from .scan import ScanTiming
 from .vehicle import Vehicle
 from .vehicle_description import Reference, guessed_reference, vehicle_line
 from .vehicle_state import Motion, State

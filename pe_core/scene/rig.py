@@ -20,7 +20,6 @@ from ..geometry.overlap import Hull, meets_box, meets_cylinder, upright_hull
 from ..geometry.poses import Pose, dot, rotate
 from ..metric.entropy import ApCurve, CurveOf, OwnCurve
 from .data_sheet import DataSheet
-from .scan import ScanTiming
 from .vehicle import Vehicle
 
 COLOR = re.compile("#[0-9a-f]{6}")
@@ -64,8 +63,6 @@ class Sensor(ShortRepr):
         Its colour in pictures, such as "#5fb8f7" (sRGB). It changes no score.
     sheet : DataSheet
         Figures of its own, in place of the catalogue's.
-    scan : ScanTiming
-        When its frames begin, and which way its scan turns. It changes no score.
     """
 
     name: str
@@ -75,7 +72,6 @@ class Sensor(ShortRepr):
     curve: ApCurve | None = None
     color: str | None = None
     sheet: DataSheet = field(default_factory=DataSheet)
-    scan: ScanTiming = field(default_factory=ScanTiming)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", A_NAME.checked("sensor", "name", self.name))

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 from ..base.arrays import ReadOnlyDict
 from ..base.errors import InputError, require_kind, require_name, shown
-from ..base.setting import NAMES, OneOf, Panel, Several, check_settings, setting
+from ..base.setting import NAMES, Panel, Several, check_settings, setting
 from ..base.values import A_NAME, Number, Whole, listed
 from ..geometry.poses import Pose
 from ..scene.rig import Rig
@@ -19,8 +19,6 @@ from .build_figures import BUILD_FIGURES
 from .key_figures import KEPT, Wanted
 from .mounts import Mounting
 
-FULL, OFF = "full", "off"
-"""Values of `Goals.sensitivity`."""
 ENTROPY, AP, BLIND_GROUND, PRICE = "entropy", "ap", "blind_ground", "price"
 WORST_LOSS, MARGIN, BLIND_ZONES = "worst_loss", "margin", "blind_zones"
 FIRST = ("height", PRICE)
@@ -205,17 +203,6 @@ class Goals:
     )
     starts: Sequence[Start] = ()
     front: Front = field(default_factory=Front)
-    sensitivity: str | None = setting(
-        None,
-        OneOf((FULL, OFF)),
-        "Analysis of a result: all or none; without it as much as an eighth of the evaluations",
-        Panel(
-            "sensitivity",
-            "Analyse",
-            absent=("auto", "As Far As Cheap", "As much as an eighth of the evaluations allow"),
-            menu=(("Full", "Also after a short search"), ("Off", "The result is not analysed")),
-        ),
-    )
     keep: Sequence[str] = setting(
         (), Several(KEPT), "Key figures that placements keep: as wanted, or as good as at the start"
     )

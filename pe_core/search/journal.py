@@ -7,7 +7,7 @@ bits as one that was never interrupted.
 
 import hashlib
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from typing import Any, NamedTuple
 
@@ -17,8 +17,6 @@ from ..scene.rig import Rig
 from ..scoring.score import Objective
 from .dispatch import evaluate_all
 
-OnTold = Callable[[Rig, int, float], None]
-"""Takes a rig, the level that it was evaluated on, and its value."""
 DIGEST_BYTES = 4  # Length of the digest that identifies a placement
 BATCH = 16
 """Candidates that a method may ask for at once when several are evaluated in parallel."""
@@ -63,11 +61,10 @@ class Journal:
         """All entries so far; may be read while another thread searches."""
         return tuple(self._entries)
 
-    def wrap(self, objectives: Sequence[Objective], told: OnTold | None = None) -> list[Objective]:
+    def wrap(self, objectives: Sequence[Objective]) -> list[Objective]:
         """Return objectives, one for each level of a method, that replay and extend the journal.
-        Behind the end of the journal they evaluate with the given objectives. `told` is called with
-        every value, replayed or new, in the order of the questions."""
-        return [JournaledObjective(self, own, k, told) for k, own in enumerate(objectives)]
+        Behind the end of the journal they evaluate with the given objectives."""
+        return [JournaledObjective(self, own, k) for k, own in enumerate(objectives)]
 
     def replay(self, rig: Rig, level: int) -> float | None:
         """Return the journaled value of the next placement; None behind the end of the journal.
@@ -97,10 +94,10 @@ class Journal:
 class JournaledObjective:
     """An objective that replays a journal, and records what it evaluates behind the end."""
 
-    def __init__(
-        self, journal: Journal, objective: Objective, level: int = 0, told: OnTold | None = None
-    ) -> None:
-        self._journal, self._objective, self._level, self._told = journal, objective, level, told
+    def __init__(self, journal: Journal, objective: Objective, level: int = 0) -> None:
+        self._journal = journal
+        self._objective = objective
+        self._level = level
 
     def entropy(self, rig: Rig) -> float:
         """Return the entropy of a rig, from the journal or from the objective [nats]."""
@@ -121,11 +118,7 @@ class JournaledObjective:
         new_values = evaluate_all(self._objective, new_rigs, cutoff, executor)
         for rig, value in zip(new_rigs, new_values, strict=True):
             self._journal.record(rig, self._level, value)
-        values += new_values
-        if self._told is not None:
-            for rig, value in zip(rigs, values, strict=True):
-                self._told(rig, self._level, value)
-        return values
+        return values + new_values
 
 
 def _digest(rig: Rig, level: int) -> str:

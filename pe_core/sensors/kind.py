@@ -120,7 +120,6 @@ class Kind:
     `measure_parts`: Of a sensor, `BodyParts` and the vehicle: m (N,) of the cells of bodies by
         definition. A point is counted in the cells that its ray meets in the band in which it
         surely ends.
-    `image_widths`: Of a sensor and objects: the widths (N,) of their images [px].
     `counts_points`: Whether m of an object is a number of points on it.
     `point`: m that is one point to a requirement: below 1 where m is an expected number.
     `shows_parts`: Whether its rays end on bodies, so that it tells which part of one it sees:
@@ -167,7 +166,6 @@ class Kind:
     object_curves: Mapping[str, ApCurve] = field(default_factory=dict)
     measure_objects: Callable[[Sensor, Objects, Vehicle | None, bool], Floats] = NO_OBJECTS
     measure_parts: Callable[[Sensor, BodyParts, Vehicle | None], Floats] = NO_PARTS
-    image_widths: Callable[[Sensor, Objects], Floats] = NO_PICTURES
     counts_points: bool = False
     point: float = 1.0
     shows_parts: bool = False

@@ -18,7 +18,7 @@ from ..base.errors import InputError, shown
 from ..base.files import decode_text, read_bytes
 from ..base.setting import OneOf, Panel, changed_settings, check_settings, setting
 from ..base.table_reader import Table, load_toml
-from ..base.values import A_NAME, Number, choice
+from ..base.values import A_NAME, choice
 from ..metric.entropy import ApCurve
 from ..metric.frames import Frames
 from .kind import KINDS, ClassCurves, kind_named
@@ -40,14 +40,6 @@ MODEL: str = setting(
             ("CenterPoint", "LiDARs: fitted to published AP by range, within one rig"),
         ),
     ),
-    scored=True,
-)
-"""The field of `PerceptionModel`."""
-PROTOCOL_FLOOR: float = setting(
-    0.0,
-    Number(0.0, 1.0, below=True),
-    "Recall and precision up to this do not count in expected AP: nuScenes has 0.1, the paper 0",
-    Panel("protocol_floor", "Protocol Floor", precision=2, max=0.99),
     scored=True,
 )
 """The field of `PerceptionModel`."""
@@ -141,8 +133,6 @@ class PerceptionModel:
         Curves of whole objects, m counted on the object, in place of the model's.
     model : {"paper", "scans", "bevfusion", "centerpoint"}
         Curves of the other objects: the kind's own, or of LiDARs those fitted to detectors.
-    protocol_floor : float
-        Recall and precision up to it do not count where AP is averaged.
     frames : Frames, optional
         Frames that an entropy is of, and the process noise between them; one frame by default.
     **curves : ApCurve
@@ -155,7 +145,6 @@ class PerceptionModel:
     """Curves by kind, only those that differ from the kind's own."""
     objects: ClassCurves
     model: str = MODEL
-    protocol_floor: float = PROTOCOL_FLOOR
     frames: Frames | None = None
 
     def __init__(
@@ -164,14 +153,12 @@ class PerceptionModel:
         *,
         objects: ClassCurves | None = None,
         model: str = PAPER,
-        protocol_floor: float = 0.0,
         frames: Frames | None = None,
         **curves: ApCurve,
     ) -> None:
         put = object.__setattr__
         put(self, "frames", frames)
         put(self, "model", model)
-        put(self, "protocol_floor", protocol_floor)
         check_settings(self, "ap")
         put(self, "blind", choice("fusion", "blind", blind, BLIND_RULES))
         put(self, "other_curves", _checked_curves(curves))
@@ -210,7 +197,7 @@ class PerceptionModel:
     def with_model(self, model: str, frames: Frames | None = None) -> "PerceptionModel":
         """Return this with the curves of objects of another model, over frames if any are given."""
         own: Any = {"objects": self.objects, "model": model, "frames": frames, **self.other_curves}
-        return PerceptionModel(self.blind, protocol_floor=self.protocol_floor, **own)
+        return PerceptionModel(self.blind, **own)
 
     @property
     def curves(self) -> dict[str, ApCurve]:

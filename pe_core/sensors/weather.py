@@ -51,7 +51,7 @@ class Weather:
 
     Its fields say what they mean. At most one of rain, snow and fog is given: a measured
     visibility, where a contrast has fallen to 5 %, holds all that is in the air. At night
-    passive cameras see what the vehicle's headlamps light, or as far as `lit_m` in clear air.
+    passive cameras see what the vehicle's headlamps light.
     Wet clothes have a reflectivity of 0.5.
 
     `InputError` when a value is out of its range, or two of rain, snow and fog are given.
@@ -74,13 +74,6 @@ class Weather:
     )
     night: bool = setting(
         False, FLAG, "Cameras see what headlamps light", Panel("night", "Night"), scored=True
-    )
-    lit_m: float | None = setting(
-        None,
-        MOR,
-        "How far objects are lit at night",
-        Panel("lit_m", "Lit", zero="as two headlamps of UN R112 light", when="night"),
-        scored=True,
     )
     reflectivity: float = setting(
         1.0,
@@ -105,8 +98,6 @@ class Weather:
         if len(both) > 1:
             expected = "one of rain, snow and visibility (fog_mor_m): it holds all in the air"
             raise InputError(who, both[1].split()[0], expected, " and ".join(both))
-        if self.lit_m is not None and not self.night:
-            raise InputError(who, "lit_m", "night = true with it", "night = false")
 
     def __call__(self, rig: Rig, vehicle: Vehicle | None = None) -> tuple[Rig, Vehicle | None]:
         """Return a rig with its sensors as they are under this weather, and the vehicle itself."""
@@ -213,8 +204,7 @@ def camera_range(max_range: float, weather: Weather) -> float:
     if alpha > 0.0:
         found = min(found, math.log(CONTRAST / THRESHOLD) / alpha)
     if weather.night:
-        clear = LAMP_M * math.sqrt(LAMPS * LAMP_LUX / SEEN_LUX)
-        lit = clear if weather.lit_m is None else weather.lit_m
+        lit = LAMP_M * math.sqrt(LAMPS * LAMP_LUX / SEEN_LUX)
         log_lit = 2.0 * math.log(lit)
         found = min(found, _greatest(lambda d: 2.0 * math.log(d) + alpha * d <= log_lit, lit))
     return _down(found)

@@ -22,7 +22,7 @@ from .conditions import Conditions, StateInWeather, state_from_dict, state_table
 from .file_names import AREAS, MESH, OPTIMIZED, RESULT, REVIEW_PAGE, SCHEMA, SEARCH, STUDY
 from .mounting_file import mounts_table
 from .passthrough import passthrough_of_text, passthrough_table, passthrough_text, read_passthrough
-from .study import OBJECTIVES, Search, Study, vehicle_digest
+from .study import OBJECTIVES, Search, Study
 from .study_file import (
     is_switch,
     load_study,

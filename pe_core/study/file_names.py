@@ -9,11 +9,7 @@ GRID = "prior.npy"
 """File of a prior's weights beside a study, when they have no file of their own."""
 OPTIMIZED = "optimized.blend"  # The file that Blender adds
 REVIEW_PAGE = "review.html"  # The review page
-SEARCH, RUNNERS_UP = "search.json", tuple(f"runner_up_{k}.toml" for k in (1, 2, 3))
-"""Checkpoint of a search, from which it can be resumed, and studies of other optima it found."""
-BESIDE_RESULT = (
-    *(STUDY, MESH, AREAS, BOXES, GRID, HISTORY, SEARCH),
-    *(*RUNNERS_UP, OPTIMIZED, REVIEW_PAGE),
-)
+SEARCH = "search.json"  # Checkpoint of a search, from which it can be resumed
+BESIDE_RESULT = (*(STUDY, MESH, AREAS, BOXES, GRID, HISTORY, SEARCH), *(OPTIMIZED, REVIEW_PAGE))
 """All files that belong to a result.json."""
 SCHEMA = 1  # Version of the schema of result.json

@@ -4,7 +4,6 @@ Panel, headless Blender and the command line all build a `Study` and give it to 
 is why they agree to the bit.
 """
 
-import hashlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -489,11 +488,6 @@ FIELDS |= {"targets": TargetRule, "vehicle": Vehicle, "reference": Reference}
 FIELDS |= {"conditions": Conditions, "passthrough": Passthrough}
 FIELDS |= {"frames": Frames, "confirmation": Confirmation, "stories": tuple}
 OPTIONAL = ("vehicle", "reference", "passthrough")
-
-
-def vehicle_digest(vehicle: Vehicle | None) -> str | None:
-    """SHA-256 of the vehicle's triangles: tells whether two runs saw the same body."""
-    return None if vehicle is None else hashlib.sha256(vehicle.triangles.tobytes()).hexdigest()
 
 
 def _each(table: Any, field: str, check: Callable[[str, str, Any], Any]) -> dict[str, Any]:

@@ -35,7 +35,6 @@ from ..prior.prior import Focus
 from ..scene.data_sheet import DataSheet
 from ..scene.mesh import MeshAxes, require_vehicle_size
 from ..scene.rig import Rig, Sensor, SensorModel
-from ..scene.scan import ScanTiming
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_description import Reference
 from ..scene.vehicle_state import Motion, State
@@ -270,8 +269,7 @@ def _read_sensor(table: Table, folder: Path) -> Sensor:
     color = table.text("color", None)
     with table.naming():
         sheet = DataSheet(**read_settings(table, DataSheet))
-        scan = ScanTiming(**read_settings(table, ScanTiming))
-        return Sensor(name, intrinsics, pose, fusion, curve, color, sheet, scan)
+        return Sensor(name, intrinsics, pose, fusion, curve, color, sheet)
 
 
 def _read_intrinsics(table: Table, sensor: str, folder: Path) -> SensorModel:
@@ -332,7 +330,6 @@ def _mounted_table(sensor: Sensor) -> dict[str, Any]:
         "ap": None if sensor.curve is None else curve_table(sensor.curve),
         "color": sensor.color,
         **settings_table(sensor.sheet),
-        **changed_settings(sensor.scan),
     }
 
 
@@ -422,7 +419,6 @@ SECTIONS = (
     StudyTable("optimize.mount", SurfaceMount, rows=True),
     StudyTable("optimize.no_go", NoGo, rows=True),
     StudyTable("sensor", DataSheet, rows=True),
-    StudyTable("sensor", ScanTiming, rows=True),
     StudyTable("choice.option", Option, rows=True),
     StudyTable("prior.focus", Focus, rows=True),
     StudyTable("ap.KIND", ApCurve, rows=True),

@@ -14,7 +14,7 @@ FRAGILE = "fragile"  # Code of the warning that concerns the placement of all se
 UNMET = "requirement"  # Code of the warning about a requirement that a search could not keep
 NOT_KEPT = "figure"  # Code of the warning about a key figure that a search could not keep
 SUBJECTS = {FRAGILE: "placement", UNMET: "placement", NOT_KEPT: "search", "returns": "returns"}
-SUBJECTS |= {"range_term": "AP curves", "protocol_floor": "expected AP"}
+SUBJECTS |= {"range_term": "AP curves"}
 """What warnings without a sensor concern, by code; others concern the vehicle."""
 
 

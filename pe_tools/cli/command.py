@@ -15,8 +15,8 @@ from pe_core.base.errors import InputError, one_of
 from pe_core.base.files import named_path, quoted, reason_of
 from pe_core.base.input_files import noting_inputs
 from pe_core.search import Schedule
-from pe_core.search.goals import FULL, OFF, Front, Start
 from pe_core.search.goals import OBJECTIVES as GOALS
+from pe_core.search.goals import Front, Start
 from pe_core.search.key_figures import KEPT
 from pe_core.sensors import CURVE_MODELS, KINDS, curve_source, detectors, fitted_curves, kind_of
 from pe_core.sensors.lidar import RETURNS
@@ -32,7 +32,6 @@ MAX_WORKERS, MAX_VOXELS, LAST_SEED = 1024, 10**9, 2**64 - 1
 """Greatest values of options: more threads or voxels than anyone has a use for."""
 
 
-AUTO = "auto"  # Value of `--sensitivity` that leaves the study's own
 NOTHING = "none"  # Value of `--keep` that keeps no figure
 STOPS = {"stop_at": "target", "stop_after": "seconds", "stop_gain": "gain"}
 """Fields of `Stop` by option."""
@@ -119,8 +118,6 @@ def add_search_options(parser: argparse.ArgumentParser) -> None:
     add("--front", type=_names, metavar="NAME,...", help=about)
     about = f"{', '.join(KEPT)}: kept as this or as the start has it, too; none: nothing is kept"
     add("--keep", action="append", type=_kept, metavar="FIGURE[=VALUE]", help=about)
-    about = "how sure the result is: as far as an eighth of the evaluations goes, all of it, or off"
-    add("--sensitivity", choices=(AUTO, FULL, OFF), metavar="auto|full|off", help=about)
 
 
 def add_score_options(parser: argparse.ArgumentParser, workers: str = "threads") -> None:
@@ -229,8 +226,6 @@ def with_goals(study: Study, args: argparse.Namespace) -> Study:
         goals = replace(goals, fixed=tuple(dict.fromkeys((*goals.fixed, *names))))
     if (names := getattr(args, "front", None)) is not None:
         goals = replace(goals, front=Front(names, goals.front.points))
-    if (wanted := getattr(args, "sensitivity", None)) not in (None, AUTO):
-        goals = replace(goals, sensitivity=wanted)
     if given := dict(getattr(args, "keep", None) or ()):
         keep = () if NOTHING in given else tuple(dict.fromkeys((*goals.keep, *given)))
         asked = {name: value for name, value in given.items() if value is not None}

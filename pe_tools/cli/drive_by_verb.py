@@ -82,7 +82,7 @@ def story_lines(driven: Sequence[DriveBy]) -> list[str]:
     bodies = [body for each in driven for body in each.bodies]
     chances = sorted({chance for body in bodies for chance in body.moments})
     head = ["", "story", "body", *(f"confirmed {c:.0%}" for c in chances), "lost", "margin"]
-    head += ["stops in"] + ["seam"] * any(body.seam_m is not None for body in bodies)
+    head += ["stops in"]
     rows = [[*_row(each, body, chances)] for each in driven for body in each.bodies]
     met = sum(each.is_met for each in driven)
     return [*aligned([head, *rows]), f"{met} of {len(driven)} stories confirmed in time"]
@@ -96,7 +96,4 @@ def _row(driven: DriveBy, body: SeenBody, chances: Sequence[float]) -> list[str]
     margin = "-" if body.margin_s is None else f"{body.shown_margin_s:+.1f} s"
     met = "met" if body.is_met else "NOT MET"
     lost, stop = f"{shown_end(body.lost_s):.1f} s", f"{shown_end(driven.story.stop_m):.1f} m"
-    row = [met, driven.story.name, body.name, *texts, lost, margin, stop]
-    if body.seam_m is None:
-        return row
-    return [*row, f"{shown_end(body.seam_m):.1f} m, {' and '.join(body.seam_of)}"]
+    return [met, driven.story.name, body.name, *texts, lost, margin, stop]

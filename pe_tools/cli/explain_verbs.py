@@ -7,12 +7,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from pe_core import catalog
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
 from pe_core.base.table_reader import finite
 from pe_core.base.values import error_text
-from pe_core.study import Study, vehicle_digest
+from pe_core.scene import Vehicle
+from pe_core.study import Study
 
 from .. import advice
 from ..advice import ComparedRow
@@ -132,6 +135,12 @@ def explain(study: Study, args: argparse.Namespace) -> Answer:
     return _answer(data, lines, args.json)
 
 
+def _same_body(one: Vehicle | None, other: Vehicle | None) -> bool:
+    if one is None or other is None:
+        return one is other
+    return bool(np.array_equal(one.triangles, other.triangles))
+
+
 def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
     """Score studies by name, and print a table that compares them."""
     refuse_different(studies)
@@ -140,7 +149,8 @@ def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
     scores = {name: outcome.after for name, outcome in outcomes.items()}
     figures = {n: each.key_figures(outcomes[n].figures_after) for n, each in studies.items()}
     rows, figure_rows = advice.compare(scores), advice.compare_figures(figures)
-    alike = len({vehicle_digest(study.vehicle) for study in studies.values()}) == 1
+    first, *others = (study.vehicle for study in studies.values())
+    alike = all(_same_body(first, other) for other in others)
     data = {
         "scores": {name: score.to_dict() for name, score in scores.items()},
         "figures": {name: own.to_dict() for name, own in figures.items()},

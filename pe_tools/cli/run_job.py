@@ -202,9 +202,6 @@ def keep(
             each.write(found, data, folder)
 
     is_whole = written(write, output)
-    if isinstance(found, jobs.Outcome):
-        for name in jobs.files_of_other_runs(output):  # checkpoints may lie beside an older result
-            tell(f"{output / name}: not of this run")
     return (DONE if is_whole else BAD_INPUT), data
 
 

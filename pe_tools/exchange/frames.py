@@ -14,7 +14,6 @@ import numpy as np
 
 from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError
-from pe_core.base.files import is_reserved
 from pe_core.base.values import vector
 from pe_core.geometry.poses import METRES, PROPER_WITHIN, Pose, rpy_from_matrix
 from pe_core.geometry.poses import checked_rotation as checked_rotation
@@ -266,11 +265,9 @@ def poses_from_root(path: Path, hung: Hung, frames: Collection[str], noun: str) 
 
 def legal_frame(name: str, *, slashes: bool = False) -> str:
     """Return a frame name of letters, digits and underscores that begins with a letter. With
-    `slashes`, the name may also contain ``/``, as frame names of tf2 may. Files are named after
-    frames: no part of the name is one that Windows keeps for a device."""
+    `slashes`, the name may also contain ``/``, as frame names of tf2 may."""
     plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
     legal = (ILLEGAL_IN_TF if slashes else ILLEGAL).sub("_", plain).strip("_/")
-    legal = "/".join(f"sensor_{p}" if is_reserved(p) else p for p in legal.split("/"))
     return legal if legal[:1].isalpha() else f"sensor_{legal}".rstrip("_")
 
 

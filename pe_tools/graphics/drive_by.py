@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise, product
 from typing import NamedTuple
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from pe_core.base import dump_json
 from pe_core.base.arrays import Floats
-from pe_core.motion import MAX_FRAMES, Actor, DriveBy, SeenBody, Story
+from pe_core.motion import CHANCE, RATE_HZ, Actor, DriveBy, SeenBody, Story
 from pe_core.scene import Rig, Vehicle
 
 from .colors import CIVIDIS, Rgba, on_scale, with_alpha
@@ -27,6 +27,8 @@ CONFIRMED: Rgba = (0.35, 0.85, 0.55, 1.0)
 BRAKE: Rgba = (1.0, 0.50, 0.25, 1.0)
 WHOLE_RIG, TRACK = "whole rig", "track confirmed"
 SWATCHES = 12
+MAX_RATE_HZ, MAX_TIMES = 100.0, 6000
+"""Of what is drawn: times in a second, and in all."""
 FACE_ALPHA, PATH_ALPHA, MARK_M = 0.25, 0.55, 0.6
 CORNERS = np.array(list(product((-0.5, 0.5), repeat=3)))
 CROSS = np.array([(-0.3, 0.0, 0.0), (0.3, 0.0, 0.0), (0.0, -0.3, 0.0), (0.0, 0.3, 0.0)])
@@ -100,10 +102,10 @@ class BodiesInTime:
     def of(cls, driven: DriveBy, vehicle: Vehicle | None, rate_hz: float) -> BodiesInTime:
         """Return bodies so many times a second; AP is that of the last frame of the sensors."""
         story = driven.story
-        rate = min(rate_hz, 100.0, MAX_FRAMES / (story.end_s - story.start_s))
-        fine = replace(story, rate_hz=rate)
-        where, headings = fine.positions(vehicle)
-        found = ((fine.times - story.start_s) * story.rate_hz + 1e-6).astype(int)
+        rate = min(rate_hz, MAX_RATE_HZ, MAX_TIMES / -story.start_s)
+        times = story.times_at(rate)
+        where, headings = story.positions(vehicle, times)
+        found = ((times - story.start_s) * RATE_HZ + 1e-6).astype(int)
         frame = np.minimum(found, len(story.times) - 1)
         seen, bodies = {body.name: body for body in driven.bodies}, []
         for k, actor in enumerate(story.actors):
@@ -111,7 +113,7 @@ class BodiesInTime:
             ap = np.zeros(len(frame)) if own is None else own.ap[frame]
             alone = {} if own is None else {n: v[frame] for n, v in own.by_sensor.items()}
             bodies.append(MovingBody(actor, where[k], headings[k], ap, alone, own))
-        return cls(driven, rate, fine.times, tuple(bodies))
+        return cls(driven, rate, times, tuple(bodies))
 
 
 def digest(driven: DriveBy) -> str:
@@ -130,16 +132,16 @@ class Mark(NamedTuple):
 
 def strip_ends(story: Story) -> tuple[float, float]:
     """Return the times at both ends of a strip [s], in which each frame has an equal width."""
-    half = 0.5 / story.rate_hz
+    half = 0.5 / RATE_HZ
     return float(story.times[0]) - half, float(story.times[-1]) + half
 
 
 def marks_of(story: Story, body: SeenBody) -> list[Mark]:
     """Return when a body is confirmed, and when the vehicle has to brake, the first one first."""
-    moment = body.moments[story.chance]
+    moment = body.moments[CHANCE]
     marks = [Mark(max(story.brake_s, story.start_s), "must brake here", BRAKE)]
     if moment is not None:
-        marks.append(Mark(moment.time_s, f"confirmed here {story.chance:.0%}", CONFIRMED))
+        marks.append(Mark(moment.time_s, f"confirmed here {CHANCE:.0%}", CONFIRMED))
     return sorted(marks)
 
 

@@ -7,9 +7,8 @@ from __future__ import annotations
 import hashlib
 import os
 import secrets
-import time
-from collections.abc import Callable, Collection, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Collection, Iterable
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -26,17 +25,10 @@ from pe_core.base.files import (
 from pe_core.base.input_files import not_noting_inputs
 from pe_core.base.table_reader import dump_json, parse_json
 
-try:
-    import fcntl
-except ImportError:  # on Windows two runs in one folder may reject each other's files
-    fcntl = None  # type: ignore[assignment]
-
 LISTING = ".perception-entropy.json"
 """Name of the list of our files: ``{"perception-entropy": 1, "files": {name: [SHA-256, ...]}}``."""
 PROGRAM, VERSION = "perception-entropy", 1
 DIGESTS_KEPT = 8  # Number of digests listed for each file: those of its latest versions
-LOCK_TRIES, LOCK_PAUSE_S = 200, 0.01
-"""Attempts and pause [s] of waiting for another run that writes to the folder for milliseconds."""
 Write = Callable[[Path], None]
 """Writes a file to the given path, which has the final suffix and is in the final folder."""
 Listed = dict[str, list[str]]
@@ -94,8 +86,8 @@ class FileSet:
         """Remove files at the end of the context, if they are unchanged files of this program."""
         self._unwanted = tuple(names)
 
-    def add(self, name: str, write: Write | bytes) -> str:
-        """Write a file under a temporary name; return its SHA-256. `InputError` if that fails."""
+    def add(self, name: str, write: Write | bytes) -> None:
+        """Write a file under a temporary name. `InputError` if that fails."""
         path = self._folder / name
         temporary = path.with_name(f".{secrets.token_hex(8)}{path.suffix}")
         self._made[name] = (temporary, "")
@@ -114,7 +106,6 @@ class FileSet:
         if not digest:
             raise InputError(path, "file", "a path that can be written", "nothing was written")
         self._made[name] = (temporary, digest)
-        return digest
 
     def __enter__(self) -> FileSet:
         return self
@@ -127,8 +118,7 @@ class FileSet:
     ) -> None:
         try:
             if kind is None:
-                with _alone_in(self._folder):
-                    self._put()
+                self._put()
         except OSError as failed:
             raise InputError(
                 self._folder, "output", "a folder that can be written", reason_of(failed)
@@ -152,26 +142,6 @@ class FileSet:
         put_in_place({temporary: self._folder / name for name, (temporary, _) in new.items()})
         for name in set(self._unwanted) & set(our_files(self._folder)) - set(self._made):
             _unlink(self._folder / name)
-
-
-@contextmanager
-def _alone_in(folder: Path) -> Iterator[None]:
-    """Lock the folder against other runs that list and replace its files. After a short wait the
-    run continues without the lock: its holder may be suspended, or the file system may not support
-    locks."""
-    if fcntl is None:
-        yield
-        return
-    number = os.open(folder, os.O_RDONLY)
-    try:
-        for _ in range(LOCK_TRIES):
-            with suppress(OSError):
-                fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                break
-            time.sleep(LOCK_PAUSE_S)
-        yield
-    finally:
-        os.close(number)
 
 
 def sha256_of(path: Path) -> str:

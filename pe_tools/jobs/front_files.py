@@ -8,7 +8,6 @@ from typing import Any
 from pe_core.base.files import csv_text, file_stem
 from pe_core.base.table_reader import dump_json, finite
 from pe_core.study.file_names import STUDY
-from pe_core.study.study import vehicle_digest
 from pe_core.study.study_file import study_to_dict
 
 from .folder import FileSet, Write, our_files, prepare_folder
@@ -42,10 +41,7 @@ def front_dict(chosen: TradeOff, host: Mapping[str, str] | None = None) -> dict[
         "designs": [_design_dict(d, d in chosen.front, files.get(d.name)) for d in chosen.designs],
         "refused": chosen.refused,
         "notes": chosen.notes,
-        "inputs": {
-            "study": study_to_dict(chosen.study),
-            "vehicle_sha256": vehicle_digest(chosen.study.vehicle),
-        },
+        "inputs": {"study": study_to_dict(chosen.study)},
         "run": run_dict(chosen.seconds, host or {}),
     }
     return finite(data)

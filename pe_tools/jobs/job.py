@@ -29,8 +29,15 @@ from pe_core.study.condition_table import (
 from pe_core.study.requirement_search import is_infeasible
 from pe_core.study.study import Study
 
-from ..advice import Advice, curve_warnings, difference_error, gain_sentence, search_cost, warnings
-from ..sensitivity import Sensitivity
+from ..advice import (
+    Advice,
+    Flatness,
+    curve_warnings,
+    difference_error,
+    gain_sentence,
+    search_cost,
+    warnings,
+)
 from .own_objective import OwnValues
 from .searched_figure import IN_NATS, SearchedFigure, searched_figure, searched_on
 
@@ -110,8 +117,8 @@ class Outcome(Tabular):
         On the requirements of `study`, in its order.
     conditions : ConditionTable or None
         Of `study`, where it has states or weathers.
-    sensitivity : Sensitivity or None
-        How sure a search is of its result; None where it was too short or has it off.
+    flatness : Flatness or None
+        What steps from the result of a search cost; None where the search was too short.
     starts : tuple of StartEnd
         Where each start of a search ended, if it had several.
     stop_reason : str
@@ -142,7 +149,7 @@ class Outcome(Tabular):
     robustness: Robustness | None = None
     verdicts: tuple[Verdict, ...] = ()
     conditions: ConditionTable | None = None
-    sensitivity: Sensitivity | None = None
+    flatness: Flatness | None = None
     starts: tuple[StartEnd, ...] = ()
     stop_reason: str = ""
     seed_scatter: float | None = None

@@ -1,6 +1,5 @@
 """The result files of a run in its output folder: result.json, history.csv, study.toml, and more.
-The files of a run are one set. `FileSet` writes them together, with result.json last; result.json
-lists the SHA-256 of each other file."""
+The files of a run are one set. `FileSet` writes them together, with result.json last."""
 
 import json
 import platform
@@ -11,9 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from pe_core.base.files import csv_text, read_bytes
-from pe_core.base.input_files import not_noting_inputs
-from pe_core.base.table_reader import dump_json, finite, parse_json
+from pe_core.base.files import csv_text
+from pe_core.base.table_reader import dump_json, finite
 from pe_core.scene.rig import Rig
 from pe_core.search import AXES, EvaluatedRig
 from pe_core.study.condition_table import ConditionScore, ConditionTable
@@ -25,7 +23,6 @@ from pe_core.study.file_names import (
     HISTORY,
     MESH,
     RESULT,
-    RUNNERS_UP,
     SCHEMA,
     SEARCH,
     STUDY,
@@ -35,7 +32,7 @@ from pe_core.study.study import EXPECTED_AP, Study
 from pe_core.version import __version__
 
 from ..wording import percent
-from .folder import PROGRAM, FileSet, Write, our_files, prepare_folder, sha256_of
+from .folder import PROGRAM, FileSet, Write, prepare_folder
 from .job import HistoryRow, Outcome
 from .searched_figure import IN_NATS, SearchedFigure
 from .study_export import fingerprint, inputs_of, study_text, study_writers
@@ -47,7 +44,7 @@ def result_names(study: Study, kind: str) -> list[str]:
     given = [*[BOXES] * (prior.boxes is not None), *[GRID] * (prior.grid is not None)]
     areas = bool(areas_of(study.search.mounting))
     with_study = [STUDY, *[MESH] * vehicle, *[AREAS] * areas, *given]
-    of_search = [HISTORY, SEARCH, *RUNNERS_UP] * (kind == "optimize")
+    of_search = [HISTORY, SEARCH] * (kind == "optimize")
     return [*with_study, *of_search, RESULT]
 
 
@@ -93,8 +90,8 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
         data["change_stderr"] = outcome.change_errors
     data["ap_model"], data["returns"] = study.model.model, study.returns
     if is_search:
-        found = outcome.sensitivity
-        data["sensitivity"] = None if found is None else found.to_dict()
+        flat = outcome.flatness
+        data["flatness"] = None if flat is None else flat.to_dict()
         data["starts"] = [
             {"name": e.name, figure.key: figure.to_figure(e.entropy), "evaluations": e.evaluations}
             for e in outcome.starts
@@ -162,8 +159,6 @@ def write_outcome(
     if outcome.kind == "optimize":
         text = history_csv(outcome.history, outcome.figure)
         writers[HISTORY] = text.encode(errors="backslashreplace")
-        for name, each in runners_up(outcome).items():
-            writers[name] = study_text(each).encode()
         writers[SEARCH] = SearchState(outcome.start, outcome.inputs).to_bytes(
             {outcome.journal_name: outcome.evaluated}
         )
@@ -177,31 +172,14 @@ def add_to_result(
     writers: Mapping[str, Write | bytes],
     unwanted: Collection[str] = (),
 ) -> None:
-    """Write files of a run together with its result.json, which lists their SHA-256. The part "run"
-    of `data` is updated. `unwanted` files are removed, unless they are in `writers` or were not
-    written by this program. `InputError` if the folder cannot be written, or one of the files in it
-    was not written by this program."""
+    """Write files of a run together with its result.json. `unwanted` files are removed, unless they
+    are in `writers` or were not written by this program. `InputError` if the folder cannot be
+    written, or one of the files in it was not written by this program."""
     with FileSet(folder) as files:
         files.take_away(unwanted)
-        digests = {name: files.add(name, write) for name, write in writers.items()}
-        run = {**data["run"], "files": {**data["run"].get("files", {}), **digests}}
-        text = dump_json({**data, "run": run})
-        files.add(RESULT, text.encode(errors="backslashreplace"))
-    data["run"] = run
-
-
-@not_noting_inputs()
-def files_of_other_runs(folder: Path) -> list[str]:
-    """Return names of result files in a folder that do not belong to the run of its result.json.
-    They were written by an earlier run or an interrupted later run, or were changed by hand."""
-    try:
-        named = parse_json(RESULT, read_bytes(folder / RESULT))["run"]["files"]
-        ours = set(our_files(folder))
-        present = [n for n in BESIDE_RESULT if n in ours or n in named]
-        digests = {n: sha256_of(folder / n) for n in present}
-        return [n for n, digest in digests.items() if digest and digest != named.get(n)]
-    except (AttributeError, KeyError, TypeError, ValueError):
-        return []
+        for name, write in writers.items():
+            files.add(name, write)
+        files.add(RESULT, dump_json(data).encode(errors="backslashreplace"))
 
 
 def history_csv(history: tuple[HistoryRow, ...], figure: SearchedFigure = IN_NATS) -> str:
@@ -215,14 +193,6 @@ def history_csv(history: tuple[HistoryRow, ...], figure: SearchedFigure = IN_NAT
         best = figure.to_figure(row.entropy)
         rows.append([row.evaluation, row.round, best, *(v for p in poses for v in p)])
     return csv_text(rows)
-
-
-def runners_up(outcome: Outcome) -> dict[str, Study]:
-    """Return the studies of other optima that a search found, by the name of their file."""
-    found = outcome.sensitivity
-    ends = None if found is None else found.endings
-    rigs = [] if ends is None else [each.rig for each in ends.runners_up]
-    return {n: outcome.start.with_rig(rig) for n, rig in zip(RUNNERS_UP, rigs, strict=False)}
 
 
 def condition_lines(table: ConditionTable) -> list[str]:

@@ -27,8 +27,7 @@ from pe_core.study.requirement_search import constraints_of, feasible_first, is_
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
 from pe_core.study.suggestion import suggestions
 
-from ..advice import Advice, condition_warnings, fragile, not_kept, unmet
-from ..sensitivity import Archive, analyse
+from ..advice import Advice, condition_warnings, flatness_of, fragile, not_kept, unmet
 from .candidate_workers import ExecutorSource, candidate_workers
 from .job import HistoryRow, Job, Outcome, Progress, ProgressSteps, StartEnd, begun, best_so_far
 from .own_objective import OwnValues, own_objective
@@ -96,7 +95,7 @@ class OptimizeJob(Job):
         Journal of an earlier search of the same study, which is resumed.
     objective : callable, or an object with a method ``entropy``, optional
         What the search minimises in place of entropy: takes a `Rig`, returns a number. Processes
-        evaluate it if it can be pickled. Limits of the study are kept; robustness and sensitivity,
+        evaluate it if it can be pickled. Limits of the study are kept; robustness and flatness,
         which are of entropy, are left out.
 
     Attributes
@@ -138,7 +137,6 @@ class OptimizeJob(Job):
         self._ended: list[HistoryRow] = []
         self.stop_reason = ""
         self.descents: tuple[float, ...] = ()
-        self._archive = Archive()
         self._helpers: ExecutorSource = _nothing
         self._first: HistoryRow | None = None
         self._progress = Progress("preparing", 0.0)
@@ -239,17 +237,16 @@ class OptimizeJob(Job):
         against: tuple[Advice, ...] | None = ()
         if best.search.requirements and not all(verdict.met for verdict in verdicts):
             against = yield from self._beside(lambda _: unmet(suggestions(best)), analysing)
-        sensitivity = None
+        flat = None
         if self.analyses and self._own is None and not self.stopped:
-            sensitivity = yield from self._beside(
-                lambda _: analyse(
-                    self.study,
-                    best,
-                    self._archive,
-                    self.evaluations,
-                    self._held_out,
-                    self._helpers,
-                    lambda: not self.stopped,
+            flat = yield from self._beside(
+                lambda _: flatness_of(
+                    best.rig,
+                    objectives=self._held_out,
+                    evaluations=self.evaluations,
+                    by_ap=is_by_ap(best),
+                    helpers=self._helpers,
+                    goes_on=lambda: not self.stopped,
                 ),
                 analysing,
             )
@@ -276,7 +273,7 @@ class OptimizeJob(Job):
             found,
             verdicts,
             table,
-            sensitivity,
+            flat,
             tuple(self.ends),
             self.stop_reason,
             seed_scatter(self.descents) if self._own is None else None,
@@ -350,7 +347,7 @@ class OptimizeJob(Job):
 
     def _search(self) -> Iterator[Progress]:
         """Search from every start in turn; the best of what they end at is the result."""
-        objectives = self.journal.wrap(self._objectives, self._archive.note)
+        objectives = self.journal.wrap(self._objectives)
         starts = self.study.search.goals.starts
         rigs = {"": self.study.rig, **{s.name: s.placed(self.study.rig) for s in starts}}
         ended: list[tuple[float, list[HistoryRow]]] = []

@@ -10,7 +10,7 @@ from pe_core.base.values import rounded
 from pe_core.search import Objective, Step, Stop
 from pe_core.study.requirement_search import is_infeasible
 
-from ..sensitivity import sensitivity_lines
+from ..advice import flatness_lines
 from .job import Outcome
 from .searched_figure import IN_NATS, SearchedFigure
 
@@ -94,7 +94,7 @@ def sureness_lines(outcome: Outcome) -> list[str]:
     """Describe how sure a search is of its result; empty for a score."""
     figure = outcome.figure
     sample = "" if outcome.own is not None else ", on the sample of the search"
-    lines = [] if outcome.sensitivity is None else list(sensitivity_lines(outcome.sensitivity))
+    lines = [] if outcome.flatness is None else list(flatness_lines(outcome.flatness))
     for end in outcome.starts:
         name = f"the start {end.name}" if end.name else "the given start"
         lines.append(f"{name} ended {figure.ended(end.entropy)}{sample}")

@@ -14,7 +14,7 @@ from pe_core.base.table_reader import finite
 from pe_core.prior.grid import grid_bytes
 from pe_core.study.file_names import AREAS, BOXES, GRID, MESH, STUDY
 from pe_core.study.mounting_file import areas_mesh, areas_of, with_areas_in
-from pe_core.study.study import Study, vehicle_digest
+from pe_core.study.study import Study
 from pe_core.study.study_file import study_bytes, study_to_dict
 
 from ..formats.boxes import write_boxes
@@ -112,7 +112,6 @@ def inputs_of(study: Study) -> dict[str, Any]:
             "study_sha256": fingerprint(study),
             "vehicle": study.vehicle_line,
             "vehicle_triangles": 0 if study.vehicle is None else len(study.vehicle.triangles),
-            "vehicle_sha256": vehicle_digest(study.vehicle),
         }
     )
     return data

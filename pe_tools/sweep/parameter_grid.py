@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from pe_core.base.errors import InputError, one_of, shown
-from pe_core.base.files import is_reserved
 from pe_core.scene import Vehicle
 from pe_core.study import Study, load_study_data, study_from_dict
 
@@ -35,11 +34,10 @@ def folder_names(runs: Sequence[tuple[str, Mapping[str, str]]]) -> list[str]:
     names = []
     for name, each in zip(plain, words, strict=True):
         short = name[:MAX_NAME_LENGTH].strip("-.") or "run"
-        if short != ",".join(each) or alike[name.casefold()] > 1 or is_reserved(short):
+        if short != ",".join(each) or alike[name.casefold()] > 1:
             content = "\0".join(each).encode("utf-8", "surrogatepass")
             digest = hashlib.blake2b(content, digest_size=HASH_BYTES).hexdigest()
-            # As con.toml is reserved, con.2-1f is, too.
-            short = f"{'run-' if is_reserved(short) else ''}{short}-{digest}"
+            short = f"{short}-{digest}"
         names.append(short)
     return names
 

@@ -15,7 +15,7 @@ from pe_core.study import RESULT
 from pe_core.study.study import EXPECTED_AP
 from pe_core.version import __version__
 
-from ..jobs import FileSet, Outcome, files_of_other_runs, fingerprint, prepare_folder
+from ..jobs import FileSet, Outcome, fingerprint, prepare_folder
 from ..wording import aligned, percent
 from .sweep_runner import SweepRun
 
@@ -84,7 +84,7 @@ def row_of_result(run: SweepRun, folder: Path, kind: str) -> SweepRow | None:
         data: Any = parse_json(RESULT, read_bytes(folder / RESULT))
         made = (data["kind"], data["stopped"], data["run"]["versions"]["perception-entropy"])
         same = data["inputs"]["study_sha256"] == fingerprint(run.study)
-        if made != (kind, False, __version__) or not same or files_of_other_runs(folder):
+        if made != (kind, False, __version__) or not same:
             return None
         before, entropy = float(data["before"]["entropy"]), float(data["entropy"])
         found = data.get(EXPECTED_AP)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from pe_core.base import dump_json
-from pe_core.motion import Confirmation
+from pe_core.motion import CORRELATION_TIME_S
 from pe_tools import prepare_folder
 from pe_tools.cli import DONE, Answer
 
@@ -53,7 +53,7 @@ def page_of(found: Json) -> str:
     seen = found["memory"]["5"]
     values |= {"memory_head": HEAD, "memory_rows": table_rows(seen)}
     values |= {"remembered": memory_statements(seen)}
-    values |= {"default_s": Confirmation().correlation_time_s}
+    values |= {"default_s": CORRELATION_TIME_S}
     values |= {"order": statements(), "expected": expected(), "published": read_json(TABLE)}
     return render(Path(__file__).with_name("page.md.j2"), values)
 

@@ -83,7 +83,7 @@ class Linked:
         """Return the correlations (G,) by the model with a correlation of z."""
         chances = np.stack([self.first, self.then], axis=-1)
         lag = -math.log(correlation) if correlation > 0.0 else math.inf
-        both = Confirmation(2, 2, 1.0).confirmed(chances, lag)[:, 1]
+        both = Confirmation(2).confirmed(chances, lag, window=2, time_s=1.0)[:, 1]
         return np.asarray((both / self.first - self.then) / (1.0 - self.then))
 
 

@@ -1,12 +1,11 @@
-"""Goals of a search in the panel: the study that they make, fronts, runners-up as variants."""
+"""Goals of a search in the panel: the study that they make, fronts, lines of the analysis."""
 
 import bpy
 import pytest
 
-import pe_core as pe
 from blender_addon import bridge, diagnostics
 from pe_core.search import Goals
-from pe_tools import jobs
+from pe_tools.advice import flatness
 from pe_tools.jobs import FrontJob, front_dict
 from tests.addon import scenes
 
@@ -16,7 +15,7 @@ def asked(car):
     """Return a scene whose search has all goals."""
     settings = car.perception_entropy
     settings.evaluations, settings.search_samples = 60, 1024
-    settings.score_samples, settings.sensitivity = 1024, "off"
+    settings.score_samples = 1024
     return car
 
 
@@ -39,15 +38,10 @@ def test_the_panel_finds_the_front_of_the_job(asked):
     assert study.rig["roof"].pose == job.trade_off.front[0].study.rig["roof"].pose
 
 
-def test_runners_up_are_variants_and_their_lines_are_in_the_scene(asked, monkeypatch):
-    other = scenes.study().rig
-    moved = other.with_poses([pe.Pose((0.3, 0.0, 2.0))] + [s.pose for s in other.sensors[1:]])
-    found = {"runner_up_1.toml": scenes.study().with_rig(moved)}
-    monkeypatch.setattr(jobs, "runners_up", lambda _: found)
-    asked.perception_entropy.sensitivity = "full"
-    assert bpy.ops.pe.optimize() == {"FINISHED"}
+def test_how_flat_the_optimum_is_is_told_in_the_scene(asked, monkeypatch):
     settings = asked.perception_entropy
-    assert "Runner-up 1" in {row.name for row in settings.variants}
+    monkeypatch.setattr(flatness, "SHARE", 1)
+    assert bpy.ops.pe.optimize() == {"FINISHED"}
     assert "1 cm or 1 deg" in "\n".join(diagnostics.explanation(settings.id_data).search)
 
 
@@ -73,9 +67,9 @@ def test_what_a_search_could_not_keep_stays_until_something_moves(asked):
 def test_goals_of_the_panel_are_those_of_the_study(asked):
     settings = asked.perception_entropy
     kept = ("blind_ground", "blind_sector")
-    assert scenes.study().search.goals == Goals(sensitivity="off", keep=kept)
+    assert scenes.study().search.goals == Goals(keep=kept)
     settings.keep_blind_ground = settings.keep_blind_sector = False
-    assert scenes.study().search.goals == Goals(sensitivity="off")
+    assert scenes.study().search.goals == Goals()
     settings.stop_target, settings.stop_gain, settings.stop_over = -1.25, 0.002, 40
     bpy.data.objects["roof"].perception_entropy.stays = True
     goals = scenes.study().search.goals

@@ -93,8 +93,6 @@ def test_bodies_are_one_several_or_of_an_own_size(held):
 FIELDS = [
     ("criterion.points", {"points": 3}, 3),
     ("criterion.pixels", {"pixels": 12.5}, 12.5),
-    ("criterion.pixels_high", {"pixels_high": 4.0}, 4.0),
-    ("criterion.per_degree", {"per_degree": 2.0}, 2.0),
     ("criterion.share", {"share": 0.5}, 0.5),
     ("criterion.ap", {"ap": 0.4}, pytest.approx(0.4)),
     ("criterion.zone_share", {"zone_share": 0.9}, pytest.approx(0.9)),

@@ -36,7 +36,6 @@ def returns_of_the_road(settings, folder):
 def curve_with_a_range_term_and_the_floor(settings, _):
     bpy.ops.pe.own_curves()
     settings.curves["lidar"].own, settings.curves["lidar"].c = True, 0.25
-    settings.protocol_floor = 0.1
 
 
 def radar_and_ultrasonic_sensor(*_):

@@ -94,7 +94,7 @@ def rich(car):
     settings.prior, settings.returns = "highway", "road"
     assert bpy.ops.pe.add_focus(region="front") == {"FINISHED"}
     settings.targets, settings.traffic, settings.scenes = "objects", True, 24
-    settings.ap_model, settings.protocol_floor = "scans", 0.2
+    settings.ap_model = "scans"
     curve = settings.curves.add()
     curve.name, curve.own, curve.a, curve.b = "lidar", True, 0.2, 0.1
     curve.c = 0.1
@@ -146,7 +146,7 @@ def rich(car):
     settings.max_mass, settings.max_power, settings.max_data_rate = 90.0, 900.0, 9000.0
     own.may_be_left_out = True
     own.stays = True
-    settings.sensitivity, settings.front_objectives = "full", {"entropy", "height"}
+    settings.front_objectives = {"entropy", "height"}
     settings.start_poses = '[["other", {"eye": [2.1, 0.0, 1.1, 0.0, 0.0, 0.0]}]]'
     bpy.ops.pe.add_state()
     bpy.ops.pe.add_weather(weather="FOG")

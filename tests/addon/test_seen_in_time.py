@@ -10,11 +10,10 @@ import pytest
 from mathutils import Vector
 
 import pe_core as pe
-from blender_addon import bridge, film, result_staleness
-from blender_addon.bridge.sensor_records import sensor_of
+from blender_addon import film
 from blender_addon.operators.compare_variants import pending_variants
 from blender_addon.panels.condition_panel import seen_in_time
-from pe_core.motion import stories
+from pe_core.motion import RATE_HZ, stories
 from pe_tools import graphics
 from tests.addon import layouts, scenes
 
@@ -48,88 +47,16 @@ def test_a_story_is_added_checked_and_shown(car):
     assert len(settings.stories) == 1
 
 
-def test_how_sensors_scan_gives_seams_and_is_kept(car):
+def test_a_change_of_a_story_makes_the_figures_of_variants_stale(car):
     settings = car.perception_entropy
-    low = scenes.add_sensor("low", location=(2.3, 0.3, 0.8))
-    for obj, phase in ((bpy.data.objects["roof"], 0.0), (low, 0.5)):
-        obj.perception_entropy.scan_turns, obj.perception_entropy.scan_phase = "left", phase
-    settings.box_latency_s = 0.2
     bpy.ops.pe.add_story(story="cyclist_from_right")
-    bpy.ops.pe.check_requirements()
-    told = json.loads(settings.stories[0].result)["bodies"][0]
-    assert told["seam_of"] == ["low", "roof"] and told["seam_m"] > 0.1
-    drawn = layouts.drawn(seen_in_time, **vars(layouts.Window(car)))
-    assert any("low and roof see it up to" in str(note) for note in drawn.notes)
-    assert ("prop", "box_latency_s") in drawn.notes
-    study = scenes.study()
-    assert study.rig["low"].scan == pe.ScanTiming("left", 0.5)
-    assert study.confirmation.box_latency_s == 0.2
-    (record,) = [r for r in bridge.records_of_scene(car) if r.name == "low"]
-    assert sensor_of(record).scan == pe.ScanTiming("left", 0.5)
-    low.perception_entropy.scan_phase = 0.25
-    result_staleness.update_result()
-    assert not settings.stories[0].result
-
-
-def test_variants_that_differ_in_a_scan_are_two_and_keep_their_own_figures(car):
-    settings, roof = car.perception_entropy, bpy.data.objects["roof"].perception_entropy
-    bpy.ops.pe.add_story(story="cyclist_from_right")
-    roof.scan_turns = "left"
     bpy.ops.pe.save_variant()
-    roof.scan_phase = 0.25
+    bpy.data.objects["roof"].location.x += 0.25
     bpy.ops.pe.save_variant()
-    first, second = settings.variants
-    assert not bridge.same_score(bridge.records_of(first), bridge.records_of(second))
     assert bpy.ops.pe.compare_variants() == {"FINISHED"}
-    roof.scan_phase = 0.5
     assert not pending_variants(car)
-    assert bpy.ops.pe.score() == {"FINISHED"}
-    assert bool(settings.has_result)
     settings.stories[0].latency_s = 0.9
     assert len(pending_variants(car)) == 2
-
-
-def animated(scene, name, body, path):
-    """An object of 0.5 x 0.4 x 1.1 m that keyframes move straight: frame, x, y."""
-    bpy.ops.mesh.primitive_cube_add(size=1.0)
-    obj = bpy.context.object
-    obj.name, obj.scale = name, (0.5, 0.4, 1.1)
-    obj.perception_entropy.body = body
-    for frame, x, y in path:
-        obj.location = (x, y, 0.55)
-        obj.keyframe_insert("location", frame=frame)
-    return obj
-
-
-def test_any_animated_object_is_a_story(car):
-    settings = car.perception_entropy
-    with pytest.raises(RuntimeError, match="test bodies"):
-        bpy.ops.pe.add_story(story="animated")
-    assert not settings.stories
-    bpy.context.preferences.edit.keyframe_new_interpolation_type = "LINEAR"
-    car.frame_start, car.frame_end = 1, 73
-    animated(car, "runner", "child", [(1, 14.0, -6.0), (73, 2.0, 0.0)])
-    box = animated(car, "box", "HIDES", [(1, 8.0, -3.0)])
-    box.rotation_euler.z = 0.5
-    assert bpy.ops.pe.add_story(story="animated") == {"FINISHED"}
-    assert bpy.ops.pe.play_story() == {"FINISHED"}
-    (story,) = scenes.study().stories
-    assert (story.start_s, story.end_s, story.anchor) == (-3.0, 0.0, "origin")
-    runner, hides = story.actors
-    assert runner.watched and not hides.watched
-    assert runner.body.size == pytest.approx((0.5, 0.4, 1.1))
-    assert runner.body.class_name == "pedestrian"
-    where, headings = story.positions(None)
-    assert where[0, 0] == pytest.approx((14.0, -6.0)) and where[0, -1] == pytest.approx((2.0, 0.0))
-    assert where[0, 15] == pytest.approx((8.0, -3.0), abs=1e-3)  # it does not ride with the speed
-    assert where[1] == pytest.approx(where[1, :1].repeat(len(story.times), 0))
-    assert headings[1] == pytest.approx(0.5, abs=1e-4)
-    driven = scenes.study().drive_by(story)
-    assert [body.name for body in driven.bodies] == ["runner"] and driven.bodies[0].ap.max() > 0.0
-    (item,) = scenes.drawn(car)["story"].values()
-    assert len(item.frames) == 73
-    assert item.at(0.0).labels[0].text == item.at(9.0).labels[0].text  # the moments stay
-    assert item.at(0.0).faces.points[:, 0].max() > 14.0 > item.at(9.0).faces.points[:, 0].max()
 
 
 def test_the_3d_view_shows_what_a_check_says(car):
@@ -140,7 +67,7 @@ def test_the_3d_view_shows_what_a_check_says(car):
     marks = {mark.text: mark.time_s for mark in item.strip.marks}
     assert marks == {"must brake here": driven.story.brake_s, "confirmed here 90%": moment.time_s}
     late = item.at(5.0)
-    k = round(5.0 * driven.story.rate_hz)
+    k = round(5.0 * RATE_HZ)
     assert f"AP {driven.bodies[0].ap[k]:.2f}" in late.labels[-1].text
     rays = len(late.lines.points) - len(item.at(0.0).lines.points)
     assert rays == 2 * (int(driven.bodies[0].ap[k] > 0.0) - int(driven.bodies[0].ap[0] > 0.0))
@@ -149,7 +76,9 @@ def test_the_3d_view_shows_what_a_check_says(car):
 
 
 def test_a_film_is_a_scene_of_its_own(car):
-    story = replace(stories()["cyclist_from_right"], start_s=-2.0)
+    path = ((-2.0, 0.0, -8.333), (0.0, 0.0, 0.0))
+    story = stories()["cyclist_from_right"]
+    story = replace(story, actors=(replace(story.actors[0], path=path),))
     study = scenes.study()
     driven = study.drive_by(story)
     made = film.film_scene(car, study, story)

@@ -136,7 +136,6 @@ def report_state():
         "camera": scene.camera.name if scene.camera else None,
         "perspective": view3d()[1].spaces.active.region_3d.view_perspective,
         "view": view_seen(),
-        "inset": scene.perception_entropy.view.show_inset,
         "own_results": [s.name for s in sensors if found.result and s.name in found.result.sensors],
     }
     write("state.json", state)

@@ -95,9 +95,11 @@ def alone(*arguments) -> dict:
 
 SHORT_STORY = """
 [[story]]
-preset = "crossing_child"
-start_s = -0.6
-end_s = -0.3
+name = "crossing_child"
+speed_kmh = 30.0
+[[story.body]]
+body = "child"
+path = [[-0.3, 0.0, -0.5], [0.0, 0.0, 0.0]]
 """
 
 

@@ -171,11 +171,3 @@ def test_look_through_a_camera_and_esc_comes_back(window, screenshots):
     )
     assert window.state["view"]["numbers"] == pytest.approx(view["numbers"], abs=1e-5)
     assert "Traceback" not in window.log.read_text()
-
-
-def test_a_lidar_s_ranges_are_shown_as_a_picture(window, screenshots):
-    window.press_until(  # the one that the file was saved with is active
-        "pe.look_through", lambda: window.state["inset"], "its picture"
-    )
-    window.screenshot(screenshots / "window_ranges.png")
-    assert "Traceback" not in window.log.read_text()

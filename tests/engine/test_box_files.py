@@ -9,7 +9,6 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.base import errors
 from pe_tools.formats.boxes.kitti import CAMERA
 from tests.engine.refusals import wrongly_refused
 from tests.engine.test_study_file import MINIMAL
@@ -240,14 +239,6 @@ def test_a_column_of_tracks_is_no_column_of_classes(tmp_path):
     assert (error.value.field, error.value.found) == ("class", "300")
     path.write_text("\n".join([CSV.splitlines()[0], *rows[:64]]))
     assert len(pt.read_boxes(path).classes) == 64
-
-
-def test_classes_that_do_not_fit_in_memory_are_reported_before_work(monkeypatch):
-    rows = [(f"class {n}", 10, 2, 0.75, 4.5, 1.8, 1.5, 0.0) for n in range(50)]
-    prior, space = pe.Prior.from_boxes(rows), pe.PerceptionSpace()
-    monkeypatch.setattr(errors, "available_bytes", lambda: 10**9)
-    with pytest.raises(pe.InputError, match="prior: classes: expected what fits in the 1"):
-        prior.densities(space)
 
 
 STUDY = f"""

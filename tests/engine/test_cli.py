@@ -33,7 +33,7 @@ def test_a_search_that_would_keep_nothing_is_refused_before_it_begins(study, cap
     assert main(["optimize", str(study), "--evaluations", "1000000"]) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("pe: command line: output: expected -o DIR") and "--json" in line
-    few = ("--evaluations", "2", "--sensitivity", "off", "--no-review")
+    few = ("--evaluations", "2", "--no-review")
     assert main(["optimize", str(study), "--method", "portfolio", *few, "--json"]) == 0
     assert "placements" in json.loads(capsys.readouterr().out)
     assert set(tmp_path.rglob("*")) == before
@@ -45,7 +45,7 @@ def test_a_schedule_of_another_method_is_refused_and_one_that_is_left_out_is_tol
     study, tmp_path, capsys
 ):
     """`--candidates` once searched by the paper's method, whatever the study's was."""
-    few = ("--evaluations", "3", "--no-review", "--sensitivity", "off")
+    few = ("--evaluations", "3", "--no-review")
     by_default = tmp_path / "default.toml"
     by_default.write_text(
         re.sub(r"(?m)^(method|candidates|reach|floor|decay).*\n", "", study.read_text())

@@ -38,6 +38,14 @@ position = [1.0, 0.0, 1.4]
 """
 
 
+RANGED = f"""{STUDY}
+[ap.camera.objects.car]
+a = 0.055
+b = 0.6
+c = 0.12
+"""
+
+
 @pytest.fixture
 def path(tmp_path):
     file = tmp_path / "study.toml"
@@ -46,9 +54,9 @@ def path(tmp_path):
 
 
 @pytest.fixture
-def floored(path):
-    """As `path`, with a protocol's floor, and its warning."""
-    path.write_text(f"{STUDY}[ap]\nprotocol_floor = 0.1\n", "utf-8")
+def noted(path):
+    """As `path`, with a range term, and its warning."""
+    path.write_text(RANGED, "utf-8")
     return advice.curve_note([pe.load_study(path)])
 
 
@@ -105,9 +113,9 @@ def test_the_score_is_that_of_the_curves(path):
     assert now == then
 
 
-def test_what_is_not_the_paper_s_is_one_line(path, floored, capsys):
+def test_what_is_not_the_paper_s_is_one_line(path, noted, capsys):
     assert main(["explain", str(path)]) == 0
-    assert floored and capsys.readouterr().out.count(floored) == 1
+    assert noted and capsys.readouterr().out.count(noted) == 1
 
 
 @pytest.mark.parametrize("model", ["bevfusion", "centerpoint"])
@@ -181,7 +189,7 @@ def test_voxels_have_the_range_term_on_the_grid_and_on_a_sample(blind):
         assert ground.entropy == pytest.approx(h, abs=4.0 * exact)
 
 
-def test_objects_have_the_range_term_and_ap_is_averaged_above_the_floor(path):
+def test_objects_have_the_range_term(path):
     study = pe.load_study(path)
     study = replace(study, rig=pe.Rig([study.rig["front"]]))
     evaluator = study.evaluator()
@@ -190,37 +198,28 @@ def test_objects_have_the_range_term_and_ap_is_averaged_above_the_floor(path):
     distance = np.hypot(*drawn.objects.centers[:, :2].T)
     curves = dict.fromkeys(SIZES, FADING)
     ap = by_definition(m, FADING, distance)
-    for floor in (0.0, 0.1):
-        model = pe.PerceptionModel(objects={"camera": curves}, protocol_floor=floor)
-        found = replace(study, model=model).evaluator()
-        above = np.maximum(ap - floor, 0.0) / (1.0 - floor)
-        mean = np.average(above, weights=drawn.weights)
-        traffic = found.expected_ap(study.rig)
-        assert found.score(study.rig).objects.ap == traffic.ap == pytest.approx(mean, abs=1e-8)
-        near = zone_masks(*drawn.objects.centers[:, :2].T)["near"]
-        of_near = np.average(above[near], weights=drawn.weights[near])
-        assert traffic.rings["near"][0] == pytest.approx(of_near, abs=1e-8)
-    assert (above == 0.0).any() and 0.0 < mean < np.average(ap, weights=drawn.weights)
+    found = replace(study, model=pe.PerceptionModel(objects={"camera": curves})).evaluator()
+    mean = np.average(ap, weights=drawn.weights)
+    traffic = found.expected_ap(study.rig)
+    assert found.score(study.rig).objects.ap == traffic.ap == pytest.approx(mean, abs=1e-8)
+    near = zone_masks(*drawn.objects.centers[:, :2].T)["near"]
+    of_near = np.average(ap[near], weights=drawn.weights[near])
+    assert traffic.rings["near"][0] == pytest.approx(of_near, abs=1e-8)
 
 
-def test_a_file_has_both_only_where_they_are_set_and_both_are_told(path, tmp_path, capsys):
+def test_a_file_has_a_range_term_only_where_it_is_set_and_it_is_told(path, tmp_path, capsys):
     plain = study_to_dict(pe.load_study(path))["ap"]
-    assert "protocol_floor" not in plain and "c" not in plain["camera"]
-    path.write_text(f"{STUDY}[ap]\nprotocol_floor = 0.1\n[ap.camera.objects.car]\n"
-                    "a = 0.055\nb = 0.6\nc = 0.12\n", "utf-8")  # fmt: skip
+    assert "c" not in plain["camera"]
+    path.write_text(RANGED, "utf-8")
     study = pe.load_study(path)
     assert study.model.object_curve("camera", "car") == FADING
-    assert study.model.with_model("scans").protocol_floor == 0.1
     assert study_from_dict(study_to_dict(study), folder=tmp_path).model == study.model
     assert main(["score", str(path), "--json"]) == 0
     codes = [each["code"] for each in json.loads(capsys.readouterr().out)["warnings"]]
-    assert {"range_term", "protocol_floor"} <= set(codes)
+    assert "range_term" in codes
     own = [replace(s, curve=FADING) if s.name == "front" else s for s in study.rig]
     voxels = replace(study, rig=pe.Rig(own), targets=pe.TargetRule())
     assert "'front'" in advice.curve_note([voxels])
     assert study_from_dict(study_to_dict(voxels), folder=tmp_path).rig["front"].curve == FADING
     assert main(["compare", str(path), str(path)]) == 0
     assert capsys.readouterr().out.count("ap.camera.objects.car") == 1
-    path.write_text(f"{STUDY}[ap]\nprotocol_floor = 1.0\n", "utf-8")
-    with pytest.raises(pe.InputError, match="protocol_floor"):
-        pe.load_study(path)

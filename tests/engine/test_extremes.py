@@ -14,7 +14,6 @@ from pe_core.base.values import Angle, Number
 from pe_core.metric.entropy import ApCurve
 from pe_core.metric.frames import Frames
 from pe_core.scene.data_sheet import DataSheet
-from pe_core.scene.scan import ScanTiming
 from pe_core.scene.vehicle_description import Reference
 from pe_core.scene.vehicle_state import Motion, State
 from pe_core.scoring.requirements import BODIES, Criterion, Requirement, Zone
@@ -113,7 +112,6 @@ USES = {
         states=(State("open", motions=(Motion(parts=("cabin",), **change),)),)
     ),
     DataSheet: lambda change: answers(study(rig(sheet=DataSheet(**change)))),
-    ScanTiming: lambda change: answers(study(rig(scan=ScanTiming("left", **change)))),
     Reference: lambda change: answers(
         study(reference=Reference(**{"rear_axle_x": -1.3, "rear_axle_z": 0.3} | change))
     ),

@@ -14,13 +14,12 @@ from hypothesis import given
 from hypothesis.strategies import lists, sampled_from
 
 from pe_core.base import errors, files
-from pe_core.base.errors import InputError, available_bytes, require_memory
+from pe_core.base.errors import InputError, available_bytes
 from pe_core.base.files import (
     csv_text,
     decode_text,
     encode_like,
     file_stem,
-    is_reserved,
     put_in_place,
     read_bytes,
     require_new,
@@ -110,20 +109,6 @@ def test_the_least_of_all_limits_counts(monkeypatch, tmp_path):
     most = 101 * resource.getpagesize()
     monkeypatch.setattr(resource, "getrlimit", lambda _: (most, most))
     assert available_bytes() == resource.getpagesize()
-
-
-def test_work_that_fits_is_let_through_and_other_work_refused(monkeypatch):
-    monkeypatch.setattr(errors, "available_bytes", lambda: 1_500_000)
-    require_memory("car.npz", "triangles", 1_500_000)
-    message = (
-        "car.npz: triangles: expected what fits in the 1.5 MB of memory that are free, "
-        "found about 1.6 MB"
-    )
-    with pytest.raises(InputError) as caught:
-        require_memory("car.npz", "triangles", 1_600_000)
-    assert str(caught.value) == message
-    monkeypatch.setattr(errors, "available_bytes", lambda: None)
-    require_memory("car.npz", "triangles", 10**18)
 
 
 def test_several_files_are_written_together_or_not_at_all(tmp_path):
@@ -264,12 +249,10 @@ def test_no_cell_of_a_table_is_a_formula_and_ours_are_read_back(text):
 
 
 @pytest.mark.parametrize("joint", ["_", "-"])
-@pytest.mark.parametrize(
-    "name", ["CON", "nul.toml", "a.", "..", 'a<b>:"c|?*', "ü", "雷达", "x" * 300]
-)
+@pytest.mark.parametrize("name", ["a.", "..", 'a<b>:"c|?*', "ü", "雷达", "x" * 300])
 def test_every_file_system_takes_the_names_of_files(name, joint):
     stem = file_stem(name, "sensor", joint=joint)
-    assert re.fullmatch("[A-Za-z0-9_-]{1,107}", stem) and not is_reserved(stem)
+    assert re.fullmatch("[A-Za-z0-9_-]{1,107}", stem)
 
 
 def test_a_process_that_ends_at_once_waits_for_a_file_that_is_being_written(tmp_path):

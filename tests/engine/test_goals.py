@@ -28,7 +28,7 @@ def study(goals=None, names=("roof",), **search):
     rig = pe.Rig(
         [shapes.lidar_on_roof(model, (0.0, 0.5 * k, 1.6), name=n) for k, n in enumerate(names)]
     )
-    goals = replace(goals or Goals(), sensitivity="off")
+    goals = goals or Goals()
     given = {"free": dict.fromkeys(names, ("z", "pitch")), "evaluations": 60} | search
     settings = pe.Search(samples=1024, goals=goals, **given)
     return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=settings, samples=1024)
@@ -180,7 +180,6 @@ GOALS = Goals(
     ("roof",),
     [Start("other", {"front": pe.Pose.from_degrees((0.0, 0.5, 2.0), (0.0, 5.0, 90.0))})],
     Front(("entropy", "height"), 4),
-    "full",
 )
 
 
@@ -195,7 +194,7 @@ def test_goals_are_in_the_file_and_nothing_is_written_of_the_default(tmp_path):
     assert study_to_dict(again) == study_to_dict(given)
     assert again.search.goals.starts[0].poses["front"].rotation_deg == (0.0, 5.0, 90.0)
     bare = study_to_dict(replace(given, search=replace(given.search, goals=Goals())))
-    assert not {"stop", "fixed", "start", "front", "sensitivity"} & set(bare["optimize"])
+    assert not {"stop", "fixed", "start", "front"} & set(bare["optimize"])
 
 
 def test_options_of_the_command_line_are_the_goals_of_the_study(tmp_path):
@@ -203,10 +202,10 @@ def test_options_of_the_command_line_are_the_goals_of_the_study(tmp_path):
     pe.save_study(given, tmp_path / "other.toml")
     line = ["optimize", "study.toml", "--stop-at", "-1.5", "--stop-gain", "0.01", "--fix", "roof"]
     line += ["--start", str(tmp_path / "other.toml"), "--front", "entropy,height"]
-    args = parser().parse_args([*line, "--sensitivity", "full"])
+    args = parser().parse_args(line)
     goals = with_options(given, args).search.goals
     assert (goals.stop.target, goals.stop.gain, goals.stop.seconds) == (-1.5, 0.01, None)
     assert goals.fixed == ("roof",) and goals.starts[0].name == "other"
-    assert goals.front.objectives == ("entropy", "height") and goals.sensitivity == "full"
+    assert goals.front.objectives == ("entropy", "height")
     plain_args = parser().parse_args(["optimize", "study.toml"])
     assert with_options(given, plain_args).search.goals == given.search.goals

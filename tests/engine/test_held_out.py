@@ -33,8 +33,7 @@ def study(**search):
         ]
     )
     free = dict.fromkeys(("left", "right"), ("z", "roll", "pitch"))
-    goals = Goals(sensitivity="full")
-    given = {"free": free, "samples": SAMPLES, "evaluations": 250, "goals": goals} | search
+    given = {"free": free, "samples": SAMPLES, "evaluations": 250} | search
     return pe.Study(
         rig, shapes.box_car(), shapes.small_space(), samples=SAMPLES, search=pe.Search(**given)
     )
@@ -92,7 +91,7 @@ def test_what_a_step_costs_is_that_of_all_voxels(outcome, whole):
     rig = outcome.study.rig
     base = whole.entropy(rig)
     off = []
-    for row in outcome.sensitivity.axes:
+    for row in outcome.flatness.axes:
         if row.axis not in ("x", "y", "z"):
             continue
         pose = rig[row.sensor].pose
@@ -127,7 +126,7 @@ def test_a_figure_that_a_search_keeps_is_searched_in_other_scenes():
     other = given.sight(SEARCHED).in_traffic(given.rig).ap
     assert own != other
     for wanted, is_met in ((own - 1e-3, True), (own + 1e-3, False)):
-        goals = Goals(sensitivity="off", keep=["traffic_ap"], wanted=Wanted(traffic_ap=wanted))
+        goals = Goals(keep=["traffic_ap"], wanted=Wanted(traffic_ap=wanted))
         kept = replace(given, search=replace(given.search, goals=goals, evaluations=1))
         (first, *_) = finished(pt.OptimizeJob(kept, 1)).history
         assert (first.entropy < 100.0) == is_met

@@ -3,7 +3,6 @@
 import csv
 import json
 import threading
-from dataclasses import replace
 
 import pytest
 
@@ -92,8 +91,7 @@ def test_a_stop_ends_the_analysis_and_the_result_does_not_wait_for_it(when, monk
 
 def test_stop_keeps_the_best_so_far_at_once_and_analyses_it(monkeypatch):
     given, goes_on, asked, ended = study(), threading.Event(), [], []
-    goals = replace(given.search.goals, sensitivity="full")
-    job = pt.OptimizeJob(replace(given, search=replace(given.search, goals=goals)))
+    job = pt.OptimizeJob(given)
     entropy = pe.Evaluator.entropy
 
     def slow(self, *args, **kwargs):
@@ -111,7 +109,7 @@ def test_stop_keeps_the_best_so_far_at_once_and_analyses_it(monkeypatch):
     outcome = job.outcome
     assert outcome.stopped and 20 <= outcome.evaluations <= 22
     assert outcome.after.entropy <= outcome.before.entropy and outcome.study.rig is asked[1].rig
-    assert outcome.robustness is not None and outcome.sensitivity.endings.examined
+    assert outcome.robustness is not None
     goes_on.set()
 
 

@@ -193,7 +193,7 @@ def test_a_start_beside_its_mount_can_be_put_there_with_all_that_follow(slot):
 
 def test_the_command_puts_sensors_on_their_mounts_and_says_so(tmp_path, capsys):
     pt.export_study(floating(), tmp_path / "car.toml")
-    line = ["optimize", str(tmp_path / "car.toml"), "--json", "--no-review", "--sensitivity", "off"]
+    line = ["optimize", str(tmp_path / "car.toml"), "--json", "--no-review"]
     assert main(line) == 1
     assert "a start on its mount" in capsys.readouterr().err
     assert main([*line, "--snap"]) == 0

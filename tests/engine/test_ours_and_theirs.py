@@ -1,8 +1,5 @@
 """Results are written over no file that we did not write, and the set of a run is one."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 
@@ -10,9 +7,8 @@ import pe_core as pe
 import pe_tools as pt
 from pe_tools import jobs
 from pe_tools.cli.verbs import main
-from pe_tools.jobs import FileSet, files_of_other_runs
+from pe_tools.jobs import FileSet
 from tests.engine import shapes
-from tests.engine.processes import ROOT
 
 LISTING = ".perception-entropy.json"
 NAMES = ("study.toml", "vehicle.npz", "boxes.csv", "history.csv", "result.json")
@@ -132,25 +128,11 @@ def test_killed_between_two_files_all_of_them_are_still_ours(tmp_path, stops_at,
     assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes() == b"3"
 
 
-def test_runs_into_one_folder_at_once_know_each_others_files(tmp_path):
-    code = (
-        "import sys; from pathlib import Path; from pe_tools.jobs import FileSet\n"
-        "for i in range(40):\n"
-        "    with FileSet(Path(sys.argv[1])) as files:\n"
-        "        for name in 'ab': files.add(name, f'{sys.argv[2]} {i}'.encode())\n"
-    )
-    command = [sys.executable, "-c", code, str(tmp_path)]
-    runs = [subprocess.Popen([*command, name], cwd=ROOT) for name in ("first", "second")]
-    assert [run.wait() for run in runs] == [0, 0]
-    assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
-
-
 def test_what_another_run_left_is_taken_away(study, out, capsys):
     assert optimize(study, out) == 0
     (out / "notes.txt").write_text("mine")
     assert main(["score", str(study), "-o", str(out)]) == 0
     assert set(contents(out)) == {*NAMES, LISTING, "notes.txt"} - {"history.csv"}
-    assert files_of_other_runs(out) == []
     assert "not of this run" not in capsys.readouterr().err
     assert optimize(study, out) == 0
     assert "history.csv" in contents(out)

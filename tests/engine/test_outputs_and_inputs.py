@@ -39,7 +39,7 @@ CALLS = {
 """Each verb that writes a file of a name that the user chooses; the name comes last."""
 FOLDERS = {
     "score": "score {} -o",
-    "optimize": "optimize car.toml --start {} --evaluations 4 --sensitivity off -o",
+    "optimize": "optimize car.toml --start {} --evaluations 4 -o",
     "sweep": "sweep {} -o",
 }
 """Verbs that write a folder of results, and where they read a study."""

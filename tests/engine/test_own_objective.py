@@ -60,7 +60,7 @@ def test_a_search_minimises_the_function_and_reports_it_beside_the_entropy(objec
     assert told == pytest.approx([value(row.rig) for row in found.history], rel=1e-9)
     assert told == sorted(told, reverse=True) and len(told) > 1
     assert found.after.entropy == found.study.evaluator().score(found.study.rig).entropy
-    assert found.robustness is None and found.sensitivity is None and found.seed_scatter is None
+    assert found.robustness is None and found.flatness is None and found.seed_scatter is None
     texts = [step.value_text for step in steps if step.stage == "optimizing"]
     assert texts and all(text.startswith(job.figure.label) for text in texts)
     assert not any("broken" in text or "voxels" in text or "entropy" in text for text in texts)

@@ -73,7 +73,7 @@ def test_what_asks_for_sight_is_met_by_no_radar_and_no_ultrasonic_sensor():
 def test_a_share_is_refused_to_kinds_whose_rays_end_on_no_body():
     """Alone in one line; beside a camera the radar sees no body of which a share is asked for."""
     ahead = pe.Sensor("radar", pe.catalog.load(ARS), pe.Pose((2.55, 0.0, 0.6)))
-    for criterion in (Criterion(share=0.5), Criterion(per_degree=1.0)):
+    for criterion in (Criterion(share=0.5), Criterion(share=0.9)):
         own = Requirement("own", AHEAD, (BODIES["cylinder"],), criterion)
         with pytest.raises(pe.InputError, match="rays end on bodies") as caught:
             check(own, of=pe.Rig([ahead]))
@@ -198,14 +198,13 @@ BAD = {
     "kinds": ({"criterion": {"kinds": 3}}, "the number of kinds"),
     "of": ({"criterion": {"of": ["lidar", "sonar"]}}, "sonar"),
     "lacking": ({"criterion": {"of": ["camera"]}}, "that the rig has (lidar)"),
-    "rows": ({"criterion": {"pixels_high": 9}}, "a kind that counts pixels"),
     "share": ({"criterion": {"of": ["radar"], "share": 1.0}}, "that the rig has (lidar)"),
     "of ground": ({"criterion": {"blind_m2": 1.0, "share": 0.5}}, "of ground"),
     "beyond": (
         {"criterion": {"blind_m2": 1.0}, "zone": {"ring": [0.0, 99.0]}},
         "no other is searched",
     ),
-    "no row": ({"criterion": {"pixels_high": 0}}, "above 0"),
+    "no share": ({"criterion": {"share": 0}}, "above 0"),
     "key": ({"zone": {"x": [3, 4], "y": [0, 1], "stepp": 1}}, "unknown key"),
     "preset": ({"preset": "r000"}, "26 names, such as r15"),
     "ap": ({"body": "pole_ring", "criterion": {"ap": 0.5}}, "a class"),

@@ -232,7 +232,7 @@ def tilted(keep=(), method="portfolio", **wanted):
     """A LiDAR at the front, tilted down: level it sees farther, and less of the near ground."""
     van = pe.Vehicle(shapes.box((-2.5, -1.0, 0.25), (2.5, 1.0, 2.0)), clearance=0.0)
     pose = pe.Pose.from_degrees((2.6, 0.0, 1.0), (0.0, 15.0, 0.0))
-    goals = Goals(sensitivity="off", keep=keep, wanted=Wanted(**wanted))
+    goals = Goals(keep=keep, wanted=Wanted(**wanted))
     search = pe.Search(
         free={"nose": ("pitch",)}, samples=1024, evaluations=24, method=method, goals=goals
     )

@@ -17,7 +17,7 @@ import os
 with open({found!r}, "a") as file:
     file.write(__name__ + chr(10))
 """
-SEARCH = ["--evaluations", "12", "--sensitivity", "off", "--no-review", "--workers", "2"]
+SEARCH = ["--evaluations", "12", "--no-review", "--workers", "2"]
 FEW = ["--samples", "1024"]
 VERBS = {
     "sensors": [],

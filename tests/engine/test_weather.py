@@ -67,7 +67,6 @@ def test_a_camera_s_range_is_where_contrast_ends_or_the_lamps_light():
     assert camera_range(50.0, named(fog_mor_m=100.0)) == 50.0
     assert camera_range(math.inf, named()) == math.inf
     assert camera_range(math.inf, named(night=True)) == math.floor(2500 * math.sqrt(4.8)) / 100
-    assert camera_range(math.inf, named(night=True, lit_m=30.0)) == 30.0
     both = camera_range(math.inf, named(night=True, fog_mor_m=50.0))
     lamps = 24.0 * (25.0 / both) ** 2 * math.exp(-math.log(20) / 50.0 * both)
     assert 5.0 <= lamps < 5.01

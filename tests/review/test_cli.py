@@ -9,7 +9,6 @@ import tomllib
 import pytest
 
 import pe_tools as pt
-from pe_tools import jobs
 from pe_tools.cli.verbs import main
 from pe_tools.page import PAGE
 from pe_tools.page.markup import escaped
@@ -75,6 +74,5 @@ def test_a_search_leaves_its_page(study, tmp_path, capsys):
     assert f"<pre>{escaped(told)}</pre>" in text
     given = html.unescape(re.search(r'<pre id="study-a"[^>]*>(.*?)</pre>', text, re.S)[1])
     assert tomllib.loads(given)["sensor"] == tomllib.loads(study.read_text("utf-8"))["sensor"]
-    assert jobs.files_of_other_runs(out) == []
     assert main(["score", str(study), "-o", str(out)]) == 0
     assert not (out / PAGE).exists(), "it told of the search"

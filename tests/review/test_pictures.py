@@ -10,14 +10,14 @@ import pe_tools as pt
 from pe_core.catalog import load
 from pe_tools.page import ReportContext, picture_file
 from pe_tools.page.pictures import vehicle_picture as picture_module
-from pe_tools.page.pictures.painted_mesh import Paint, PaintedMesh, painted_vehicle
+from pe_tools.page.pictures.painted_mesh import PaintedMesh, painted_vehicle
 from pe_tools.page.pictures.ray_scene import GROUND, SKY, RayCamera, RayScene, Viewpoint
 from pe_tools.page.pictures.vehicle_picture import vehicle_picture
 from tests.engine.test_masks import decoded
 from tests.review.conftest import box
 
 SIZE = (96, 54)
-RED, BLUE = Paint((0.6, 0.0, 0.0)), Paint((0.0, 0.0, 0.6))
+RED, BLUE = (0.6, 0.0, 0.0), (0.0, 0.0, 0.6)
 
 
 @pytest.fixture(scope="module")
@@ -45,12 +45,17 @@ def test_a_view_projects_where_it_looks():
     assert x < SIZE[0] / 2 and y < SIZE[1] / 2  # what is left and higher
 
 
+def rays_of(camera):
+    down, right = np.mgrid[: camera.height, : camera.width] + 0.5
+    return camera.rays_through(right.ravel(), down.ravel())
+
+
 def test_what_stands_left_is_drawn_left():
     boxes = [box((4.0, y - 0.5, 0.0), (5.0, y + 0.5, 1.5)) for y in (2.0, -2.0)]
     pair = [PaintedMesh(pe.Vehicle(b), (p,)) for b, p in zip(boxes, (RED, BLUE), strict=True)]
     solids = RayScene(pair, has_vehicle=False)
     camera = Viewpoint((-8.0, 0.0, 2.0), (4.0, 0.0, 0.8), 40.0).camera(*SIZE)
-    hits = solids.first_hits(camera, camera.directions())
+    hits = solids.first_hits(camera, rays_of(camera))
     surface = hits.surface.reshape(SIZE[1], SIZE[0])
     columns = [np.nonzero(surface == number)[1] for number in (1, 2)]
     assert columns[0].max() < SIZE[0] / 2 < columns[1].min()

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pe_core.metric.entropy import BLIND_PRECISION
-from pe_core.motion import Confirmation
+from pe_core.motion import CORRELATION_TIME_S, Confirmation
 from pe_core.scene.objects import Objects
 from studies.pages import PAGE
 from studies.road.logs import CLASSES, Log
@@ -106,10 +106,9 @@ def test_the_page_is_that_of_the_saved_figures():
     found = json.loads((FOLDER / "results.json").read_text())
     assert (FOLDER / PAGE).read_text() == study.page_of(found)
     whole = found["memory"]["5"]["thirds"]["all"]
-    default = Confirmation().correlation_time_s
-    assert default == round(2.0 * whole["time_s"]) / 2.0  # the plan's rule
+    assert round(2.0 * whole["time_s"]) / 2.0 == CORRELATION_TIME_S  # the plan's rule
     for lag, (_, low, high) in zip(LAGS, whole["correlation"], strict=True):
-        both = Confirmation(2, 2, default).kept([0.5, 0.5], lag * 0.1)[-1]
+        both = Confirmation(2).kept([0.5, 0.5], lag * 0.1, window=2)[-1]
         assert low - NEAR < (both - 0.25) / 0.25 < high + NEAR
 
 

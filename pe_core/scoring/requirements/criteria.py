@@ -16,10 +16,7 @@ from .zones import Zone
 COUNT = Whole(1, 1000)
 POSITIVE_SHARE = Number(0.0, 1.0, above=True)
 AREA = Number(0.0, 1e6, unit="m2", noun="area")
-OF_BODIES = (
-    *("sensors", "kinds", "points", "pixels", "pixels_high", "per_degree", "share", "ap"),
-    "zone_share",
-)
+OF_BODIES = (*("sensors", "kinds", "points", "pixels", "share", "ap"), "zone_share")
 DISTANCE = Number(0.0, 100.0, unit="m", noun="length")
 
 
@@ -29,11 +26,8 @@ class Criterion:
 
     A sensor sees a body if it has at least `points` on it (kinds that count points) or `pixels` of
     it (other kinds), and at least the `share` of it is visible, of its height (bands of 0.1 m) and
-    its width. Only the kinds `of` sensors count, all by default; with `share` or `per_degree` only
-    kinds whose rays end on bodies (`Kind.shows_parts`).
-
-    `pixels_high` is m over the width of the box's image, which errs low. `per_degree` is on average
-    over the body's box: the square root of m over its solid angle, which errs high.
+    its width. Only the kinds `of` sensors count, all by default; with `share` only kinds
+    whose rays end on bodies (`Kind.shows_parts`).
 
     `InputError` when a value is none, or keys of bodies are mixed with those of the ground.
     """
@@ -55,18 +49,6 @@ class Criterion:
         Number(1e-6, 1e9, unit="px"),
         "Fewest pixels with which a camera sees a body",
         Panel("pixels", "Pixels"),
-    )
-    pixels_high: float | None = setting(
-        None,
-        Number(0.0, 1e6, above=True, unit="px"),
-        "Fewest pixels in height with which a camera sees a body",
-        Panel("pixels_high", "Pixels in Height"),
-    )
-    per_degree: float | None = setting(
-        None,
-        Number(0.0, 1e4, above=True),
-        "Fewest beams or pixels a degree with which a sensor sees a body",
-        Panel("per_degree", "Per Degree"),
     )
     share: float | None = setting(
         None,
@@ -119,7 +101,7 @@ class Criterion:
         own = kind_named(kind, "criterion", "of")
         if self.is_of_ground:
             return own.lowest_m <= self.blind_height
-        return own.shows_parts or not (self.share is not None or self.per_degree is not None)
+        return own.shows_parts or self.share is None
 
     def check_rig(self, rig: Rig, who: str) -> None:
         """Raise `InputError` where the rig has not the kinds that are asked for."""
@@ -133,15 +115,10 @@ class Criterion:
             expected = f"a sensor that sees what is {self.blind_height:g} m tall on the ground"
             raise InputError(who, "criterion.blind_height", expected, f"{alone} alone")
         if not eligible:
-            key = "share" if self.share is not None else "per_degree"
             showing = ", ".join(name for name, kind in KINDS.items() if kind.shows_parts)
             expected = f"a sensor whose rays end on bodies ({showing})"
-            raise InputError(who, f"criterion.{key}", expected, f"{alone} alone")
+            raise InputError(who, "criterion.share", expected, f"{alone} alone")
         count = len(eligible)
-        counted = [kind_named(kind, who, "criterion.of").counts_points for kind in eligible]
-        if self.pixels_high is not None and all(counted):
-            found = f"{', '.join(sorted(eligible))} alone"
-            raise InputError(who, "criterion.pixels_high", "a kind that counts pixels", found)
         if self.kinds > count:
             expected = f"at most {count}, the number of kinds of the rig"
             raise InputError(who, "criterion.kinds", expected, self.kinds)

@@ -15,12 +15,9 @@ from ...scene.objects import Objects
 from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
 from ...sensors import kind_of
-from ...sensors.boxes import CELLS, ROUND, BodyParts, PlacedBoxes
+from ...sensors.boxes import CELLS, ROUND, BodyParts
 from .bodies import DIAGONALS, Body, cell_plan, post_bands
 from .criteria import Criterion
-
-NEAREST_M = 1e-3
-NARROWEST_PX = 1e-9
 
 
 def sees(
@@ -62,37 +59,11 @@ def cautious(rig: Rig) -> Rig:
 def has_enough(
     sensor: Sensor, objects: Objects, m: Floats, criterion: Criterion
 ) -> NDArray[np.bool_]:
-    """Whether m (N,) of bodies' boxes, points or pixels, is enough, for image and solid angle too.
-    An image of m pixels has at least m / w rows, if no row has more than w pixels."""
+    """Whether m (N,) of bodies' boxes, points or pixels, is enough."""
     kind = kind_of(sensor)
     counts = kind.counts_points
     enough = m >= (criterion.points * kind.point if counts else criterion.pixels)
-    if criterion.pixels_high is not None and not counts:
-        widths = kind.image_widths(sensor, objects)
-        enough &= m >= criterion.pixels_high * np.maximum(widths, NARROWEST_PX)
-    if criterion.per_degree is not None:
-        enough &= m >= criterion.per_degree**2 * largest_solid_angle(objects, sensor.pose.position)
     return np.asarray(enough)
-
-
-def largest_solid_angle(objects: Objects, position: Sequence[float]) -> Floats:
-    """Return an upper bound (N,) of the solid angle of boxes from a position [deg2].
-
-    The solid angle of a face is the integral of h / r^3 over its area, with the distance h from its
-    plane: at most area times h over the cube of the distance to its nearest point. The position is
-    outside of the boxes.
-    """
-    boxes = PlacedBoxes.of(objects, position)
-    low, high = boxes.offsets - boxes.halves, boxes.offsets + boxes.halves
-    gap = np.maximum(np.maximum(low, -high), 0.0)  # to the nearest point of the box, by axis
-    total = np.zeros(len(gap))
-    for axis in range(3):
-        others = [k for k in range(3) if k != axis]
-        height = gap[:, axis]
-        area = 4.0 * boxes.halves[:, others[0]] * boxes.halves[:, others[1]]
-        nearest = np.sqrt(height**2 + gap[:, others[0]] ** 2 + gap[:, others[1]] ** 2)
-        total += area * height / np.maximum(nearest, NEAREST_M) ** 3
-    return np.minimum(total, 4.0 * math.pi) * (180.0 / math.pi) ** 2
 
 
 def visible_share(body: Body, cells: NDArray[np.bool_]) -> Floats:

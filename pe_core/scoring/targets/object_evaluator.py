@@ -66,7 +66,7 @@ class ObjectEvaluator:
         self.drawn: SampledObjects = sample_objects(prior, space, vehicle, self.targets, shift)
         self.samples = len(self.drawn.objects)
         self._fused = FusedObjects(self.drawn.objects, self.drawn.weights, self._model)
-        self._sums = ObjectSums(self.drawn, self._model.protocol_floor)
+        self._sums = ObjectSums(self.drawn)
         traffic = self.targets.traffic
         self._sensors = ObjectMeasurementCache(self.drawn.objects, vehicle, traffic, kernel_caches)
         self._lock = threads().RLock()

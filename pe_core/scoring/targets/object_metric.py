@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ...base.arrays import Floats, Ints
 from ...base.errors import InputError
 from ...base.values import rounded
-from ...metric.entropy import H_BEST, H_BLIND, OwnCurve, above_floor, ap_of_entropy
+from ...metric.entropy import H_BEST, H_BLIND, OwnCurve, ap_of_entropy
 from ...metric.fusion import Fusion, early_fusion
 from ...scene.objects import Objects
 from ...scene.rig import Rig
@@ -102,11 +102,9 @@ class FusedObjects:
 
 
 class ObjectSums:
-    """Means over the objects: all of them, by class, by zone. AP is averaged above the floor of a
-    protocol."""
+    """Means over the objects: all of them, by class, by zone."""
 
-    def __init__(self, drawn: SampledObjects, floor: float = 0.0) -> None:
-        self._floor = floor
+    def __init__(self, drawn: SampledObjects) -> None:
         self._objects, self._weights, self._drawn = drawn.objects, drawn.weights, drawn
         x, y = drawn.objects.centers[:, 0], drawn.objects.centers[:, 1]
         self._zones = {n: mask for n, mask in zone_masks(x, y).items() if self._mass(mask) > 0.0}
@@ -153,7 +151,7 @@ class ObjectSums:
     ) -> ObjectScore:
         """Return the part of a score that only objects have. `points` are m of the LiDARs; `reach`
         returns how far lone objects of a class are found."""
-        ap = self._ap(entropies)
+        ap = ap_of_entropy(entropies)
         total = np.sum(points, axis=0) if points else None
         per_class = {}
         for name, mask in self._classes.items():
@@ -172,11 +170,11 @@ class ObjectSums:
 
     def expected_ap(self, entropies: Floats) -> float:
         """Return the expected AP of all objects, by their weights."""
-        return rounded(self._mean(self._ap(entropies), None))
+        return rounded(self._mean(ap_of_entropy(entropies), None))
 
     def by_ring(self, entropies: Floats) -> TrafficAp:
         """Return the expected AP of all objects and of those in each ring."""
-        ap = self._ap(entropies)
+        ap = ap_of_entropy(entropies)
         rings = {
             name: (rounded(self._mean(ap, mask)), self._scatter(ap, mask))
             for name, mask in self._zones.items()
@@ -211,7 +209,7 @@ class ObjectSums:
 
     def residuals_of_ap(self, entropies: Floats) -> tuple[float, ...]:
         """Return what each batch of scenes adds to the expected AP, above it."""
-        return self.residuals(self._ap(entropies))
+        return self.residuals(ap_of_entropy(entropies))
 
     def scatter(self, entropies: Floats, visible: Bools) -> Scatter:
         """Return residuals by batch of scenes: entropy and coverage of all parts, AP of classes."""
@@ -219,7 +217,7 @@ class ObjectSums:
         measures = {
             "entropy": entropies,
             "coverage": visible.astype(float),
-            "ap": self._ap(entropies),
+            "ap": ap_of_entropy(entropies),
         }
         parts = {("rig", ""): np.ones(len(entropies), bool)}
         parts |= {("zone", name): mask for name, mask in self._zones.items()}
@@ -231,9 +229,6 @@ class ObjectSums:
             if measure != "ap" or part[0] != "zone"
         }
         return Scatter(self._digest, by_figure)
-
-    def _ap(self, entropies: Floats) -> Floats:
-        return above_floor(ap_of_entropy(entropies), self._floor)
 
     @cached_property
     def _digest(self) -> str:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.arrays import Floats, Ints, read_only
-from ...base.errors import InputError, require_memory
+from ...base.errors import InputError
 from ...base.setting import FLAG, OneOf, Panel, check_settings, setting
 from ...base.values import Whole
 from ...geometry.grids import PerceptionSpace
@@ -39,8 +39,8 @@ MENU = (
 SCENES = 256  # The default; it gives a standard error of about 0.1 nats on the road
 COUNT = Whole(8, 20_000, "scenes")
 """More would take minutes and gigabytes for a standard error below 0.01 nats."""
-OBJECT_BYTES = 1500
-"""Memory of an object while scenes are sampled and sensors are measured on it."""
+MAX_OBJECTS = 2_000_000
+"""Objects in all scenes together: 3 GB while sensors are measured on them."""
 CENTERED = 0.5
 CLASS_STEP = math.sqrt(2.0) - 1.0
 """Difference between the scrambles of two classes, modulo 1."""
@@ -119,7 +119,7 @@ def sample_objects(
     the ground. `shift` is in [0, 1); another one gives another sample of the same quality.
 
     `InputError` when the prior has no classes or no number of objects for one, when scenes have no
-    object or no room for all, when no object has any weight, or memory does not suffice.
+    object or no room for all, or when no object has any weight.
     """
     if prior.boxes is not None and not targets.traffic:
         boxes, labels = _each_once(prior, space, vehicle)
@@ -137,7 +137,6 @@ def _each_once(
 ) -> tuple[LaidOutBoxes, Ints]:
     """Return all labelled boxes in the space that do not overlap the vehicle, and their classes."""
     assert prior.boxes is not None
-    require_memory("prior", "boxes", len(prior.boxes) * OBJECT_BYTES)
     by_class = [labelled_boxes(prior.boxes, name, space) for name in prior.class_names]
     by_class = [_beside_vehicle(boxes, vehicle) for boxes in by_class]
     labels = np.repeat(np.arange(len(by_class)), [len(boxes.yaws) for boxes in by_class])
@@ -184,7 +183,10 @@ def _counts(at_once: Mapping[str, float], targets: TargetRule) -> dict[str, int]
     if total < targets.scenes:
         expected = "at least one object in a scene, on average"
         raise InputError("prior", "density", expected, f"{total / targets.scenes:.3g}")
-    require_memory("metric", "scenes", total * OBJECT_BYTES)
+    if total > MAX_OBJECTS:
+        raise InputError(
+            "prior", "density", f"at most {MAX_OBJECTS:,} objects in all scenes", total
+        )
     return {name: count for name, count in counts.items() if count}
 
 

@@ -12,19 +12,17 @@ from ...base.arrays import Floats
 from ...base.errors import InputError, require_keys, shown
 from ...base.values import Number, choice, degrees_in_file, listed
 from ...metric.entropy import RTM3D
-from ...scene.objects import Objects
 from ...scene.rig import Sensor
-from ..boxes import PlacedBoxes
 from ..field_of_view import NEAREST, limited
 from ..kernels import DefinedSample
 from ..kind import OUT_OF_RANGE, OUT_OF_VIEW, Kind, derived_object_curves
 from ..weather import camera_range
-from .definition import axes_of, count_pixels, is_ranged, out_of_range
+from .definition import count_pixels, is_ranged, out_of_range
 from .kernels import CameraGrid, CameraGround, CameraObjects, sampled_pixels
 from .lens import COEFFICIENT, FOCAL, LENSES, PLACE, FTheta, Lens, Pinhole
 from .lens import FOV as LENS_FOV
 from .model import FOV, PIXELS, Camera, camera_of, picture_occlusion, picture_patch, picture_rays
-from .object_definition import box_images, count_object_pixels
+from .object_definition import count_object_pixels
 
 LENS_KEYS = frozenset({"fx", "fy", "cx", "cy", "distortion", "fov_deg"})
 KEYS = frozenset({"width", "height", "hfov_deg", "min_range_m", "max_range_m"}) | LENS_KEYS
@@ -140,13 +138,6 @@ def figures(camera: Camera) -> list[str]:
     return lines
 
 
-def image_widths(sensor: Sensor, objects: Objects) -> Floats:
-    """Measure how wide (N,) the images are in the picture, whatever hides them [px]."""
-    boxes = PlacedBoxes.of(objects, sensor.pose.position)
-    found = box_images(camera_of(sensor), axes_of(sensor.pose), boxes)
-    return np.maximum(found.high - found.low, 0.0)[:, 0]
-
-
 def missed(sensor: Sensor, center: Floats, side: float) -> str:
     """Return one of: out of range, out of view."""
     offset = np.asarray(center)[None] - np.asarray(sensor.pose.position)
@@ -172,7 +163,6 @@ CAMERA = Kind(
     measure_parts=lambda sensor, parts, vehicle: count_object_pixels(
         sensor, parts.cells, vehicle, False
     ),
-    image_widths=image_widths,
     read=read,
     write=write,
     in_weather=lambda model, weather: limited(model, camera_range(model.max_range, weather)),

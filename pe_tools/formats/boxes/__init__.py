@@ -4,7 +4,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-from pe_core.base.errors import InputError, report_memory_errors, require_memory, size_text
+from pe_core.base.errors import InputError, report_memory_errors, size_text
 from pe_core.base.files import LABEL_BYTES, decode_text, is_binary, quoted, read_bytes, write_bytes
 from pe_core.prior.boxes import Boxes
 
@@ -16,8 +16,6 @@ from .plain import csv_bytes, read_csv
 
 __all__ = ["read_boxes", "write_boxes"]
 
-JSON_UNFOLDS, ROWS_UNFOLD = 10, 20
-"""What a byte of labels takes once read (measured on files as they are met)."""
 LAYOUTS = "boxes as KITTI's label_2, as nuScenes' JSON or as CSV with a header"
 
 
@@ -74,7 +72,6 @@ def _read_file(path: Path, may_be_empty: bool = False) -> Labels:
             return Labels(source)
         raise InputError(source, "file", LAYOUTS, "an empty file")
     is_json = text.lstrip()[0] in "[{"
-    require_memory(source, "size", len(data) * (JSON_UNFOLDS if is_json else ROWS_UNFOLD))
     if is_json:
         try:
             data_of_json = json.loads(text)

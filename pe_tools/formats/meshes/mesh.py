@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pe_core.base.arrays import Floats
-from pe_core.base.errors import InputError, plural, require_memory, shown
+from pe_core.base.errors import InputError, plural, shown
 from pe_core.base.plugins import call_plugin, install_hint, plugin_name, required_plugin
 from pe_core.base.values import A_NAME, MAX_NAME
 from pe_core.scene.mesh import Mesh
@@ -20,8 +20,6 @@ from pe_core.scene.mesh import Mesh
 from .axes import SaidAxes
 
 MAX_TRIANGLES = 25_000_000  # Maximum triangles of a mesh: cars have up to some millions
-TRIANGLE_BYTES = 320
-"""Maximum memory of a triangle while it is read (measured): corners, copies, indices."""
 
 
 def make_mesh(
@@ -62,11 +60,10 @@ def make_mesh(
 
 
 def require_room(source: str, triangles: int) -> None:
-    """Raise `InputError` for too many triangles, or too little memory, before they are created."""
+    """Raise `InputError` for too many triangles, before they are created."""
     if triangles > MAX_TRIANGLES:
         found = f"{triangles:,}" if triangles < 10**18 else "more than 10^18"
         raise InputError(source, "triangles", f"at most {MAX_TRIANGLES:,}", found)
-    require_memory(source, "triangles", triangles * TRIANGLE_BYTES)
 
 
 def require_labels(source: str, shape: tuple[int, ...], dtype: np.dtype[Any], faces: int) -> None:

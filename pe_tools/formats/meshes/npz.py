@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from pe_core.base.errors import InputError, require_memory
+from pe_core.base.errors import InputError, size_text
+from pe_core.base.files import MESH_BYTES
 from pe_core.scene.mesh import Mesh
 
 from .mesh import make_mesh, require_labels, require_room
@@ -28,7 +29,9 @@ def read_npz(path: Path, data: bytes) -> Mesh:
             members = archive.infolist()
         if len(members) > MAX_ARRAYS:
             raise InputError(source, "file", f"at most {MAX_ARRAYS:,} arrays", f"{len(members):,}")
-        require_memory(source, "file", sum(each.file_size for each in members))
+        if (size := sum(each.file_size for each in members)) > MESH_BYTES:
+            expected = f"at most {size_text(MESH_BYTES)} of arrays"
+            raise InputError(source, "file", expected, size_text(size))
         with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
             found: dict[str, Any] = {name: arrays[name] for name in ARRAYS if name in arrays}
         wrong = next((n for n, array in found.items() if not isinstance(array, np.ndarray)), None)

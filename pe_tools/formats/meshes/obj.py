@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pe_core.base.errors import InputError, require_memory
+from pe_core.base.errors import InputError
 from pe_core.base.files import decode_text
 from pe_core.scene.mesh import Mesh
 
@@ -16,7 +16,6 @@ from .mesh import make_mesh, mesh_notes, require_room
 from .polygons import triangle_count, triangulate
 from .whole_numbers import refusing_unread_text
 
-TEXT_UNFOLDS = 20  # Memory of a byte of text while it is read, at most (measured)
 VERTEX, FACE = b"v ", b"f "
 OBJECT, GROUP = b"o", b"g"
 SKIPPED = {b"l": "line", b"p": "point", b"curv": "curve", b"curv2": "curve", b"surf": "surface"}
@@ -36,7 +35,6 @@ def read_obj(path: Path, data: bytes) -> Mesh:
     source = str(path)
     if b"\0" in data:
         raise InputError(source, "file", "OBJ text", "binary data")
-    require_memory(source, "file", len(data) * TEXT_UNFOLDS)
     lines = _statements(data)
     is_vertex, is_face = (_begin_with(lines, word) for word in (VERTEX, FACE))
     points = _points(source, [lines[k] for k in np.flatnonzero(is_vertex)])

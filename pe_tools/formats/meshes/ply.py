@@ -8,14 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pe_core.base.errors import InputError, require_memory, require_name
+from pe_core.base.errors import InputError, require_name
 from pe_core.scene.mesh import Mesh
 
 from .mesh import make_mesh, mesh_notes, require_room
 from .polygons import triangle_count, triangulate
 from .whole_numbers import refusing_unread_text
 
-UNFOLDS = 16  # Memory of a byte of a file while it is read, at most (measured)
 MAX_HEADER_BYTES = 1 << 20
 END = b"end_header"
 ASCII = "ascii"
@@ -93,7 +92,6 @@ def read_ply(path: Path, data: bytes) -> Mesh:
     """Read the faces of a PLY file in its own axes, in metres; they are one part with the file's
     stem as its name. Other elements than vertices and faces are skipped."""
     source = str(path)
-    require_memory(source, "file", len(data) * UNFOLDS)
     elements, body = _header(source, data)
     start = 0
     columns: dict[str, dict[str, Any]] = {}

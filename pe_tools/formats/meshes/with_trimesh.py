@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from pe_core.base.arrays import Floats
-from pe_core.base.errors import InputError, require_memory
+from pe_core.base.errors import InputError
 from pe_core.base.table_reader import parse_json
 from pe_core.scene.mesh import Mesh
 
@@ -18,7 +18,6 @@ from .gltf_instances import INSTANCING, instance_count, with_instances_as_nodes
 from .mesh import Piece, fit_names, joined, make_mesh, mesh_notes, placed, require_room
 from .whole_numbers import refusing_unread_text
 
-UNFOLDS = 20  # Memory of a byte of a file while it is read, at most (measured)
 MAX_NODES, MAX_PLACED, MAX_JSON_BYTES = 200_000, 20_000, 32 << 20
 """Limits of a glTF scene: nodes, surfaces of all that have a mesh, and bytes of JSON."""
 UNNAMED = re.compile(r"geometry(_\d+)?|GLTF(_\d+)?")  # Names that trimesh gives to what has none
@@ -42,7 +41,6 @@ def read_scene(path: Path, data: bytes) -> Mesh:
     import trimesh
 
     source, kind = str(path), path.suffix[1:].lower()
-    require_memory(source, "file", len(data) * UNFOLDS)
     options: dict[str, Any] = {}
     if kind in _PREPARED:
         data, options = _PREPARED[kind](source, data)

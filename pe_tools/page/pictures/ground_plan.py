@@ -28,41 +28,24 @@ RINGS = (10.0, 40.0)  # Radii between the zones near, middle and far [m]
 KEY_HEIGHT, KEY_WIDTH = 34.0, 210.0
 COUNT_NAMES = ("none", "1", "2", "3 or more")
 MAX_CHANGE = 8.0  # Difference at the ends of the colour scale [nats]
-
-
-class Margins(NamedTuple):
-    """Space around a plan for its numbers."""
-
-    left: float = 36.0
-    right: float = 20.0
-    top: float = 8.0
-    bottom: float = 24.0
-
-
-MARGINS = Margins()
+LEFT, RIGHT, TOP, BOTTOM = 36.0, 20.0, 8.0, 24.0
+"""Space around a plan for its numbers."""
 
 
 class PlanDrawing:
     """A drawing of a part of a plane [m], with `below` units of space under it for a key."""
 
     def __init__(
-        self,
-        bounds: PlanBounds,
-        alt: str,
-        below: float = 0.0,
-        width: float = WIDTH,
-        *,
-        margins: Margins = MARGINS,
-        max_height: float = MAX_HEIGHT,
+        self, bounds: PlanBounds, alt: str, below: float = 0.0, width: float = WIDTH
     ) -> None:
         (self.x0, self.x1), (self.y0, self.y1) = bounds
         length, breadth = self.x1 - self.x0, self.y1 - self.y0
-        room = width - margins.left - margins.right
-        self.scale = min(room / length, max_height / breadth)
+        room = width - LEFT - RIGHT
+        self.scale = min(room / length, MAX_HEIGHT / breadth)
         self.width, self.height = length * self.scale, breadth * self.scale
-        self.left, self.top = margins.left + (room - self.width) / 2.0, margins.top
+        self.left, self.top = LEFT + (room - self.width) / 2.0, TOP
         self.bottom = self.top + self.height
-        self.canvas = Canvas(width, self.bottom + margins.bottom + below, alt)
+        self.canvas = Canvas(width, self.bottom + BOTTOM + below, alt)
 
     def points(self, points: Floats) -> Floats:
         """(N, 2) positions in the drawing of points (N, 2) in the plane [m]."""

@@ -1,21 +1,19 @@
-"""Rays of a picture and what they meet: viewpoint, pixel rays, solids, first hits, shadows."""
+"""Rays of a picture and what they meet: viewpoint, pixel rays, solids, first hits."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
-from pe_core.base.arrays import Flags, Floats, Ints
+from pe_core.base.arrays import Floats, Ints
 
-from .painted_mesh import PaintedMesh, unit
+from .painted_mesh import PaintedMesh
 
 NOTHING, SKY, GROUND = -2, -1, 0
 """Surfaces of rays that meet no solid: outside the lens, sky, ground. Solids count from 1."""
-SLACK_M = 0.004  # Hits this near to a point do not shade it: they are the point's own surface
 PixelRays = Callable[[Floats, Floats], Floats]
 """Maps positions in the picture (right, down) [px] to unit directions (N, 3), ground frame; NaN
 outside the image circle of a lens."""
@@ -34,11 +32,6 @@ class RayCamera:
     rays_through: PixelRays
     pixel_rad: float
     from_sensor: bool = False
-
-    def directions(self) -> Floats:
-        """(H * W, 3) unit directions through the centres of the pixels, row by row."""
-        down, right = np.mgrid[: self.height, : self.width] + 0.5
-        return self.rays_through(right.ravel(), down.ravel())
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,8 +78,8 @@ class Viewpoint:
 class RayHits:
     """The first hits of rays (N,) in unit `directions` (N, 3). `surface` is NOTHING, SKY, GROUND,
     or the number of a solid; `part` that of the solid, else -1; `points` (N, 3) where the rays hit
-    [m]; `normals` (N, 3) unit normals there, on the side of the eye; `color` (N, 4) linear red,
-    green, blue, and shine; `distance` from the eye [m], inf in the sky."""
+    [m]; `normals` (N, 3) unit normals of the faces there, on the side of the eye; `color` (N, 3)
+    linear; `distance` from the eye [m], inf in the sky."""
 
     directions: Floats
     surface: Ints
@@ -95,19 +88,6 @@ class RayHits:
     normals: Floats
     color: Floats
     distance: Floats
-
-    def __getitem__(self, at: Any) -> RayHits:
-        return RayHits(*(getattr(self, each.name)[at] for each in fields(self)))
-
-    @property
-    def is_solid(self) -> Flags:
-        """(N,) rays that meet a solid."""
-        return self.surface > GROUND
-
-    @property
-    def is_surface(self) -> Flags:
-        """(N,) rays that meet a solid or the ground."""
-        return self.surface >= GROUND
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -138,22 +118,12 @@ class RayScene:
             surface[at], distance[at], face[at] = number, hits.distance[nearer], hits.face[nearer]
         points = eye + directions * np.where(np.isfinite(distance), distance, 0.0)[:, None]
         normals = np.tile([0.0, 0.0, 1.0], (count, 1))
-        part, color = np.full(count, -1), np.zeros((count, 4))
+        part, color = np.full(count, -1), np.zeros((count, 3))
         for number, solid in enumerate(self.solids, 1):
             at = np.flatnonzero(surface == number)
             part[at] = solid.mesh.parts[face[at]]
-            normals[at] = solid.normals_at(face[at], points[at])
+            normals[at] = solid.normals[face[at]]
             color[at] = solid.colors[part[at]]
         away = (normals * directions).sum(axis=1) > 0.0
-        normals = unit(np.where(away[:, None], -normals, normals))
+        normals = np.where(away[:, None], -normals, normals)
         return RayHits(directions, surface, part, points, normals, color, distance)
-
-    def lit(self, light: Floats, points: Floats) -> Flags:
-        """(N,) whether no solid shades points (N, 3) from a light at a position (3,) [m]."""
-        ray = points - light
-        length = np.sqrt((ray * ray).sum(axis=1))
-        free = np.ones(len(points), bool)
-        for solid in self.solids:
-            hits = solid.mesh.first_hit_from(light, ray / length[:, None])
-            free &= ~(hits.distance < length - SLACK_M)
-        return free

@@ -11,15 +11,15 @@ from pe_core import sensors as kinds
 from pe_core.scoring import requirements
 from pe_core.scoring.requirements.definition import placed
 
-from .painted_mesh import GLASS, TYRE, Paint, PaintedMesh, rounded_box
+from .painted_mesh import GLASS, TYRE, PaintedMesh, Rgb, rounded_box
 
 PERSON_M = (0.5, 0.5, 1.75)  # Length, width and height of a person
 CAR_M = (4.5, 1.8, 1.5)  # Length, width and height of a car; about the mean of cars on the road
-SKIN, COAT = Paint((0.55, 0.36, 0.25)), Paint((0.80, 0.36, 0.02))
-TROUSERS = Paint((0.10, 0.11, 0.14))
-CAR_PAINT = Paint((0.03, 0.14, 0.38), 0.6)
-Block = tuple[tuple[float, float, float], tuple[float, float, float], Paint]
-"""Half the sizes of a block, its middle [m], and its paint."""
+SKIN, COAT = (0.55, 0.36, 0.25), (0.80, 0.36, 0.02)
+TROUSERS = (0.10, 0.11, 0.14)
+CAR_PAINT = (0.03, 0.14, 0.38)
+Block = tuple[tuple[float, float, float], tuple[float, float, float], Rgb]
+"""Half the sizes of a block, its middle [m], and its linear colour."""
 PERSON: tuple[Block, ...] = (
     ((0.10, 0.16, 0.42), (0.0, 0.0, 0.42), TROUSERS),
     ((0.12, 0.25, 0.34), (0.0, 0.0, 1.17), COAT),

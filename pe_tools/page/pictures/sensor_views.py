@@ -30,8 +30,6 @@ MAX_WIDTH, MAX_HEIGHT = 640, 480  # Size of a camera's image on the page [px]
 ROAD, RING, ZENITH, HORIZON = graphics.linear_of_srgb(
     np.array([(0.50, 0.51, 0.52), (0.93, 0.94, 0.95), (0.62, 0.74, 0.86), (0.90, 0.92, 0.93)])
 )
-SUN = np.array([-0.35, 0.5, 1.0])
-"""Direction to the sun relative to the sensor's heading: from behind, on the left."""
 RING_M = 0.05  # Half the width of a ring's line
 MIN_LINE_PX = 0.6
 FADED_M = (30.0, 160.0)  # Distances at which the ground begins and ends to fade into the horizon
@@ -136,29 +134,23 @@ def ray_camera(sensor: pe.Sensor) -> tuple[RayCamera, float]:
 def _road_environment(sensor: pe.Sensor) -> Environment:
     """Return a road with rings around the sensor, under a clear sky."""
     foot = np.array(sensor.pose.position[:2])
-    ahead = sensor.pose.ground_from_sensor[:2, 0]
-    heading = math.atan2(float(ahead[1]), float(ahead[0]))
-    c, s = math.cos(heading), math.sin(heading)
-    sun = np.array([c * SUN[0] - s * SUN[1], s * SUN[0] + c * SUN[1], SUN[2]])
 
-    def ground(points: Floats, pixel_m: Floats) -> Floats:
+    def ground(points: Floats, rays: Floats, pixel_m: Floats) -> Floats:
         away = np.hypot(points[:, 0] - foot[0], points[:, 1] - foot[1])
         half, line = np.maximum(RING_M, MIN_LINE_PX / 2.0 * pixel_m), np.zeros(len(points))
         for radius in DISTANCES:
             inside = half + pixel_m / 2.0 - np.abs(away - radius)
             line = np.maximum(line, np.clip(inside / np.maximum(pixel_m, 1e-6), 0.0, 1.0))
-        return np.asarray(ROAD + 0.75 * line[:, None] * (RING - ROAD))
+        road = ROAD + 0.75 * line[:, None] * (RING - ROAD)
+        part = np.clip((away - FADED_M[0]) / (FADED_M[1] - FADED_M[0]), 0.0, 1.0)
+        faded = (part**0.7)[:, None]
+        return np.asarray(road + faded * (sky(rays) - road))
 
     def sky(rays: Floats) -> Floats:
         up = np.clip(rays[:, 2], 0.0, 1.0)[:, None] ** 0.6
         return np.asarray(HORIZON * (1.0 - up) + ZENITH * up)
 
-    def haze(points: Floats) -> Floats:
-        away = np.hypot(points[:, 0] - foot[0], points[:, 1] - foot[1])
-        part = np.clip((away - FADED_M[0]) / (FADED_M[1] - FADED_M[0]), 0.0, 1.0)
-        return np.asarray(part**0.7)
-
-    return Environment(ground, sky, sun, haze)
+    return Environment(ground, sky)
 
 
 def lidar_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> LabelledPicture:

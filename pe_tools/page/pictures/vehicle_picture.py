@@ -13,7 +13,7 @@ from pe_core.base.arrays import Floats
 
 from ... import graphics, jobs
 from ..report_context import MAX_TRIANGLES, ReportContext
-from .painted_mesh import Paint, PaintedMesh, lathe, painted_vehicle, rounded_box
+from .painted_mesh import PaintedMesh, lathe, painted_vehicle, rounded_box
 from .ray_scene import RayScene, Viewpoint
 from .rendering import Environment, render
 from .sensor_views import sensor_view
@@ -26,7 +26,6 @@ VIEW_DIRECTION = np.array([0.80, -0.58, 0.29])
 KeyRow = tuple[int, str, str, str]
 PAPER = graphics.linear_of_srgb(np.array([0.965, 0.97, 0.975]))
 FLOOR = graphics.linear_of_srgb(np.array([0.905, 0.912, 0.92]))
-SUN = np.array([0.45, -0.62, 1.05])
 NO_VEHICLE_BOUNDS = (np.array([-2.0, -1.0, 0.0]), np.array([2.0, 1.0, 1.5]))
 """Bounds that the picture shows without a vehicle [m]."""
 SCALE, LINE_PX = 5.0 / 3.0, 24.0
@@ -43,7 +42,7 @@ ROUNDS = 40  # Distance between two discs, and steps in which they are moved apa
 BEHIND_M = 0.12  # A sensor farther than this behind the visible surface counts as hidden by it
 PROUD_M = 0.0005  # Height of a window above the housing's surface
 MARK_PX, EDGE_COLOR = 7.0, (0.1, 0.12, 0.14)
-WINDOW = Paint((0.02, 0.022, 0.025), 0.9)
+WINDOW = (0.02, 0.022, 0.025)
 
 
 def vehicle_picture(
@@ -116,15 +115,13 @@ def _studio(bounds: tuple[Floats, Floats]) -> Environment:
     middle, half = (low + high) / 2.0, (high - low) / 2.0
     reach = float(np.hypot(half[0], half[1]))
 
-    def ground(points: Floats, _: Floats) -> Floats:
-        return np.tile(FLOOR, (len(points), 1))
-
-    def haze(points: Floats) -> Floats:
+    def ground(points: Floats, _rays: Floats, _pixel_m: Floats) -> Floats:
         away = np.hypot(points[:, 0] - middle[0], points[:, 1] - middle[1]) / reach
         part = np.clip((away - 1.0) / 1.6, 0.0, 1.0)
-        return part * part * (3.0 - 2.0 * part)
+        faded = (part * part * (3.0 - 2.0 * part))[:, None]
+        return np.asarray(FLOOR + faded * (PAPER - FLOOR))
 
-    return Environment(ground, lambda rays: np.tile(PAPER, (len(rays), 1)), SUN, haze)
+    return Environment(ground, lambda rays: np.tile(PAPER, (len(rays), 1)))
 
 
 class LabelledVehicle(NamedTuple):
@@ -255,7 +252,7 @@ def housing_of(sensor: pe.Sensor) -> scene.Housing:
 
 def _solid(sensor: pe.Sensor, rgb: tuple[float, float, float]) -> PaintedMesh:
     housing = housing_of(sensor)
-    paint = Paint(tuple(graphics.linear_of_srgb(np.array(rgb)).tolist()), 0.25)
+    paint = tuple(graphics.linear_of_srgb(np.array(rgb)).tolist())
     shape = _cylinder_parts if housing.shape == "cylinder" else _box_parts
     parts = shape(np.array(housing.size))
     triangles = np.concatenate(parts) + housing.center

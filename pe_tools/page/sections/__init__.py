@@ -11,26 +11,19 @@ from markupsafe import Markup
 from .. import scene3d
 from ..markup import render
 from ..report_context import ReportContext
-from .comparison import bill_of_materials, comparison
+from .comparison import comparison
 from .score import (
     by_class_and_zone,
     conditions,
+    flatness,
     objects,
     overview,
     search_history,
-    sensitivity,
     sensor_loss,
     warnings_and_text,
 )
 from .traceability import assumptions, copy_script, reproduction
-from .visibility import (
-    dimensions,
-    drive_by,
-    requirement_verdicts,
-    sensor_details,
-    strip_script,
-    visibility,
-)
+from .visibility import drive_by, requirement_verdicts, sensor_details, strip_script, visibility
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,9 +52,7 @@ class Section:
 SECTIONS = (
     Section("summary", "Summary", overview, True, "overview"),
     Section("summary", "Comparison", comparison, True, "comparison"),
-    Section("bill", "Bill of materials", bill_of_materials, True),
     Section("view", "3-D view", scene3d.view, scripts=scene3d.scripts),
-    Section("plan", "Dimensions", dimensions),
     Section("requirements", "Requirements", requirement_verdicts),
     Section("drive-by", "Seen in time", drive_by, scripts=strip_script),
     Section("conditions", "Conditions", conditions),
@@ -71,7 +62,7 @@ SECTIONS = (
     Section("sensors", "Sensors", sensor_details),
     Section("sensor-loss", "Loss of one sensor", sensor_loss),
     Section("search", "Search", search_history),
-    Section("sensitivity", "How sure the search is", sensitivity),
+    Section("flatness", "How flat the optimum is", flatness),
     Section("advice", "Warnings", warnings_and_text),
     Section("again", "Reproduction", reproduction, scripts=copy_script),
     Section("basis", "Assumptions", assumptions, True),

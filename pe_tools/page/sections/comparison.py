@@ -9,17 +9,15 @@ from markupsafe import Markup
 
 import pe_core as pe
 from pe_core import catalog
-from pe_core import sensors as kinds
 from pe_core.base.values import error_text
 
 from ... import advice
-from ..markup import escaped, macros, price_text
+from ..markup import escaped, macros
 from ..pictures.ground_plan import difference_map
 from ..pictures.vehicle_picture import labelled_picture
 from ..report_context import ReportContext
 from .score import hidden_sensor_lines
 
-NO_PRICE = "no price"
 SIDES = {"front": "ahead", "rear": "behind", "left": "left", "right": "right"}
 METRE_DIGITS, DEGREE_DIGITS = 3, 2
 MAP_ENDS = ("8 nats less here", "8 nats less here")
@@ -35,35 +33,6 @@ def price_of(study: pe.Study, sensor: pe.Sensor) -> float | None:
             if option.model.name == sensor.model.name:
                 return option.price
     return None
-
-
-def bill_of_materials(contexts: tuple[ReportContext, ...]) -> dict[str, Any]:
-    """Return the sensors of each study by model and unit price (None: not given), and the sums."""
-    by_model = []
-    for context in contexts:
-        own: dict[tuple[str, float | None], list[pe.Sensor]] = {}
-        for sensor in context.rig:
-            key = sensor.model.name, price_of(context.study, sensor)
-            own.setdefault(key, []).append(sensor)
-        by_model.append(own)
-    models = list(dict.fromkeys(key for own in by_model for key in own))
-    return {
-        "by_model": by_model,
-        "models": models,
-        "totals": [_total(context) for context in contexts],
-        "no_price": list(dict.fromkeys(model for model, price in models if price is None)),
-        "kind_of": kinds.kind_of,
-    }
-
-
-def _total(context: ReportContext) -> str:
-    """Return the price of all sensors; "at least" the known part if some prices are missing."""
-    prices = [price_of(context.study, sensor) for sensor in context.rig]
-    known = [price for price in prices if price is not None]
-    if not known:
-        return NO_PRICE
-    total = price_text(sum(known), context.study.selection.currency)
-    return total if len(known) == len(prices) else f"at least {total}"
 
 
 def comparison(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:

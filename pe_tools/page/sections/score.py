@@ -21,13 +21,6 @@ from ..report_context import ReportContext
 
 SIDES = {"front": "ahead", "rear": "behind", "left": "on the left", "right": "on the right"}
 PALE, DARK = (255, 255, 255), (242, 165, 120)  # Colours of the lowest and of the highest entropy
-STATUS = {
-    "free": "free",
-    "surface": "on its mount",
-    "slot": "in its slot",
-    "fixed": "held",
-    "linked": "linked",
-}  # What the search does with an axis, in the table
 
 
 def overview(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:
@@ -186,13 +179,9 @@ def _curve(context: ReportContext, figure: jobs.SearchedFigure) -> tuple[Markup 
     return step_curve(points, evaluations, "placements evaluated", label, alt), caption
 
 
-def sensitivity(context: ReportContext) -> dict[str, Any] | None:
-    """Return how sure the search is; None without the analysis."""
-    found = context.outcome.sensitivity
+def flatness(context: ReportContext) -> dict[str, Any] | None:
+    """Return how flat the optimum of a search is; None without the analysis."""
+    found = context.outcome.flatness
     if found is None:
         return None
-    return {
-        "found": found,
-        "status": STATUS,
-        "steps": sorted({step for row in found.axes for step in row.cost}),
-    }
+    return {"found": found, "steps": sorted({step for row in found.axes for step in row.cost})}

@@ -8,7 +8,6 @@ import numpy as np
 import pe_core as pe
 from pe_core import metric
 from pe_core import sensors as kinds
-from pe_core import study as studies
 
 from ... import advice, jobs
 from ..markup import TEMPLATES, number
@@ -82,6 +81,5 @@ def reproduction(context: ReportContext) -> dict[str, Any]:
         },
         "samples_text": advice.objects_looked_at,
         "study_digest": jobs.fingerprint(context.start),
-        "vehicle_digest": studies.vehicle_digest(context.vehicle),
         "files": [(*names, jobs.study_text(study)) for names, study in files.items()],
     }

@@ -11,7 +11,6 @@ from pe_core.scoring.sight import reach_text
 
 from ... import graphics
 from ..markup import TEMPLATES, capitalized, percent
-from ..pictures.dimension_drawing import side_view, top_view
 from ..pictures.ground_plan import COVERAGE, ENTROPY, LAYERS, difference_map, ground_map
 from ..pictures.reference_figures import count_text, worst_bodies
 from ..pictures.sensor_views import sensor_view
@@ -111,22 +110,6 @@ def requirement_verdicts(context: ReportContext) -> dict[str, Any] | None:
         alt = f"Zone of {verdict.name} from above: {'met' if verdict.met else 'not met'}"
         plans.append(requirement_plan(verdict, context.vehicle, alt))
     return {"verdicts": verdicts, "plans": plans, "bodies": bodies, "count_text": count_text}
-
-
-def dimensions(context: ReportContext) -> dict[str, Any] | None:
-    """Return side and top view with dimensions; None without a vehicle."""
-    vehicle, axle = context.display_vehicle[0], context.study.reference
-    if vehicle is None:
-        return None
-    alt = f"Top view of {context.name} with dimensions"
-    return {
-        "side": side_view(context.rig, vehicle, f"Side view of {context.name} with dimensions"),
-        "top": top_view(context.rig, vehicle, alt),
-        "size": (vehicle.bounds[1] - vehicle.bounds[0]).tolist(),
-        "front": float(vehicle.bounds[1][0]),
-        "height": float(vehicle.bounds[1][2]),
-        "axle": axle,
-    }
 
 
 def sensor_details(context: ReportContext) -> dict[str, Any]:

@@ -203,7 +203,6 @@ def study_schema() -> dict[str, Any]:
         "vehicle": table({**vehicle, **declared["vehicle"]}),
         "reference": table(declared["reference"], "rear_axle_x", "rear_axle_z"),
         "sensor": {**tables(sensor, "name", "model", "position"), "minItems": 1},
-        "passthrough": {"type": "object"},
         "requirement": tables(requirement, "name"),
         "weather": tables({"name": TEXT, **declared["weather"]}, "name"),
         "state": tables(state, "name"),

@@ -78,7 +78,6 @@ from .scene_settings import (
     targets_of,
     value_of_property,
     wanted_of,
-    write_passthrough,
     write_reference,
 )
 from .sensor_colors import assign_colors

@@ -27,7 +27,7 @@ from .scene_record import (
     vehicle_of_scene,
     write_options,
 )
-from .scene_settings import write_goals, write_passthrough, write_reference, write_values
+from .scene_settings import write_goals, write_reference, write_values
 from .sensor_records import NO_BOUNDS, ZEROS, ModelOption, SensorRecord
 from .time import write_time
 from .vehicle import make_body, paint_area, same_body
@@ -214,7 +214,6 @@ def _write_settings(settings: PropertyGroup, record: SceneRecord) -> None:
             row.name, row.own = kind, True
             write_values(row, curve)
     write_reference(settings, record.reference)
-    write_passthrough(settings, record.passthrough)
     write_time(settings, record.frames, record.confirmation, record.stories)
 
 

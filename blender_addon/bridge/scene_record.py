@@ -12,7 +12,7 @@ from typing import Any
 
 from bpy.types import Collection, Depsgraph, Object, PropertyGroup, Scene
 
-from ..engine import catalog, exchange, motion, pe, requirements, search, studies
+from ..engine import catalog, motion, pe, requirements, search, studies
 from .conditions import as_drawn, conditions_of, read_states
 from .mounting import constraints_of, mounting_of, mounts_of
 from .prior import prior_from_scene
@@ -65,7 +65,6 @@ class SceneRecord:
     constraints: pe.Constraints
     selection: pe.Selection
     reference: pe.Reference | None
-    passthrough: exchange.Passthrough | None
     requirements: tuple[Requirement, ...]
     conditions: pe.Conditions
     frames: motion.Frames
@@ -147,7 +146,6 @@ def record_of_scene(
         if is_choice
         else pe.Selection(),
         reference=reference_of(settings),
-        passthrough=studies.passthrough_of_text(settings.passthrough, "scene"),
         requirements=requirements_of(settings),
         conditions=conditions_of(settings),
         **time_of(settings),

@@ -12,7 +12,7 @@ import numpy as np
 from bpy.types import PropertyGroup, Scene
 
 from ..choices import EXPECTED_AP, OBJECTS
-from ..engine import exchange, kinds, pe, search, studies
+from ..engine import kinds, pe, search, studies
 
 
 def as_typed(value: float) -> float:
@@ -179,11 +179,6 @@ def write_reference(settings: PropertyGroup, reference: pe.Reference | None) -> 
     settings.axles_known = reference is not None
     if reference is not None:
         write_values(settings, reference)
-
-
-def write_passthrough(settings: PropertyGroup, kept: exchange.Passthrough | None) -> None:
-    """Write the contents of an imported file besides the rig, as JSON text."""
-    settings.passthrough = studies.passthrough_text(kept)
 
 
 def settings_signature(settings: PropertyGroup) -> list[object]:

@@ -45,7 +45,8 @@ def run_job(args: argparse.Namespace) -> app.Answer:
 def export_study(args: argparse.Namespace) -> app.Answer:
     """Write the scene as a study file, with the vehicle's mesh; or for another program."""
     study = opened_study(args.variant)
-    if args.to is not None or Path(args.output).suffix in app.SUFFIXES:
+    is_rig = args.to is not None or args.into is not None or args.output is None
+    if is_rig or Path(args.output).suffix in app.SUFFIXES:
         return app.export(study, args)
     path = jobs.prepare_folder(args.output) / studies.STUDY
     jobs.export_study(study, path)

@@ -196,8 +196,8 @@ FORMAT_ITEMS = tuple(
 
 def rig_file(name: str) -> str:
     """Return the usual name of a format's file, or of its folder."""
-    files = exchange.rig_format(name).files
-    return files[0] if len(files) == 1 else f"{name}_rig"
+    row = exchange.rig_format(name)
+    return f"{name}_rig" if row.is_folder else row.files[0]
 
 
 @operator(
@@ -208,10 +208,21 @@ def rig_file(name: str) -> str:
         name="Format",
         description="The program and format to write for; by default that of the file's name",
     ),
+    into=StringProperty(
+        name="Into",
+        description="File or folder of that format whose other content is kept; by default that "
+        "which is replaced",
+        subtype="FILE_PATH",
+    ),
     replace=REPLACE,
 )
 def export_rig(
-    context: bpy.types.Context, filepath: str, format: str, properties: Any, replace: bool
+    context: bpy.types.Context,
+    filepath: str,
+    format: str,
+    properties: Any,
+    into: str,
+    replace: bool,
 ) -> Told:
     """Write the sensors for another program: URDF, ROS 2, Autoware, nuScenes, CARLA and others"""
     path = chosen_file(filepath)
@@ -221,10 +232,11 @@ def export_rig(
     name = exchange.format_of_file(path, exchange.FILES, told)
     row = exchange.rig_format(name)
     study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
-    replace = replace or not (row.beside or len(row.files) > 1)  # of one file the dialog has asked
-    wanted = study.rig, name, path, study.reference
+    replace = replace or not (row.beside or row.is_folder)  # of one file the dialog has asked
     paths: Sequence[Path]
-    paths, lines = exchange.export_rig(*wanted, passthrough=study.passthrough, replace=replace)
+    paths, lines = exchange.export_rig(
+        study.rig, name, path, study.reference, into=bpy.path.abspath(into) or None, replace=replace
+    )
     return told_of(WrittenFiles(tuple(paths), tuple(lines)))
 
 

@@ -197,11 +197,9 @@ def import_rig(context: bpy.types.Context, filepath: str, format: str) -> Told:
     Present sensors that are no variant yet are saved as one. A sensor whose model the file does not
     name gets a usual one, and a line that says so"""
     path, scene = chosen_file(filepath), context.scene
-    several = [row.files for row in exchange.RIG_FORMATS.values() if len(row.files) > 1]
+    several = [row.files for row in exchange.RIG_FORMATS.values() if row.is_folder]
     place = path.parent if any(path.name in files for files in several) else path
     reference, name = bridge.reference_of(scene.perception_entropy), format
     found = exchange.import_rig(place, None if name == BY_NAME else name, reference)
     title = path.stem or path.parent.name
-    told = replace_sensors(scene, title, tuple(found.rig), found.lines, f"Read from {path}")
-    bridge.write_passthrough(scene.perception_entropy, found.passthrough)
-    return told
+    return replace_sensors(scene, title, tuple(found.rig), found.lines, f"Read from {path}")

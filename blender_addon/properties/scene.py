@@ -126,12 +126,6 @@ class PE_SceneSettings(StudyFields, ListFields, KeepFields, bridge.ResultViews, 
         "is not sensitive to them. A candidate takes about eight times as long",
     )
 
-    passthrough: text(
-        "Kept of the Imported File",
-        "Content of an imported file besides the rig: an export to the same format writes it again",
-        options={"HIDDEN"},
-    )
-
     time_text: text(
         "Time", "Process noises by class and frame rates by kind, as JSON", options={"HIDDEN"}
     )

@@ -21,7 +21,6 @@ from .condition_table import ConditionScore, ConditionTable, condition_table
 from .conditions import Conditions, StateInWeather, state_from_dict, state_table
 from .file_names import AREAS, MESH, OPTIMIZED, RESULT, REVIEW_PAGE, SCHEMA, SEARCH, STUDY
 from .mounting_file import mounts_table
-from .passthrough import passthrough_of_text, passthrough_table, passthrough_text, read_passthrough
 from .study import OBJECTIVES, Search, Study
 from .study_file import (
     is_switch,

@@ -67,7 +67,6 @@ from .conditions import (
     mounting_cases,
 )
 from .mounting_file import check_pairs
-from .passthrough import Passthrough
 
 ENTROPY, EXPECTED_AP = "entropy", "expected_ap"
 OBJECTIVES = (ENTROPY, EXPECTED_AP)
@@ -199,8 +198,7 @@ class Study(Tabular):
     taken, `faces` how its axes were taken, in words (empty: they are the ground frame's), and
     `mesh_notes` what of it is left out.
     `samples` is the number of voxels a score looks at, 0: all; `reference` says where the vehicle's
-    axles are, for exports; `passthrough` is what an imported rig's file had besides the rig, for an
-    export to its own format. Of `search`, what concerns the rig's sensors is kept; one that it does
+    axles are, for exports. Of `search`, what concerns the rig's sensors is kept; one that it does
     not name is free as in the paper. `selection` says which sensors it may have instead of those of
     `rig`, and what they cost. `targets` says what is evaluated, `requirements` what has to be met,
     `conditions` the states of the vehicle and the weathers that count, `returns` which beams of the
@@ -230,7 +228,6 @@ class Study(Tabular):
     reference: Reference | None = None
     selection: Selection = field(default_factory=Selection)
     targets: TargetRule = field(default_factory=TargetRule)
-    passthrough: Passthrough | None = None
     requirements: tuple[Requirement, ...] = ()
     conditions: Conditions = field(default_factory=Conditions)
     returns: str = setting(
@@ -427,7 +424,7 @@ class Study(Tabular):
     def with_other_rig(self, rig: Rig) -> "Study":
         """Return the study of another rig, which is scored in the same way. What names the sensors,
         or the search, does not stay."""
-        bare = replace(self, requirements=(), conditions=Conditions(), passthrough=None)
+        bare = replace(self, requirements=(), conditions=Conditions())
         return replace(bare, rig=rig, search=Search(), selection=Selection())
 
     @contextmanager
@@ -485,9 +482,9 @@ class Study(Tabular):
 FIELDS: dict[str, type] = {"rig": Rig, "space": PerceptionSpace, "prior": Prior, "search": Search}
 FIELDS |= {"model": PerceptionModel, "axes": MeshAxes, "selection": Selection}
 FIELDS |= {"targets": TargetRule, "vehicle": Vehicle, "reference": Reference}
-FIELDS |= {"conditions": Conditions, "passthrough": Passthrough}
+FIELDS |= {"conditions": Conditions}
 FIELDS |= {"frames": Frames, "confirmation": Confirmation, "stories": tuple}
-OPTIONAL = ("vehicle", "reference", "passthrough")
+OPTIONAL = ("vehicle", "reference")
 
 
 def _each(table: Any, field: str, check: Callable[[str, str, Any], Any]) -> dict[str, Any]:

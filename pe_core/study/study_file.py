@@ -60,7 +60,6 @@ from ..sensors import PerceptionModel
 from ..sensors.weather import Weather
 from .conditions import BODY, OF_STATE, condition_tables, read_conditions
 from .mounting_file import areas_of, same_model
-from .passthrough import passthrough_table, read_passthrough
 from .requirement_file import read_requirements, requirement_table
 from .scoring_file import (
     curve_table,
@@ -174,7 +173,6 @@ def study_to_dict(study: Study) -> dict[str, Any]:
         "vehicle": _vehicle_table(study),
         "reference": None if study.reference is None else settings_table(study.reference),
         "sensor": [_sensor_table(s, study.search) for s in study.rig],
-        "passthrough": passthrough_table(study.passthrough),
         "requirement": [requirement_table(each) for each in study.requirements] or None,
         **condition_tables(study.conditions),
         "time": time_table(study.frames, study.confirmation) or None,
@@ -220,7 +218,6 @@ def _read_study(table: Table, folder: Path) -> Study:
         read_declared(table.table("reference"), Reference) if "reference" in table else None,
         read_selection(table, lambda option: _read_intrinsics(option, OWN_MODEL, folder)),
         read_targets(table.table("metric")),
-        read_passthrough(table.table("passthrough")) if "passthrough" in table else None,
         read_requirements(table),
         read_conditions(table),
         **_read_measurement(table.table("measurement")),

@@ -15,7 +15,15 @@ from pe_core.scene import Pose, Reference, Rig, Vehicle, guessed_reference, name
 from pe_core.scoring.sampling import FIRST_SAMPLES
 from pe_core.study import Study, load_study, read_rig_line, rig_line, save_study
 
-from ..exchange import FILES, RIG_FORMATS, export_rig, format_of_file, import_rig, read_vehicle_info
+from ..exchange import (
+    FILES,
+    RIG_FORMATS,
+    export_rig,
+    format_of_file,
+    format_to_read,
+    import_rig,
+    read_vehicle_info,
+)
 from ..formats import read_mesh
 from ..graphics import place_tints
 from ..outputs import OF_EXAMPLE, export_scene, output_files, scene_output, scene_outputs
@@ -122,12 +130,16 @@ def add_export_options(
     default = "by the suffix of PATH" + (", or else a study" if also_study else "")
     about = f"format: {', '.join(known)} (default: {default})"
     parser.add_argument("--to", choices=known, metavar="FORMAT", help=about)
-    about = "file, or folder for a format of several files"
-    parser.add_argument("-o", "--output", required=True, metavar="PATH", help=about)
+    about = "file, or folder for a format of several files (default: that of --into)"
+    parser.add_argument("-o", "--output", metavar="PATH", help=about)
+    about = "file that the rig goes into: all that is not about its sensors stays"
+    parser.add_argument("--into", metavar="PATH", help=about)
     about = f"of {', '.join(_ranged())}: how far sensors are drawn [m] (default: their range)"
     parser.add_argument("--range", type=float, metavar="M", help=about)
-    parser.add_argument("--replace", action="store_true", help="replace files that are there")
-    _add_axle_options(parser)
+    about = "replace files that are there; what else they hold stays"
+    parser.add_argument("--replace", action="store_true", help=about)
+    parser.set_defaults(usage_error=parser.error)
+    _add_place_options(parser)
 
 
 def _ranged() -> list[str]:
@@ -145,15 +157,15 @@ def add_import_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--mesh", metavar="FILE", help=about)
     about = "a sensor's model, which the file does not tell; any number"
     parser.add_argument("--model", action="append", default=[], metavar="NAME=MODEL", help=about)
+    parser.add_argument("--replace", action="store_true", help="replace a study that is there")
+    _add_place_options(parser)
+
+
+def _add_place_options(parser: argparse.ArgumentParser) -> None:
     about = "where the file's origin is: x y z in m, roll pitch yaw in degrees"
     parser.add_argument(
         "--at", type=float, nargs=6, metavar=("X", "Y", "Z", "R", "P", "W"), help=about
     )
-    parser.add_argument("--replace", action="store_true", help="replace a study that is there")
-    _add_axle_options(parser)
-
-
-def _add_axle_options(parser: argparse.ArgumentParser) -> None:
     where = parser.add_mutually_exclusive_group()
     about = "middle of the rear axle: forward of the origin, above the ground [m]"
     where.add_argument("--rear-axle", type=float, nargs=2, metavar=("X", "Z"), help=about)
@@ -167,18 +179,29 @@ def export(study: Study, args: argparse.Namespace) -> Answer:
     """Write a study's rig, or its scene, for another program."""
     if args.to in OF_EXAMPLE:
         scene_output(args.to)  # refuses it without its plugin
-    args.to = format_of_file(Path(args.output), FILE_NAMES, args.to)
+    if args.output is None and args.into is None:
+        args.usage_error("expected -o PATH, a file to write, or --into PATH, one to change")
+    output = Path(args.into if args.output is None else args.output)
+    if args.into is not None:
+        args.to = format_to_read(Path(args.into), args.to)[0].name
+    args.to = format_of_file(output, FILE_NAMES, args.to)
     if args.range is not None and args.to not in _ranged():
         raise InputError("--range", "option", f"one of {', '.join(_ranged())}", args.to)
     reference = _reference(args, study.reference, study.vehicle, args.to)
-    refuse_input(Path(args.output))
-    where, options = (args.to, args.output), {"replace": args.replace}
+    refuse_input(output)
     if args.to in scene_outputs():
         study = replace(study, reference=reference)
-        paths, lines = export_scene(study, *where, args.range, **options)
+        paths, lines = export_scene(study, args.to, output, args.range, replace=args.replace)
     else:
-        kept = study.passthrough
-        paths, lines = export_rig(study.rig, *where, reference, passthrough=kept, **options)
+        paths, lines = export_rig(
+            study.rig,
+            args.to,
+            output,
+            reference,
+            into=args.into,
+            placed=_pose_at(args),
+            replace=args.replace or args.output is None,
+        )
     for line in lines:
         tell(line)
     return "\n".join(f"wrote {path}" for path in paths), DONE
@@ -198,22 +221,18 @@ def import_study(args: argparse.Namespace) -> Answer:
     """Write a study of a rig from the files of another program."""
     output, vehicle = new_study(args)
     reference = _reference(args, None, vehicle, args.format or args.file)
-    placed = None if args.at is None else Pose.from_degrees(args.at[:3], args.at[3:])
     models = chosen_models(args.model)
-    found = import_rig(args.file, args.format, reference, models, placed)
-    study = Study(
-        found.rig,
-        vehicle,
-        samples=FIRST_SAMPLES,
-        mesh=args.mesh,
-        reference=reference,
-        passthrough=found.passthrough,
-    )
+    found = import_rig(args.file, args.format, reference, models, _pose_at(args))
+    study = Study(found.rig, vehicle, samples=FIRST_SAMPLES, mesh=args.mesh, reference=reference)
     require_new(output, replace=args.replace)  # all inputs are read
     save_study(study, output)
     for line in found.lines:
         tell(line)
     return _wrote(output, study), DONE
+
+
+def _pose_at(args: argparse.Namespace) -> Pose | None:
+    return None if args.at is None else Pose.from_degrees(args.at[:3], args.at[3:])
 
 
 def _reference(

@@ -1,7 +1,5 @@
 """Import and export of sensor rigs in the file formats of other programs."""
 
-from pe_core.study.passthrough import Passthrough as Passthrough
-
 from .autoware import read_vehicle_info
 from .exporting import export_rig, lost_line, rig_files, write_files
 from .foreign_values import MAX_BEAMS, Written, require_at_most
@@ -10,4 +8,13 @@ from .importing import ImportedRig, import_rig
 from .lens_pictures import Picture, straight
 from .portable import PortableSensor, with_pictures
 from .portable_kinds import picture_of, portable_sensors
-from .rig_formats import FILES, MAX_RANGE, MIN_RANGE, MODEL, RIG_FORMATS, format_of_file, rig_format
+from .rig_formats import (
+    FILES,
+    MAX_RANGE,
+    MIN_RANGE,
+    MODEL,
+    RIG_FORMATS,
+    format_of_file,
+    format_to_read,
+    rig_format,
+)

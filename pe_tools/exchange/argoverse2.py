@@ -16,10 +16,10 @@ from pe_core.base.values import vector
 from pe_core.geometry.poses import METRES
 from pe_core.sensors.camera import Pinhole
 
-from .foreign_values import COEFFICIENT, FOCAL, PIXELS, PRINCIPAL_POINT, Export, FileTexts
+from .foreign_values import COEFFICIENT, FOCAL, PIXELS, PRINCIPAL_POINT, Export
 from .frames import BODY_FROM_OPTICAL, from_quaternion, pose_of, product, quaternion
 from .lens_pictures import Picture
-from .portable import PortableRig, PortableSensor
+from .portable import ForeignRig, MergeTarget, PortableRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 
 MAGIC = b"ARROW1"  # First bytes of an Arrow file; its stream begins after two more
@@ -41,7 +41,7 @@ CONVENTIONS = {
 NO_BEND = "the file's k1, k2, k3 are not applied: Argoverse's own reader projects without them"
 
 
-def write(sensors: PortableRig, _texts: FileTexts) -> Export:
+def write(sensors: PortableRig, _into: MergeTarget | None) -> Export:
     """Return the tables of poses and of intrinsics, and no messages."""
     poses: list[Sequence[Any]] = []
     intrinsics: list[Sequence[Any]] = []
@@ -60,12 +60,12 @@ def write(sensors: PortableRig, _texts: FileTexts) -> Export:
     }, []
 
 
-def read(path: Path) -> PortableRig:
+def read(path: Path) -> ForeignRig:
     """Read the sensors from the table of poses, or its folder, and the intrinsics beside it."""
     path = path / POSES if path.is_dir() else path
     beside = path.with_name(INTRINSICS)
     cameras = {row.text(NAME): row for row in _rows(beside)}
-    return tuple(_sensor(path, row, cameras) for row in _rows(path))
+    return ForeignRig(tuple(_sensor(path, row, cameras) for row in _rows(path)))
 
 
 def _rows(path: Path) -> list[Table]:

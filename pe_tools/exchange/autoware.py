@@ -22,7 +22,7 @@ from pe_core.scene.vehicle_description import Reference
 from pe_tools.formats.yaml_text import KeyPath, YamlText, parse_yaml
 
 from . import foreign_values as foreign
-from .foreign_values import RPY, XYZ, Export, FileTexts, plain_number
+from .foreign_values import RPY, XYZ, Export, plain_number
 from .frames import (
     composed,
     is_optical,
@@ -32,8 +32,8 @@ from .frames import (
     with_legal_frames,
 )
 from .lens_pictures import alike
-from .passthrough import is_there, is_turned_so
-from .portable import ORIGIN, PortableRig, PortableSensor, merged_lines
+from .merging import gone_lines, is_there, is_turned_so
+from .portable import ORIGIN, ForeignRig, MergeTarget, PortableRig, PortableSensor, merged_lines
 from .portable_kinds import CAMERA, LIDAR, RADAR
 from .ros import info_files, info_name, read_info, with_info
 from .sensor_names import said_kind
@@ -59,6 +59,15 @@ class Unit:
     frames: Mapping[str, Pose]
 
 
+@dataclass(frozen=True, slots=True)
+class Kit:
+    """The content of a kit: its files with frames, those on base_link first, and the texts of its
+    camera_info files, both by file name."""
+
+    units: Mapping[str, Unit]
+    infos: Mapping[str, str]
+
+
 def kit_texts(folder: Path) -> dict[str, str]:
     """Return the calibration texts of a kit by file name; the file of base_link comes first."""
     file_names = sorted(path.name for path in folder.glob("*_calibration.yaml"))
@@ -67,11 +76,11 @@ def kit_texts(folder: Path) -> dict[str, str]:
     return {name: foreign.text_of(folder / name) for name in (TO_KIT, *kit, *units)}
 
 
-def _units(folder: Path, texts: Mapping[str, str]) -> dict[str, Unit]:
-    """Return the parts of a kit by file name: the frames on base_link first, then its units. A unit
-    is the sensor kit itself or one of several groups, each in a file UNIT_calibration.yaml. The kit
-    aip_x2 of TIER IV, for example, has the units top_unit and front_unit. Files of other content
-    are left out, unless nothing is left then."""
+def _units(folder: Path, texts: Mapping[str, str]) -> tuple[dict[str, Unit], list[str]]:
+    """Return the parts of a kit by file name: the frames on base_link first, then its units. With
+    messages on files that are not read. A unit is the sensor kit itself or one of several groups,
+    each in a file UNIT_calibration.yaml. The kit aip_x2 of TIER IV, for example, has the units
+    top_unit and front_unit. Files of other content are left out, unless nothing is left then."""
     units = {TO_KIT: _unit(folder / TO_KIT, texts[TO_KIT], (BASE,))}
     base = units[TO_KIT].frames
     strays = _strays(folder, texts, base)
@@ -80,7 +89,7 @@ def _units(folder: Path, texts: Mapping[str, str]) -> dict[str, Unit]:
     for file, text in texts.items():
         if file != TO_KIT and file not in strays:
             units[file] = _unit(folder / file, text, base)
-    return units
+    return units, [f"{error.at(file)}; the file is not read" for file, error in strays.items()]
 
 
 def _strays(
@@ -124,21 +133,16 @@ def _unit(path: Path, text: str, parents: Collection[str]) -> Unit:
     return Unit(yaml, parent, frames)
 
 
-def remarks(path: Path) -> list[str]:
-    """Return messages on files of a kit that are not read."""
-    folder = path if path.is_dir() else path.parent
-    texts = kit_texts(folder)
-    base = _unit(folder / TO_KIT, texts[TO_KIT], (BASE,)).frames
-    return [
-        f"{error.at(file)}; the file is not read"
-        for file, error in _strays(folder, texts, base).items()
-    ]
-
-
 def _models(unit: Unit) -> dict[str, str]:
     """Return catalogue model names by frame, from the comments that `write` adds to frames."""
+    models = {frame: _model_in(text) for frame, (text, _) in _comments(unit).items()}
+    return {frame: model for frame, model in models.items() if model}
+
+
+def _model_in(text: str) -> str:
+    """Return the part of a comment that is the name of a model; empty if none is."""
     catalogued = catalog.entries()
-    return {frame: text for frame, (text, _) in _comments(unit).items() if text in catalogued}
+    return next((part for part in text.split("; ") if part in catalogued), "")
 
 
 def _comments(unit: Unit) -> dict[str, tuple[str, str]]:
@@ -177,12 +181,13 @@ def _suffix_of(frame: str) -> str:
     return next((suffix for suffix in FRAMES.values() if frame.endswith(suffix)), "")
 
 
-def read(path: Path) -> PortableRig:
+def read(path: Path) -> ForeignRig:
     """Read the sensors of a kit: `path` is its folder, or one of its files. LiDAR poses are those
     of the frames in the files. `lifted` moves a pose from the base of the housing to the scan
     centre, once the model is known."""
     folder = path if path.is_dir() else path.parent
-    base, *units = _units(folder, kit_texts(folder)).values()
+    by_file, lines = _units(folder, kit_texts(folder))
+    base, *units = by_file.values()
     poses = {
         name: composed(base.frames[unit.parent], pose)
         for unit in units
@@ -194,26 +199,14 @@ def read(path: Path) -> PortableRig:
     comments = {frame: both for unit in (base, *units) for frame, both in _comments(unit).items()}
     sensors = []
     for frame, pose in poses.items():
-        sensor = PortableSensor(frame, pose, _kind_of(frame), models.get(frame))
+        sensor = PortableSensor(frame, pose, _kind_of(frame), models.get(frame), entry=frame)
         _, axes = comments.get(frame, ("", ""))
         if sensor.kind == CAMERA and _is_optical_here(frame, pose, axes):
             sensor = turned_to_body(sensor)
         sensors.append(replace(sensor, name=frame.removesuffix(_suffix_of(frame))))
-    return with_info(folder, sensors)
-
-
-def source(path: Path) -> dict[str, str]:
-    """Return the texts of a kit's calibration and camera_info files by file name."""
-    folder = path if path.is_dir() else path.parent
-    texts = kit_texts(folder)
-    units = _units(folder, texts)
-    texts = {name: texts[name] for name in units}
-    for unit in units.values():
-        for frame in unit.frames:
-            name = info_name(frame.removesuffix(_suffix_of(frame)))
-            if (folder / name).is_file():
-                texts[name] = foreign.text_of(folder / name)
-    return texts
+    names = [info_name(sensor.name) for sensor in sensors]
+    infos = {name: foreign.text_of(folder / name) for name in names if (folder / name).is_file()}
+    return ForeignRig(with_info(folder, sensors), lines, Kit(by_file, infos))
 
 
 def lifted(sensor: PortableSensor) -> PortableSensor:
@@ -232,6 +225,8 @@ def _height(sensor: PortableSensor) -> float:
 
 
 def _frame_of(sensor: PortableSensor) -> str:
+    if sensor.entry is not None:
+        return str(sensor.entry)
     suffix = "" if sensor.name.endswith("_link") else FRAMES.get(sensor.kind or "", "")
     return sensor.name + suffix
 
@@ -256,19 +251,17 @@ def _lines_of(head: str, pose: Pose) -> list[str]:
     return [head, *(f"  {key}: {plain_number(v)}" for key, v in foreign.pose_numbers(pose).items())]
 
 
-def write(sensors: PortableRig, texts: FileTexts) -> Export:
-    """Return the files of a new kit, or of the kit of these texts with its sensors updated. A new
-    kit has a camera_info file per camera; messages say where the LiDARs' frames are."""
-    calibrations = {name: text for name, text in texts.items() if "/" not in name}
-    units = _units(Path(), calibrations) if texts else {}
-    parents = [unit.parent for unit in units.values()] or [BASE, KIT]
-    included = [sensor for sensor in sensors if not sensor.is_left_out]
+def write(sensors: PortableRig, into: MergeTarget | None) -> Export:
+    """Return the files of a new kit, or of an existing one with its sensors updated. A new kit has
+    a camera_info file per camera; messages say where the LiDARs' frames are."""
+    taken = [BASE, KIT]
+    if into is not None:
+        units = into.document.units.values()
+        taken = [unit.parent for unit in units] + [frame for unit in units for frame in unit.frames]
     named, lines = with_legal_frames(
-        included, slashes=True, frames=lambda sensor: (_frame_of(sensor),), taken=parents
+        sensors, slashes=True, frames=lambda sensor: (_frame_of(sensor),), taken=taken
     )
-    if units:
-        named = _without_height(units, named)
-    files, own_lines = _updated(units, texts, named) if units else (_new(named), [])
+    files, own_lines = (_new(named), []) if into is None else _updated(into, named)
     notes = []
     for sensor in (sensor for sensor in named if sensor.kind == LIDAR):
         text = (
@@ -281,26 +274,6 @@ def write(sensors: PortableRig, texts: FileTexts) -> Export:
         notes.append((sensor.name, text))
     written = {name: text.encode() for name, text in files.items()}
     return written, [*lines, *own_lines, *merged_lines(notes)]
-
-
-def _without_height(
-    units: Mapping[str, Unit], sensors: Sequence[PortableSensor]
-) -> tuple[PortableSensor, ...]:
-    """Return the sensors; a LiDAR whose origin is its frame in the kit counts as of unknown model.
-    An import put it there because the kit names no model of it."""
-    base = units[TO_KIT].frames
-    at_frame = set()
-    for file, unit in units.items():
-        outer = ORIGIN if file == TO_KIT else base[unit.parent]
-        named = _models(unit)
-        for sensor in sensors:
-            frame = _frame_of(sensor)
-            if sensor.kind != LIDAR or frame in named or frame not in unit.frames:
-                continue
-            inside = seen_from(outer, sensor.pose).position
-            if all(map(is_there, inside, unit.frames[frame].position)):
-                at_frame.add(sensor.name)
-    return tuple(replace(s, is_stand_in=s.is_stand_in or s.name in at_frame) for s in sensors)
 
 
 def _new(sensors: Sequence[PortableSensor]) -> dict[str, str]:
@@ -316,14 +289,14 @@ def _new(sensors: Sequence[PortableSensor]) -> dict[str, str]:
 
 
 def _updated(
-    units: Mapping[str, Unit], texts: Mapping[str, str], named: Sequence[PortableSensor]
+    into: MergeTarget, named: Sequence[PortableSensor]
 ) -> tuple[dict[str, str], list[str]]:
     """Return the files of an existing kit with the sensors' poses, models and lenses. Added sensors
     go into the first unit."""
+    units = into.document.units
     by_frame = {_frame_of(sensor): sensor for sensor in named}
-    parents = {unit.parent for unit in units.values()}
-    base, known = units[TO_KIT].frames, {f for unit in units.values() for f in unit.frames}
-    added = [sensor for frame, sensor in by_frame.items() if frame not in known]
+    base = units[TO_KIT].frames
+    added = [sensor for sensor in named if sensor.entry is None]
     files, left = {}, added
     for file, unit in units.items():
         pose = ORIGIN if file == TO_KIT else base[unit.parent]
@@ -332,10 +305,8 @@ def _updated(
             new_lines = [line for sensor in left for line in _frame_lines(sensor, pose)]
             left = []
         files[file] = _patched(unit, pose, by_frame, new_lines)
-    infos, lines = _infos(texts, named, added)
-    if kept := sorted(known - by_frame.keys() - parents):
-        lines = [f"kept as they stood in the kit: {', '.join(kept)}", *lines]
-    return files | infos, lines
+    infos, lines = _infos(into.document.infos, named)
+    return files | infos, [*gone_lines(sensor.entry for sensor in into.gone), *lines]
 
 
 def _patched(
@@ -360,34 +331,38 @@ def _patched(
         new_axes = axes
         if sensor.kind == CAMERA and changed:
             new_axes = _axes_comment(frame, on_vehicle, optical=optical)
-        new_text = _new_text(sensor, text)
+        new_text = _new_text(sensor, text, is_moved=bool(changed))
         if (new_text, new_axes) != (text, axes):
             comments[unit.parent, frame] = "; ".join(filter(None, [new_text, new_axes]))
     return unit.text.edited(values, comments, ((unit.parent,), added))
 
 
-def _new_text(sensor: PortableSensor, text: str) -> str:
-    """Return the comment of a frame of a kit: its model if the comment was one, else the same."""
-    if text not in catalog.entries():
+def _new_text(sensor: PortableSensor, text: str, *, is_moved: bool) -> str:
+    """Return the comment of a frame of a kit with its model, if the comment has one. A LiDAR that
+    moved gets one: the frame is at the base of this model's housing."""
+    old, new = _model_in(text), sensor.known_model or ""
+    if not old:
+        is_placed_by_model = is_moved and bool(_height(sensor))
+        return "; ".join(filter(None, [new, text])) if is_placed_by_model else text
+    if new in catalog.entries():
+        return text.replace(old, new)
+    if sensor.kind == CAMERA:  # its camera_info describes it
         return text
-    model = sensor.known_model or ""
-    if model in catalog.entries():
-        return model
-    return text if sensor.kind == CAMERA else ""  # its camera_info describes a camera
+    return "; ".join(part for part in text.split("; ") if part != old)
 
 
 def _infos(
-    texts: Mapping[str, str], named: Sequence[PortableSensor], added: Sequence[PortableSensor]
+    texts: Mapping[str, str], named: Sequence[PortableSensor]
 ) -> tuple[dict[str, str], list[str]]:
     """Return the camera_info files, and messages on cameras that have none. A file is rewritten
     only when the lens has changed, and created only for an added camera."""
-    files = {name: text for name, text in texts.items() if "/" in name}
+    files = dict(texts)
     fresh, lines = info_files(named), []
     for sensor in named:
         name = info_name(sensor.name)
         if sensor.kind != CAMERA or sensor.picture is None:
             continue
-        if name not in files and sensor not in added:
+        if name not in files and sensor.entry is not None:
             lines.append(f"{sensor.name}: {NO_INFO}")
         elif name not in files:
             files[name] = fresh[name]

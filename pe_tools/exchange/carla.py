@@ -7,16 +7,24 @@ from pathlib import Path
 from typing import Any
 
 from pe_core.base.errors import InputError
-from pe_core.base.table_reader import Table, dump_json, parse_json
+from pe_core.base.table_reader import Table, dump_json
 from pe_core.base.values import Number
-from pe_core.study.passthrough import json_entry
 
 from . import foreign_values as values
-from .foreign_values import PIXELS, RANGE, RPY, XYZ, Export, FileTexts, json_of, json_rows
+from .foreign_values import PIXELS, RANGE, RPY, XYZ, Export, json_of, json_rows
 from .frames import with_legal_frames
 from .lens_pictures import picture_of_fov
-from .passthrough import entry_row
-from .portable import ORIGIN, FieldOfView, PortableRig, PortableSensor, Scan, uneven
+from .merging import merge_rows
+from .portable import (
+    ORIGIN,
+    FieldOfView,
+    ForeignRig,
+    MergeTarget,
+    PortableRig,
+    PortableSensor,
+    Scan,
+    uneven,
+)
 from .portable_kinds import CAMERA, LIDAR, RADAR
 
 FILE = "objects.json"
@@ -57,16 +65,17 @@ RADAR_FOV_DEG, RADAR_RANGE_M = 30.0, 100.0
 FIGURES = ("image_size_x", "image_size_y", "fov", *SCAN_KEYS, ACROSS, UPWARDS)
 
 
-def write(sensors: PortableRig, texts: FileTexts) -> Export:
+def write(sensors: PortableRig, into: MergeTarget | None) -> Export:
     """Return a document whose first vehicle carries the rig, and messages on losses."""
     document: Any = {"objects": [{"type": "vehicle.*", "id": "ego_vehicle"}]}
-    if texts:
-        document = parse_json("passthrough", texts.get(FILE, ""))
-    named, lines = with_legal_frames(sensors)
-    supported = [sensor for sensor in named if sensor.is_left_out or sensor.kind in TYPES]
+    if into is not None:
+        document = into.document
+    named, lines = with_legal_frames(sensors, taken=() if into is None else into.taken)
+    supported = [sensor for sensor in named if sensor.kind in TYPES]
     lines += [f"{s.name}: CARLA has no {s.kind}; left out" for s in named if s not in supported]
-    vehicle, key = _place_of_sensors("passthrough", document)
-    vehicle[key] = [entry_row(sensor, _row, (SPAWN,), FIGURES) for sensor in supported]
+    vehicle, key = _place_of_sensors(FILE, document)
+    rows = vehicle.setdefault(key, [])
+    merge_rows(rows, supported, into, _row, pose_keys=(SPAWN,), figure_keys=FIGURES)
     for sensor in named:
         low, high = sensor.scan.fov if sensor.scan is not None else (0.0, 0.0)
         if abs(math.degrees(low + high)) >= TINY_DEG:
@@ -116,15 +125,7 @@ def _row(sensor: PortableSensor) -> dict[str, Any]:
     return row
 
 
-def source(path: Path) -> dict[str, str]:
-    """Return the document without its sensors, as text by file name, for `write_over`."""
-    document = json_of(path)
-    vehicle, key = _place_of_sensors(path, document)
-    vehicle[key] = []
-    return {FILE: json_entry(document)}
-
-
-def read(path: Path) -> PortableRig:
+def read(path: Path) -> ForeignRig:
     """Read the sensors of the first vehicle that has a list of sensors, one with a spawn point."""
     document = json_of(path)
     vehicle, key = _place_of_sensors(path, document)
@@ -132,18 +133,18 @@ def read(path: Path) -> PortableRig:
     sensors = tuple(_sensor(path, row) for row in rows)
     if not any("spawn_point" in row for row in rows):
         raise InputError(path, "objects", "a vehicle with sensors", "none")
-    return sensors
+    return ForeignRig(sensors, document=document)
 
 
 def _sensor(path: Path, row: Table) -> PortableSensor:
     type_name = row.text("type")
     if SPAWN not in row:  # a pseudo sensor: CARLA's own view of the world
-        return PortableSensor(row.text("id"), ORIGIN, "pseudo", entry=json_entry(row.data))
+        return PortableSensor(row.text("id"), ORIGIN, "pseudo", entry=row.data)
     spawn = row.table(SPAWN)
     position, angles = values.named_numbers(spawn, XYZ), [spawn.number(key, 0.0) for key in RPY]
     pose = values.pose_from(path, row.field(SPAWN), position, angles, degrees=True)
     kind = _kind(type_name.removeprefix("sensor."), row.text("id"))
-    sensor = PortableSensor(row.text("id"), pose, kind, entry=json_entry(row.data))
+    sensor = PortableSensor(row.text("id"), pose, kind, entry=row.data)
     if kind == CAMERA and all(key in row for key in ("image_size_x", "image_size_y", "fov")):
         size = row.whole("image_size_x", rule=PIXELS), row.whole("image_size_y", rule=PIXELS)
         picture = picture_of_fov(math.radians(row.number("fov", rule=FOV)), size)

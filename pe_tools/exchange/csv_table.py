@@ -1,10 +1,11 @@
 """Rigs as a CSV table, one row per sensor, for spreadsheets and for reading by eye."""
 
 import csv
+import itertools
 import math
 import re
-from collections.abc import Callable, Mapping
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,15 +14,13 @@ from pe_core.base.files import csv_text, unmarked
 from pe_core.base.values import FINITE, Number, choice
 from pe_core.sensors.camera.kind import FOV_DEG
 from pe_core.sensors.camera.lens import LENSES
-from pe_core.study.passthrough import json_entry
 from pe_tools.formats.csv_rows import SEPARATORS, separated
 
 from . import foreign_values as values
-from .foreign_values import Export, FileTexts, plain_number
+from .foreign_values import Export, plain_number
 from .lens_pictures import Picture
-from .passthrough import entry_row
-from .portable import PortableRig, PortableSensor
-from .portable_kinds import has_model
+from .merging import Row, merge_rows
+from .portable import ForeignRig, MergeTarget, PortableRig, PortableSensor
 
 FILE = "rig.csv"
 POSITION_KEYS, ROTATION_KEYS = ("x_m", "y_m", "z_m"), ("roll_deg", "pitch_deg", "yaw_deg")
@@ -32,6 +31,8 @@ COLUMNS = ("name", "kind", "model", *POSITION_KEYS, *ROTATION_KEYS, "fusion", *L
 PARAMETERS = "parameters"
 """Column of a rig with sensors whose models have neither lens nor beams: tables as JSON."""
 COMMENTS = ("#", '"#')
+POSE_KEYS = (*POSITION_KEYS, *ROTATION_KEYS)
+MODEL_KEYS = ("kind", "model", "fusion", *LENS, *RANGES, PARAMETERS)
 SURPLUS = ""
 """Column of the cells behind the last one of the header."""
 DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+", re.ASCII)
@@ -45,15 +46,28 @@ HEAD = """\
 """
 
 
-def write(sensors: PortableRig, _texts: FileTexts) -> Export:
+@dataclass(frozen=True, slots=True)
+class CsvTable:
+    """A table in a file: the comments at its head, the names of its columns, and its rows."""
+
+    head: str
+    columns: Sequence[str]
+    rows: list[Row]
+
+
+def write(sensors: PortableRig, into: MergeTarget | None) -> Export:
     """Return the table of a rig, and no messages."""
-    rows = [
-        entry_row(sensor, lambda _: {}, (), ()) if sensor.is_left_out else _row(sensor)
-        for sensor in sensors
+    table = CsvTable(HEAD, COLUMNS, []) if into is None else into.document
+    rows = table.rows
+    merge_rows(rows, sensors, into, _row, pose_keys=POSE_KEYS, figure_keys=MODEL_KEYS)
+    added = [
+        column
+        for column in (*COLUMNS, PARAMETERS)
+        if column not in table.columns and any(row.get(column) for row in rows)
     ]
-    columns = COLUMNS if not any(row.get(PARAMETERS) for row in rows) else (*COLUMNS, PARAMETERS)
-    cells = ([row.get(column, "") for column in columns] for row in rows)
-    return {FILE: (HEAD + csv_text([columns, *cells])).encode()}, []
+    columns = [*table.columns, *added]
+    cells = ([row.get(column) or "" for column in columns] for row in rows)
+    return {FILE: (table.head + csv_text([columns, *cells])).encode()}, []
 
 
 def _row(sensor: PortableSensor) -> dict[str, str]:
@@ -80,7 +94,7 @@ def _row(sensor: PortableSensor) -> dict[str, str]:
     return dict(zip((*COLUMNS, PARAMETERS), cells, strict=True))
 
 
-def read(path: Path) -> PortableRig:
+def read(path: Path) -> ForeignRig:
     """Read a table of sensors. Only the columns of name, position and angles are required."""
     text = values.text_of(path)
     numbered = [(n, line) for n, line in enumerate(text.splitlines(), 1) if not _is_empty(line)]
@@ -88,13 +102,17 @@ def read(path: Path) -> PortableRig:
     separator, lines = separated(numbered)
     rows = csv.DictReader((line for _, line in lines), restkey=SURPLUS, delimiter=separator)
     try:
-        for key in ("name", *POSITION_KEYS, *ROTATION_KEYS):
-            if key not in (rows.fieldnames or ()):
+        names = rows.fieldnames or ()
+        for key in ("name", *POSE_KEYS):
+            if key not in names:
                 expected = f"the columns {', '.join(COLUMNS)}"
                 raise InputError(path, key, expected, "none of that name")
-        return tuple(_sensor(path, f"row {k}", row) for k, row in enumerate(rows, 1))
+        sensors = tuple(_sensor(path, f"row {k}", row) for k, row in enumerate(rows, 1))
     except csv.Error as error:
         raise InputError(path, "file", "a table (CSV)", error) from None
+    comments = itertools.takewhile(lambda line: line.startswith("#"), text.splitlines())
+    head = "".join(f"{line}\n" for line in comments)
+    return ForeignRig(sensors, document=CsvTable(head, names, [each.entry for each in sensors]))
 
 
 def _is_empty(line: str) -> bool:
@@ -104,7 +122,7 @@ def _is_empty(line: str) -> bool:
 
 
 def _sensor(path: Path, place: str, row: Mapping[str, Any]) -> PortableSensor:
-    """Return the sensor of a row, `place`; one of unknown kind has its cells as entry."""
+    """Return the sensor of a row, `place`; its entry are the cells by column."""
     if surplus := [cell for cell in row.get(SURPLUS, []) if cell.strip()]:
         expected = "as many cells as the header has columns, and a decimal point"
         raise InputError(path, place, expected, f"{plural(len(surplus), 'cell')} more")
@@ -117,7 +135,7 @@ def _sensor(path: Path, place: str, row: Mapping[str, Any]) -> PortableSensor:
             raise InputError(path, f"{place}, {key}", "a decimal point", shown(cell))
         return values.figure(path, f"{place}, {key}", cell, rule)
 
-    numbers = [number(key) for key in (*POSITION_KEYS, *ROTATION_KEYS)]
+    numbers = [number(key) for key in POSE_KEYS]
     pose = values.pose_from(path, place, numbers[:3], numbers[3:], degrees=True)
     kind, model, fusion = (cells.get(key) or None for key in ("kind", "model", "fusion"))
     nearest, farthest = (
@@ -126,11 +144,8 @@ def _sensor(path: Path, place: str, row: Mapping[str, Any]) -> PortableSensor:
     picture = _picture(path, place, cells, number) if all(map(cells.get, FIGURES)) else None
     properties = kind, model, picture, None, fusion, nearest, farthest
     parameters = cells.get(PARAMETERS) or ""
-    sensor = PortableSensor(cells["name"], pose, *properties, parameters=parameters)
-    if kind is None or has_model(sensor):
-        return sensor
-    kept = {key: cells[key] for key in (*COLUMNS, PARAMETERS) if key in cells}
-    return replace(sensor, entry=json_entry(kept))
+    name = cells["name"]
+    return PortableSensor(name, pose, *properties, parameters=parameters, entry=cells)
 
 
 def _picture(

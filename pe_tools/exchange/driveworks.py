@@ -8,18 +8,17 @@ from typing import Any
 import numpy as np
 
 from pe_core.base.errors import InputError, shown
-from pe_core.base.table_reader import Table, dump_json, parse_json
+from pe_core.base.table_reader import Table, dump_json
 from pe_core.base.values import FINITE, Number, vector
 from pe_core.geometry.poses import METRES, Pose
 from pe_core.sensors.camera import BrownConrady, FTheta, Pinhole
-from pe_core.study.passthrough import json_entry
 
 from . import foreign_values as values
-from .foreign_values import Export, Figures, FileTexts, json_of, json_rows, plain_number, pose_from
+from .foreign_values import Export, Figures, json_of, json_rows, plain_number, pose_from
 from .frames import composed, shifted
 from .lens_pictures import Picture
-from .passthrough import entry_row
-from .portable import ORIGIN, PortableRig, PortableSensor
+from .merging import merge_rows
+from .portable import ORIGIN, ForeignRig, MergeTarget, PortableRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 
 FILE = "rig.json"
@@ -28,33 +27,22 @@ TURN_CORRECTION, SHIFT_CORRECTION = "correction_sensor_R_FLU", "correction_rig_T
 PROTOCOLS = {CAMERA: "camera.gmsl", LIDAR: "lidar.virtual"}
 """Protocols to write, by kind. When reading, the word before the dot is the kind."""
 UNKNOWN = ("", "virtual")  # Protocols from which the kind of a sensor does not follow
-FIGURES, CORRECTION = ("properties", "parameter"), "correction_"
+FIGURES = ("properties", "parameter")
 
 
-def write(sensors: PortableRig, texts: FileTexts) -> Export:
+def write(sensors: PortableRig, into: MergeTarget | None) -> Export:
     """Return the rig file, and messages on sensor kinds that DriveWorks does not have."""
-    document: Any = {"rig": {}, "version": 2}
-    if texts:
-        document = parse_json("passthrough", texts.get(FILE, ""))
-    rig = document.get("rig") if isinstance(document, dict) else None
-    if not isinstance(rig, dict):
-        raise InputError("passthrough", FILE, "a rig", "none")
-    rig["sensors"] = rows = []
+    document: Any = {"rig": {"sensors": []}, "version": 2}
+    if into is not None:
+        document = into.document
+    rows = document["rig"]["sensors"]
+    merge_rows(rows, sensors, into, _row, pose_keys=(POSE_KEY,), figure_keys=FIGURES)
     for sensor in sensors:
-        row = entry_row(sensor, _row, (POSE_KEY,), FIGURES)
-        if not sensor.is_unmoved and not sensor.is_left_out:  # its pose includes the corrections
-            row = {key: value for key, value in row.items() if not key.startswith(CORRECTION)}
-        rows.append(row)
-    lines = [f"{s.name}: DriveWorks has no {s.kind}" for s in sensors
-             if s.kind not in PROTOCOLS and not s.is_left_out]  # fmt: skip
+        if sensor.entry is not None and not sensor.is_unmoved:  # its pose includes the corrections
+            for key in (TURN_CORRECTION, SHIFT_CORRECTION):
+                sensor.entry.pop(key, None)
+    lines = [f"{s.name}: DriveWorks has no {s.kind}" for s in sensors if s.kind not in PROTOCOLS]
     return {FILE: dump_json(document).encode()}, lines
-
-
-def source(path: Path) -> dict[str, str]:
-    """Return the document without its sensors, as text by file name, for `write_over`."""
-    document = json_of(path)
-    document["rig"]["sensors"] = []
-    return {FILE: json_entry(document)}
 
 
 def _row(sensor: PortableSensor) -> dict[str, Any]:
@@ -71,14 +59,15 @@ def _row(sensor: PortableSensor) -> dict[str, Any]:
     }
 
 
-def read(path: Path) -> PortableRig:
+def read(path: Path) -> ForeignRig:
     """Read the sensors of a rig, one of which has a pose. A sensor without a pose (CAN, GPS) takes
     its kind from its protocol."""
-    rig = Table(json_of(path), str(path)).table("rig")
+    document = json_of(path)
+    rig = Table(document, str(path)).table("rig")
     rows = json_rows(path, rig.raw("sensors"), "rig.sensors")
     if not any(POSE_KEY in row for row in rows):
         raise InputError(path, "rig.sensors", f"sensors with {POSE_KEY}", "none")
-    return tuple(_sensor(path, row) for row in rows)
+    return ForeignRig(tuple(_sensor(path, row) for row in rows), document=document)
 
 
 def _corrected(path: Path, row: Table, nominal: Pose) -> Pose:
@@ -97,9 +86,9 @@ def _corrected(path: Path, row: Table, nominal: Pose) -> Pose:
 
 
 def _sensor(path: Path, row: Table) -> PortableSensor:
-    protocol, entry = row.text("protocol", "").partition(".")[0], json_entry(row.data)
+    protocol = row.text("protocol", "").partition(".")[0]
     if POSE_KEY not in row:
-        return PortableSensor(row.text("name"), ORIGIN, protocol or "other", entry=entry)
+        return PortableSensor(row.text("name"), ORIGIN, protocol or "other", entry=row.data)
     pose = row.table(POSE_KEY)
     position, angles = pose.raw(POSITION_KEY), pose.raw(ROTATION_KEY)
     kind = None if protocol in UNKNOWN else protocol
@@ -107,7 +96,7 @@ def _sensor(path: Path, row: Table) -> PortableSensor:
     placed = _corrected(path, row, pose_from(path, pose.path, position, angles, degrees=True))
     picture, note = read_properties(row.table("properties")) if kind == CAMERA else (None, "")
     attributes = row.text("name"), placed, kind, model.split(",")[0] or None
-    return PortableSensor(*attributes, picture, told=note, entry=entry)
+    return PortableSensor(*attributes, picture, told=note, entry=row.data)
 
 
 PINHOLE, F_THETA = "pinhole", "ftheta"

@@ -8,27 +8,29 @@ from pe_core import catalog
 from pe_core.base.errors import InputError
 from pe_core.base.files import require_new, write_all_bytes
 from pe_core.base.input_files import not_noting_inputs
-from pe_core.scene.rig import Rig, Sensor
+from pe_core.geometry.poses import Pose
+from pe_core.scene.rig import Rig, Sensor, SensorModel
 from pe_core.scene.vehicle_description import Reference
-from pe_core.study.passthrough import Passthrough
 
 from . import rig_formats as formats
 from .frames import origin_in_ground, seen_from, shifted
-from .passthrough import listed_kinds, model_text, restored
-from .portable import PortableSensor, with_pictures
+from .importing import ModelledRig, errors_of, read_rig
+from .merging import listed_kinds, merged
+from .portable import MergeTarget, PortableRig, PortableSensor, with_pictures
 from .portable_kinds import portable_sensors
-from .rig_formats import rig_format
+from .rig_formats import RigFormat, format_to_read, rig_format
 
 
 def rig_files(
     rig: Rig,
     name: str,
     reference: Reference | None = None,
-    passthrough: Passthrough | None = None,
-    existing: Mapping[str, str] | None = None,
+    *,
+    into: str | Path | None = None,
+    placed: Pose | None = None,
 ) -> tuple[Mapping[str, bytes], list[str]]:
     """Return a rig in another program's format. `InputError` when the format is unknown, needs the
-    rear axle, or cannot express the rig.
+    rear axle, cannot express the rig, or cannot update the file `into`.
 
     Parameters
     ----------
@@ -36,31 +38,75 @@ def rig_files(
         Name of the format, a key of `RIG_FORMATS`.
     reference : Reference, optional
         Position of the rear axle, which is the origin of some formats.
-    passthrough : Passthrough, optional
-        Content of an imported file besides the rig. It is written again if the file had this
-        format.
-    existing : mapping of str to str, optional
-        Texts of files of this format by name, which are updated in place of the imported ones.
+    into : path, optional
+        File or folder of this format whose content besides the rig stays in the returned files.
+    placed : Pose, optional
+        Pose of the file's origin, for a format without a vehicle.
 
     Returns
     -------
     dict of str to bytes, list of str
         Bytes by file name; a message for each property that the format cannot express.
     """
-    row, texts, left_out_lines = rig_format(name), existing, []
+    row = rig_format(name)
+    read = None if into is None else _read_target(Path(into), row)
+    return _rig_files(rig, row, reference, read, placed)
+
+
+def _rig_files(
+    rig: Rig,
+    row: RigFormat,
+    reference: Reference | None,
+    read: ModelledRig | None,
+    placed: Pose | None,
+) -> tuple[Mapping[str, bytes], list[str]]:
     back = [-value for value in origin_in_ground(row.origin, reference, row.title)]
     moved = tuple(dataclasses.replace(s, pose=shifted(s.pose, back)) for s in portable_sensors(rig))
-    if passthrough is not None and passthrough.format == name:
-        texts = texts or passthrough.files
-        if (placed := passthrough.placed) is not None:
-            moved = tuple(dataclasses.replace(s, pose=seen_from(placed, s.pose)) for s in moved)
-        models = {sensor.name: model_text(sensor.model) for sensor in rig}
-        moved = restored(passthrough, moved, models)
-        if left_out := listed_kinds((each.kind, each.name) for each in passthrough.left_out):
-            left_out_lines = [f"as they came in: {left_out}"]
+    if placed is not None:
+        moved = tuple(dataclasses.replace(s, pose=seen_from(placed, s.pose)) for s in moved)
+    target = None
+    kept = ""
+    if read is not None:
+        names = {sensor.name for sensor in rig}
+        others = tuple(sensor for sensor in read.left_out if sensor.name not in names)
+        moved, target = _merged(rig, moved, read, row)
+        kept = listed_kinds((sensor.kind or "", sensor.name) for sensor in others)
+    kept_lines = [f"kept as in the file: {kept}"] if kept else []
     sensors, lens_lines = with_pictures(moved, row.keeps, row.title)
-    files, lines = row.code.write(sensors, texts or {})
-    return files, [*lines, *lens_lines, *lost_line(rig, row.title, row.holds), *left_out_lines]
+    files, lines = row.write(sensors, target)
+    return files, [*lines, *lens_lines, *lost_line(rig, row.title, row.holds), *kept_lines]
+
+
+def _read_target(path: Path, row: RigFormat) -> ModelledRig:
+    """Read the file that a rig goes into."""
+    if not row.merges:
+        expected = "a format whose files keep what they have besides the rig"
+        raise InputError(path, "into", expected, row.name)
+    _, path = format_to_read(path, row.name)
+    with errors_of(path), not_noting_inputs():
+        return read_rig(path, row, {})
+
+
+def _merged(
+    rig: Rig, sensors: PortableRig, read: ModelledRig, row: RigFormat
+) -> tuple[PortableRig, MergeTarget]:
+    """Return the sensors of a rig with their entries in a file, and what is left of the file."""
+    in_file: dict[str, tuple[PortableSensor, SensorModel | None]] = {
+        **{sensor.name: (sensor, None) for sensor in read.left_out},
+        **{each.sensor.name: (each.sensor, each.model) for each in read.modelled},
+    }
+    left_out = {sensor.name for sensor in read.left_out}
+    result = []
+    for sensor in sensors:
+        if sensor.name in in_file:
+            known, model = in_file.pop(sensor.name)
+            if formats.FUSION in row.holds and sensor.fusion != known.fusion:
+                model = None
+            sensor = merged(sensor, rig[sensor.name].model, known, model)
+        result.append(sensor)
+    gone = tuple(known for name, (known, _) in in_file.items() if name not in left_out)
+    taken = tuple(name for name in in_file if name in left_out)
+    return tuple(result), MergeTarget(read.found.document, gone, taken)
 
 
 def lost_line(rig: Rig, title: str, holds: frozenset[str]) -> list[str]:
@@ -106,17 +152,18 @@ def export_rig(
     output: str | Path,
     reference: Reference | None = None,
     *,
-    passthrough: Passthrough | None = None,
+    into: str | Path | None = None,
+    placed: Pose | None = None,
     replace: bool = False,
 ) -> tuple[list[Path], list[str]]:
     """Write a rig in another program's format; parameters not listed are those of `rig_files`.
-
-    When an existing Autoware kit is replaced, everything in it but the sensors is kept.
 
     Parameters
     ----------
     output : str or Path
         File to write, or the folder if the format has several files.
+    into : path, optional
+        File whose other content is kept; by default that at `output` if it is replaced.
     replace : bool
         Whether existing files may be overwritten.
 
@@ -130,13 +177,25 @@ def export_rig(
     InputError
         As `rig_files`, and when a file exists and `replace` is False, or cannot be written.
     """
-    row, output, existing = rig_format(name), Path(output), None
-    # The last of a format's files tells whether the folder already holds this format.
-    if replace and len(row.files) > 1 and (output / row.files[-1]).is_file():
-        with not_noting_inputs():
-            existing = row.source(output)
-    files, lines = rig_files(rig, name, reference, passthrough, existing)
-    return write_files(files, output, inside=len(row.files) > 1, replace=replace), lines
+    row = rig_format(name)
+    output = Path(output)
+    read, damaged_lines = None, []
+    if into is not None:
+        read = _read_target(Path(into), row)
+    elif replace and row.merges and _is_there(row, output):
+        try:
+            read = _read_target(output, row)
+        except InputError as error:
+            damaged_lines = [f"replaced as a whole, as it cannot be read: {error}"]
+    files, lines = _rig_files(rig, row, reference, read, placed)
+    paths = write_files(files, output, inside=row.is_folder, replace=replace)
+    return paths, [*damaged_lines, *lines]
+
+
+def _is_there(row: RigFormat, output: Path) -> bool:
+    """Whether there is a rig of a format where one is to be written."""
+    path = row.path_to_read(output)
+    return (path / row.files[-1]).is_file() if row.is_folder else path.is_file()
 
 
 def write_files(

@@ -23,7 +23,6 @@ from pe_core.sensors.lidar.model import STEPS as STEPS
 
 Written = Mapping[str, bytes]  # Bytes by file name
 Export = tuple[Written, list[str]]  # Files, and messages on what they cannot hold
-FileTexts = Mapping[str, str]  # FileTexts of imported or existing files by their names
 
 
 def text_of(path: Path, max_bytes: int = TEXT_BYTES) -> str:

@@ -20,8 +20,8 @@ from pe_core.geometry.poses import checked_rotation as checked_rotation
 from pe_core.geometry.poses import from_quaternion as from_quaternion
 from pe_core.scene.vehicle_description import Reference
 
-from .foreign_values import MAX_FRAMES, FileTexts, require_at_most
-from .passthrough import pose_of_entry
+from .foreign_values import MAX_FRAMES, require_at_most
+from .merging import is_same_pose
 from .portable import ORIGIN, PortableSensor
 from .portable_kinds import CAMERA
 from .sensor_names import said_kind
@@ -47,10 +47,10 @@ UPSIDE_DOWN = math.radians(10.0)
 that looks down; its roll differs from 180 degrees by less than this [rad]."""
 ILLEGAL, ILLEGAL_IN_TF = (re.compile(f"[^A-Za-z0-9_{more}]+") for more in ("", "/"))
 AXES = (
-    "x forward, y left, z up; metres, radians. NAME_optical looks along z, x right, y down (REP "
-    "103). "
+    " is on the ground under the vehicle's centre: x forward, y left, z up; metres, radians. "
+    "NAME_optical looks along z, x right, y down (REP 103). "
 )
-"""Comment in files of ROS, after `origin_text`."""
+"""Comment in new files of ROS, after the name of the root."""
 Hung = Mapping[str, tuple[str, Pose]]  # Parent frame and pose in the parent frame, by frame name
 
 
@@ -279,11 +279,16 @@ def with_legal_frames(
     taken: Collection[str] = (),
     not_ending: str = "",
 ) -> tuple[tuple[PortableSensor, ...], list[str]]:
-    """Return sensors with legal names and unique frames, and a message for each renamed sensor.
-    `frames` returns the names of all frames of a sensor, `taken` are names in use. No name may have
-    the suffix `not_ending`, which marks another sort of frame. For `slashes` see `legal_frame`."""
+    """Return sensors with legal names and unique frames, and a message for each renamed sensor. One
+    that is in the file already keeps its name. `frames` returns the names of all frames of a
+    sensor, `taken` are names in use. No name may have the suffix `not_ending`, which marks another
+    sort of frame. For `slashes` see `legal_frame`."""
     used, renamed, lines = set(taken), [], []
+    used.update(frame for s in sensors if s.entry is not None for frame in frames(s))
     for sensor in sensors:
+        if sensor.entry is not None:
+            renamed.append(sensor)
+            continue
         legal = legal_frame(sensor.name, slashes=slashes)
         if not_ending and legal.endswith(not_ending):
             legal += "_sensor"
@@ -298,30 +303,50 @@ def with_legal_frames(
 
 
 def linked(
-    sensors: Sequence[PortableSensor], root: str
+    sensors: Sequence[PortableSensor], root: str, taken: Collection[str] = ()
 ) -> tuple[list[tuple[PortableSensor, list[tuple[str, str, Pose]]]], list[str]]:
     """Return sensors with legal names, each with its frames below a root, and messages. A frame is
     its parent, its name and its pose in the parent. A camera also has an optical frame (REP 103).
-    Sensors that an import left out come last, with the pose in their entry."""
+    `taken` are names in use."""
 
     def names(sensor: PortableSensor) -> tuple[str, ...]:
         return (sensor.name, sensor.name + OPTICAL) if sensor.kind == CAMERA else (sensor.name,)
 
-    left_out = [sensor for sensor in sensors if sensor.is_left_out]
-    included = [sensor for sensor in sensors if not sensor.is_left_out]
-    taken = (root, *(sensor.name for sensor in left_out))
-    named, lines = with_legal_frames(included, frames=names, taken=taken, not_ending=OPTICAL)
+    named, lines = with_legal_frames(
+        sensors, frames=names, taken=(root, *taken), not_ending=OPTICAL
+    )
     result = []
     for sensor in named:
         links = [(root, sensor.name, sensor.pose)]
         if sensor.kind == CAMERA:
             links.append((sensor.name, sensor.name + OPTICAL, Pose(ORIGIN.position, OPTICAL_RPY)))
         result.append((sensor, links))
-    return [*result, *((s, [(root, s.name, pose_of_entry(s))]) for s in left_out)], lines
+    return result, lines
 
 
-def origin_text(texts: FileTexts) -> str:
-    """Return the comment on the root of a file: the ground frame, or that of imported `texts`."""
-    if texts:
-        return " is that of the imported file: "
-    return " is on the ground under the vehicle's centre: "
+def new_places(
+    hung: Hung, poses: Mapping[str, Pose], wanted: Mapping[str, Pose]
+) -> tuple[dict[str, Pose], dict[str, Pose]]:
+    """Return the poses in their parents of the frames that have to be changed, so that the frames
+    of `wanted` have these poses in the root frame, and the new poses of all frames in it. Frames
+    that are not wanted move with their parents. `poses` are those of all frames in the root frame,
+    ordered by depth."""
+    placed: dict[str, Pose] = {}
+    changed = {}
+    for name in poses:
+        if name not in hung:
+            placed[name] = poses[name]
+            continue
+        parent, pose = hung[name]
+        inside = pose if name not in wanted else seen_from(placed[parent], wanted[name])
+        if not is_same_pose(pose, inside):
+            changed[name] = inside
+            pose = inside
+        placed[name] = composed(placed[parent], pose)
+    return changed, placed
+
+
+def carried_along(sensor: PortableSensor, before: Pose, frame: Pose) -> Pose:
+    """Return the new pose of the frame that carries a sensor, which had the pose `before`; all are
+    poses in one frame."""
+    return composed(sensor.pose, seen_from(before, frame))

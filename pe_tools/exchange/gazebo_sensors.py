@@ -3,18 +3,18 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from xml.etree.ElementTree import Element, SubElement, tostring
+from xml.etree.ElementTree import Element
 
 from pe_core.base.errors import InputError, one_of, shown
 from pe_core.geometry.poses import Pose
+from pe_tools.formats.xml_text import text_in
 
 from . import foreign_values as values
 from . import frames
 from .foreign_values import Figures
 from .gazebo import picture_in, scan_in
-from .passthrough import pose_entry
 from .portable import ORIGIN, PortableSensor
-from .portable_kinds import CAMERA, LIDAR, has_model
+from .portable_kinds import CAMERA, LIDAR
 
 RANGES = ("min_range", "max_range")  # Attributes of the ranges in the own element
 TAG = CAMERA  # Tag of a camera in a sensor
@@ -40,20 +40,33 @@ class LinkBlock:
     blocks: Sequence[Element]
 
 
-def sensor_elements(blocks: Iterable[Element]) -> list[Element]:
-    """Return the sensors of blocks; a sensor with several cameras is one for each."""
+@dataclass(frozen=True, slots=True)
+class LinkEntry:
+    """Where a robot's file has a sensor: its link, and its pose there. If it is one of several of
+    the link, `element` has its own pose, `inside` the pose `outer` on the link."""
+
+    link: str
+    pose: Pose
+    element: Element | None = None
+    outer: Pose = ORIGIN
+    inside: Pose = ORIGIN
+
+
+def sensor_elements(blocks: Iterable[Element]) -> list[tuple[Element, Element]]:
+    """Return the sensors of blocks, each with its element: of a sensor with several cameras, which
+    is one for each, the camera."""
     result = []
     for sensor in (each for block in blocks for each in block.findall("sensor")):
         cameras = sensor.findall(TAG)
         if len(cameras) < 2:
-            result.append(sensor)
+            result.append((sensor, sensor))
             continue
         for camera in cameras:
             name = f"{sensor.get('name', '')}_{camera.get('name', '')}".strip("_")
             single = Element("sensor", {**sensor.attrib, "name": name})
             single.extend(sensor.findall("pose"))
             single.append(camera)
-            result.append(single)
+            result.append((single, camera))
     return result
 
 
@@ -62,40 +75,46 @@ def read_sensors(path: Path, at: LinkBlock, poses: Mapping[str, Pose]) -> list[P
     `poses` are those of all frames that a pose can be relative to."""
     elements = sensor_elements(at.blocks)
     if len(elements) > 1:
-        named = [(element.get("name") or at.link, element) for element in elements]
-        return [_sensor(path, name, at=at, element=e, poses=poses) for name, e in named]
-    element = elements[0] if elements else None
-    sensor = _sensor(path, at.link, at=at, element=element, poses=poses)
+        sensors = []
+        for single, element in elements:
+            name = single.get("name") or at.link
+            sensor = _sensor(path, name, at=at, element=single, poses=poses)
+            outer = ORIGIN
+            if element is not single:
+                outer = pose_in(path, _field(name)("pose"), single.find("pose"))
+            inside = frames.seen_from(frames.composed(at.pose, outer), sensor.pose)
+            entry = LinkEntry(at.link, sensor.pose, element, outer, inside)
+            sensors.append(replace(sensor, entry=entry))
+        return sensors
+    only = elements[0][0] if elements else None
+    sensor = _sensor(path, at.link, at=at, element=only, poses=poses)
+    sensor = replace(sensor, entry=LinkEntry(at.link, sensor.pose))
     own = next((e for block in at.blocks if (e := block.find(OWN)) is not None), None)
-    return [sensor if own is None else _with_own(path, sensor, at, own)]
+    return [sensor if own is None else _with_own(path, sensor, own)]
 
 
 def _sensor(
     path: Path, name: str, *, at: LinkBlock, element: Element | None, poses: Mapping[str, Pose]
 ) -> PortableSensor:
-    """Return the sensor of an element. One of a kind that is left out has its element as entry."""
+    """Return the sensor of an element."""
     if element is None:
         return PortableSensor(name, at.pose)
     type_name = element.get("type", "")
     kind = KIND_BY_TYPE.get(type_name, type_name or None)
     pose = _pose_of(path, _field(name)("pose"), at.pose, element, poses)
-    figures = Figures(path, lambda key: element.findtext(f".//{key}"), _field(name))
+    figures = Figures(path, lambda key: text_in(element.find(f".//{key}")), _field(name))
     picture = picture_in(figures)
-    scan = scan_in(figures)
-    sensor = PortableSensor(name, pose, kind, picture=picture, scan=scan)
-    if kind is None or has_model(sensor):
-        return sensor
-    return replace(sensor, entry=pose_entry(sensor, gazebo=_kept(at, name, element)))
+    return PortableSensor(name, pose, kind, picture=picture, scan=scan_in(figures))
 
 
 def _field(name: str) -> Callable[[str], str]:
     return lambda key: f"sensor of {name}, {key}"
 
 
-def _with_own(path: Path, sensor: PortableSensor, at: LinkBlock, own: Element) -> PortableSensor:
+def _with_own(path: Path, sensor: PortableSensor, own: Element) -> PortableSensor:
     """Return a sensor with what an export of this program adds."""
     known = Figures(path, own.get, _field(sensor.name))
-    full = replace(
+    return replace(
         sensor,
         kind=own.get("kind") or sensor.kind,
         model=own.get("model") or None,
@@ -104,9 +123,6 @@ def _with_own(path: Path, sensor: PortableSensor, at: LinkBlock, own: Element) -
         min_range=known.number("min_range", values.MIN_RANGE),
         max_range=known.number("max_range", values.FARTHEST),
     )
-    if full.kind is None or has_model(full):
-        return replace(full, entry="")
-    return replace(full, entry=pose_entry(full, gazebo=_texts(at.blocks)))
 
 
 def _pose_of(
@@ -128,7 +144,7 @@ def _pose_of(
 
 def pose_in(path: Path, field: str, element: Element | None) -> Pose:
     """Return the pose in a ``<pose>`` element; the origin where it is missing or empty."""
-    text = "" if element is None else (element.text or "").strip()
+    text = (text_in(element) or "").strip()
     if element is None or not text:
         return ORIGIN
     rotation = element.get("rotation_format", ROTATIONS[0])
@@ -141,19 +157,3 @@ def pose_in(path: Path, field: str, element: Element | None) -> Pose:
     numbers = values.figures(path, field, text, 6)
     in_degrees = element.get("degrees", "").lower() in ("true", "1")
     return values.pose_from(path, field, numbers[:3], numbers[3:], degrees=in_degrees)
-
-
-def _kept(at: LinkBlock, name: str, element: Element) -> list[str]:
-    """Return the blocks of a sensor that is left out, for an export: as they are, or only its own
-    element, whose pose the exported link has."""
-    in_blocks = all(block.tag == "gazebo" for block in at.blocks)
-    if in_blocks and name == at.link and element.find("pose") is None:
-        return _texts(at.blocks)
-    block = Element("gazebo", {"reference": name})
-    kept = SubElement(block, "sensor", element.attrib)
-    kept.extend(child for child in element if child.tag != "pose")
-    return [tostring(block, "unicode")]
-
-
-def _texts(blocks: Iterable[Element]) -> list[str]:
-    return [tostring(block, "unicode").strip() for block in blocks]

@@ -1,7 +1,8 @@
 """Import of a rig from the files of another program."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
@@ -13,15 +14,14 @@ from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig, Sensor, SensorModel
 from pe_core.scene.vehicle_description import Reference
 from pe_core.sensors import KINDS, coinciding
-from pe_core.study.passthrough import Passthrough, SourceSensor
 
 from . import portable_kinds
 from .foreign_values import MAX_SENSORS, require_at_most
 from .frames import composed, origin_in_ground, shifted
 from .lens_pictures import alike
-from .passthrough import listed_kinds, model_text, parted
-from .portable import PortableSensor, merged_lines, named_apart
-from .rig_formats import RigFormat, detect_format, rig_format
+from .merging import listed_kinds
+from .portable import ForeignRig, PortableSensor, merged_lines, named_apart
+from .rig_formats import RigFormat, format_to_read
 from .sensor_names import model_by_name, said_kind
 
 NO_WORD = re.compile("[^a-z0-9]+")  # What two spellings of a model's name may differ in
@@ -41,13 +41,21 @@ class Modelled(NamedTuple):
 class ImportedRig:
     """An imported rig and the messages about it. `to_choose`: names of sensors with a stand-in
     model, because the file does not name the model. `lines`: messages about single sensors and
-    about sensors that were left out. `passthrough`: other content of the file, for an export in the
-    same format; None if there is none."""
+    about sensors that were left out."""
 
     rig: Rig
     to_choose: tuple[str, ...]
     lines: tuple[str, ...]
-    passthrough: Passthrough | None = None
+
+
+class ModelledRig(NamedTuple):
+    """The rig of a file with the models of its sensors, in the format's frame. `left_out` are those
+    of unknown kinds; `renamed` are messages on names that occurred twice."""
+
+    found: ForeignRig
+    modelled: tuple[Modelled, ...]
+    left_out: tuple[PortableSensor, ...]
+    renamed: tuple[str, ...]
 
 
 def import_rig(
@@ -77,29 +85,28 @@ def import_rig(
     InputError
         When the file is malformed, the rear axle is missing, or a chosen model does not exist.
     """
-    path = Path(path)
-    if not path.exists():
-        raise InputError(path, "", "", "no such file or folder")
-    row = detect_format(path) if name is None else rig_format(name)
-    path = row.path_to_read(path)
+    row, path = format_to_read(Path(path), name)
     origin = origin_in_ground(row.origin, reference, row.title, path)
+    with errors_of(path):
+        return _imported(read_rig(path, row, models or {}), row, origin, placed)
+
+
+@contextmanager
+def errors_of(path: Path) -> Iterator[None]:
+    """Name the file in errors about a lens, a pose or a model of it, or about memory."""
     try:
         with report_memory_errors(path):
-            return _imported(path, row, origin, placed, models or {})
-    except InputError as error:  # about a lens, a pose or a model: of the imported file
+            yield
+    except InputError as error:
         if Path(error.source).is_relative_to(path if path.is_dir() else path.parent):
             raise
         raise error.within(path) from None
 
 
-def _imported(
-    path: Path,
-    row: RigFormat,
-    origin: Sequence[float],
-    placed: Pose | None,
-    models: Mapping[str, str],
-) -> ImportedRig:
-    sensors = row.code.read(path)
+def read_rig(path: Path, row: RigFormat, models: Mapping[str, str]) -> ModelledRig:
+    """Read a file and find the models of its sensors; `models` are those chosen, by name."""
+    found = row.read(path)
+    sensors = found.sensors
     require_at_most(path, "sensors", len(sensors), MAX_SENSORS, "sensors")
     for number, sensor in enumerate(sensors, 1):
         A_NAME.checked(path, f"name of sensor {number}", sensor.name)
@@ -110,39 +117,58 @@ def _imported(
         for sensor, name in zip(sensors, names, strict=True)
         if name != sensor.name
     ]
-    included, left_out = parted(named, models)
-    left_out_names = listed_kinds((sensor.kind or "", sensor.name) for sensor in left_out)
+    included, left_out = _parted(named, models)
     if not included:
-        raise InputError(path, "sensors", "cameras or LiDARs", left_out_names or "none")
+        kinds_found = listed_kinds((sensor.kind or "", sensor.name) for sensor in left_out)
+        raise InputError(path, "sensors", "cameras or LiDARs", kinds_found or "none")
     kinds = {sensor.name: sensor.kind for sensor in left_out}
     known = [sensor.name for sensor in included]
     for key in models:
         if key not in known:
-            found = f"a {kinds[key]}, which is left out" if key in kinds else "no sensor"
-            raise InputError(path, f"model of {key}", f"one of {', '.join(known)}", found)
-    modelled = [_with_model(sensor, models.get(sensor.name), row) for sensor in included]
+            what = f"a {kinds[key]}, which is left out" if key in kinds else "no sensor"
+            raise InputError(path, f"model of {key}", f"one of {', '.join(known)}", what)
+    modelled = tuple(_with_model(sensor, models.get(sensor.name), row) for sensor in included)
+    return ModelledRig(found, modelled, tuple(left_out), tuple(renamed))
+
+
+def _parted(
+    sensors: Iterable[PortableSensor], chosen: Mapping[str, str]
+) -> tuple[list[PortableSensor], list[PortableSensor]]:
+    """Return the sensors of known kinds, and the sensors to leave out. If the file states no kind,
+    the sensor's name decides, unless a model was `chosen` for it."""
+    included, left_out = [], []
+    for sensor in sensors:
+        kind = sensor.kind or ""
+        if not (kind or sensor.name in chosen or sensor.model or sensor.has_figures):
+            kind = said_kind(sensor.name) or ""
+        is_chosen = kind in KINDS and sensor.name in chosen
+        if not kind or is_chosen or portable_kinds.has_model(replace(sensor, kind=kind)):
+            included.append(sensor)
+        else:
+            left_out.append(replace(sensor, kind=kind))
+    return included, left_out
+
+
+def _imported(
+    read: ModelledRig, row: RigFormat, origin: Sequence[float], placed: Pose | None
+) -> ImportedRig:
+    modelled = read.modelled
     rig = []
     for sensor, model, *_ in modelled:
         pose = sensor.pose if placed is None else composed(placed, sensor.pose)
         rig.append(Sensor(sensor.name, model, shifted(pose, origin), sensor.fusion))
-    sources = {s.name: SourceSensor(s.name, s.kind or "", s.entry) for s in left_out}
-    for sensor, model, _, stands_in in modelled:
-        text = "" if sensor.name in models else model_text(model)
-        fields = sensor.name, model.kind, sensor.entry, sensor.pose, text
-        sources[sensor.name] = SourceSensor(*fields, stands_in)
-    in_order = tuple(sources[sensor.name] for sensor in named)
-    passthrough = Passthrough(row.name, in_order, row.source(path), placed)
-    hint = f"; an export to {row.title} has them again" if row.passes_through else ""
-    left_out_lines = [f"left out: {left_out_names}{hint}"] if left_out else []
+    hint = "; an export --into the file keeps them" if row.merges else ""
+    left_out = listed_kinds((sensor.kind or "", sensor.name) for sensor in read.left_out)
+    left_out_lines = [f"left out: {left_out}{hint}"] if left_out else []
     notes = merged_lines(((m.sensor.name, m.sensor.told) for m in modelled), len(modelled))
-    remarks = row.remarks(path)
-    lines = (*left_out_lines, *renamed, *remarks, *notes, *(m.line for m in modelled if m.line))
+    lines = (*left_out_lines, *read.renamed, *read.found.lines, *notes)
+    lines += tuple(m.line for m in modelled if m.line)
     lines += tuple(
         f"{', '.join(sensor.name for sensor in group)}: at the same place, within 1 cm; each counts"
         for group in coinciding(rig)
     )
     to_choose = tuple(m.sensor.name for m in modelled if m.stands_in)
-    return ImportedRig(Rig(rig), to_choose, lines, passthrough if passthrough.holds else None)
+    return ImportedRig(Rig(rig), to_choose, lines)
 
 
 def _with_model(sensor: PortableSensor, chosen: str | None, row: RigFormat) -> Modelled:
@@ -195,7 +221,7 @@ def _catalogued(sensor: PortableSensor, row: RigFormat) -> Modelled | None:
 def _stand_in(sensor: PortableSensor, reason: str) -> Modelled:
     """Return a sensor with a stand-in for its model. `reason` may be empty: the file has none."""
     stand_in = portable_kinds.stand_in_of(sensor.kind or "")
-    assert stand_in is not None, "`parted` has left it out"
+    assert stand_in is not None, "`_parted` has left it out"
     if not reason and sensor.model:
         reason = f"no {shown(sensor.model)} in the catalogue"
     reason = reason or "no model in the file"

@@ -14,10 +14,10 @@ from pe_core.base.values import Number
 from pe_core.geometry.poses import Pose
 from pe_core.sensors.camera import Pinhole
 
-from .foreign_values import Export, FileTexts, figures, spaced, text_of
+from .foreign_values import Export, figures, spaced, text_of
 from .frames import BODY_FROM_OPTICAL, checked_rotation, pose_of, product, turned
 from .lens_pictures import Picture, pinhole_of
-from .portable import PortableRig, PortableSensor
+from .portable import ForeignRig, MergeTarget, PortableRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 
 FILE, MAX_CAMERAS = "calib.txt", 4
@@ -30,7 +30,7 @@ PARALLEL = 1e-9
 ENTRY = Number(cap=1e9)  # An entry of a matrix
 
 
-def write(sensors: PortableRig, _texts: FileTexts) -> Export:
+def write(sensors: PortableRig, _into: MergeTarget | None) -> Export:
     """Return the calibration of one LiDAR and up to four cameras, and a message. Another number of
     LiDARs or cameras, or orientations that differ, raise `InputError`."""
     rig_cameras, rig_lidars = ([s for s in sensors if s.kind == kind] for kind in (CAMERA, LIDAR))
@@ -77,7 +77,7 @@ def _projection(sensor: PortableSensor, origin: Sequence[float], axes: Floats) -
     )
 
 
-def read(path: Path) -> PortableRig:
+def read(path: Path) -> ForeignRig:
     """Read the LiDAR, which is the origin, and the cameras."""
     rows = _rows(path)
     is_odometry = ODOMETRY in rows and not any(key in rows for key in RECTIFIED)
@@ -97,7 +97,7 @@ def read(path: Path) -> PortableRig:
         pose = pose_of(product(rotation.T, BODY_FROM_OPTICAL.T), turned(rotation.T, offset))
         name = f"camera_{key[1:]}"
         sensors.append(PortableSensor(name, pose, CAMERA, None, Picture(lens), told=note))
-    return tuple(sensors)
+    return ForeignRig(tuple(sensors))
 
 
 def _rows(path: Path) -> dict[str, list[float]]:

@@ -15,13 +15,12 @@ from pe_core.base.table_reader import Table, dump_json
 from pe_core.base.values import numbers, vector
 from pe_core.geometry.poses import METRES
 from pe_core.sensors.camera import BrownConrady
-from pe_core.study.passthrough import json_entry
 
 from . import frames
-from .foreign_values import Export, FileTexts, json_of, json_rows
+from .foreign_values import Export, json_of, json_rows
 from .lens_pictures import Picture, pinhole_of
-from .passthrough import entry_row, is_same_pose
-from .portable import PortableRig, PortableSensor
+from .merging import Row, is_same_pose, merge_rows
+from .portable import ForeignRig, MergeTarget, PortableRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 
 FILES = CALIBRATED, SENSORS = "calibrated_sensor.json", "sensor.json"
@@ -31,12 +30,18 @@ AXES = {CAMERA: frames.BODY_FROM_OPTICAL, LIDAR: frames.BODY_FROM_RIGHT_FORWARD}
 """Rotation from nuScenes' sensor axes to those of this project, by kind; others have the same."""
 
 
-def write(sensors: PortableRig, _texts: FileTexts) -> Export:
+def write(sensors: PortableRig, into: MergeTarget | None) -> Export:
     """Return the two tables, and messages on image sizes, which the tables cannot hold."""
-    tables = {
-        CALIBRATED: [entry_row(s, _calibrated, POSE, FIGURES, CALIBRATED) for s in sensors],
-        SENSORS: [entry_row(s, _known, (), (), SENSORS) for s in sensors],
-    }
+    tables: dict[str, list[Row]] = {CALIBRATED: [], SENSORS: []}
+    if into is not None:
+        gone = {sensor.entry["sensor_token"] for sensor in into.gone}
+        tables = {
+            CALIBRATED: [r for r in into.document[CALIBRATED] if r["sensor_token"] not in gone],
+            SENSORS: [r for r in into.document[SENSORS] if r["token"] not in gone],
+        }
+    rows = tables[CALIBRATED]
+    merge_rows(rows, sensors, None, _calibrated, pose_keys=POSE, figure_keys=FIGURES)
+    tables[SENSORS] += [_known(sensor) for sensor in sensors if sensor.entry is None]
     sizes = [
         f"{s.name}: nuScenes' tables have no size of a picture; it is {w} x {h}"
         for s in sensors
@@ -72,20 +77,21 @@ def _token(table: str, name: str) -> str:
     return hashlib.sha256(f"{table} {name}".encode()).hexdigest()[:32]
 
 
-def read(path: Path) -> PortableRig:
+def read(path: Path) -> ForeignRig:
     """Read the sensors from calibrated_sensor.json, or its folder, and the sensor.json beside it.
     The last calibration of a sensor is used; a note says so if another one differs from it."""
     path = path / CALIBRATED if path.is_dir() else path
     beside = path.with_name(SENSORS)
-    names = {row.text("token"): row for row in json_rows(beside, json_of(beside))}
+    document = {CALIBRATED: json_of(path), SENSORS: json_of(beside)}
+    names = {row.text("token"): row for row in json_rows(beside, document[SENSORS])}
     calibrations: dict[str, list[PortableSensor]] = {}
-    for row in json_rows(path, json_of(path)):
+    for row in json_rows(path, document[CALIBRATED]):
         token = row.text("sensor_token")
         if token not in names:
             raise InputError(path, row.field("sensor_token"), f"one in {SENSORS}", shown(token))
         sensor = _sensor(path, row, names[token])
         calibrations.setdefault(sensor.name, []).append(sensor)
-    return tuple(map(_last, calibrations.values()))
+    return ForeignRig(tuple(map(_last, calibrations.values())), document=document)
 
 
 def _last(calibrations: Sequence[PortableSensor]) -> PortableSensor:
@@ -120,9 +126,8 @@ def _sensor(path: Path, row: Table, sensor_row: Table) -> PortableSensor:
         if row.raw("camera_distortion", []):
             picture, note = _bent(row, picture)
         note = "; ".join(filter(None, (skew_note, note)))
-    entry = json_entry({CALIBRATED: row.data, SENSORS: sensor_row.data})
     pose = frames.pose_of(rotation, position)
-    return PortableSensor(name, pose, kind, None, picture, told=note, entry=entry)
+    return PortableSensor(name, pose, kind, None, picture, told=note, entry=row.data)
 
 
 def _bent(row: Table, picture: Picture) -> tuple[Picture, str]:

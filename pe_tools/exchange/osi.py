@@ -19,20 +19,20 @@ from pe_core.base.errors import InputError, shown
 from pe_core.base.table_reader import Table
 from pe_core.base.values import Number, Whole, numbers, real
 from pe_core.geometry.poses import METRES
-from pe_core.study.passthrough import json_entry
 
 from . import foreign_values as values
-from .foreign_values import MAX_BEAMS, RANGE, RPY, XYZ, Export, FileTexts, require_at_most
+from .foreign_values import MAX_BEAMS, RANGE, RPY, XYZ, Export, require_at_most
 from .lens_pictures import picture_of_fov
-from .passthrough import entry_row
-from .portable import FieldOfView, PortableRig, PortableSensor, Scan
+from .merging import merge_rows
+from .portable import FieldOfView, ForeignRig, MergeTarget, PortableRig, PortableSensor, Scan
 from .portable_kinds import CAMERA, LIDAR, RADAR, ULTRASONIC
 
 FILE = "sensor_view_configuration.json"
-OTHER_KINDS = (RADAR, ULTRASONIC)
-"""Kinds whose entries an export keeps: OSI has fields of theirs that are not read."""
+OTHER_KINDS = (RADAR, ULTRASONIC)  # Kinds that are their fields of view here
 COUNTS = ("number_of_rays_horizontal", "number_of_rays_vertical", "max_number_of_interactions")
-FIGURES = ("field_of_view_horizontal", "field_of_view_vertical")
+FIELD = ("field_of_view_horizontal", "field_of_view_vertical")
+PIXELS = ("number_of_pixels_horizontal", "number_of_pixels_vertical")
+FIGURES = (*FIELD, *PIXELS, *COUNTS, "num_of_pixels", "directions")
 LISTS = {k: f"{k}_sensor_view_configuration" for k in (CAMERA, LIDAR, *OTHER_KINDS)}
 DIGITS = 9  # Decimals of a beam's direction; a LiDAR has up to 240,000 beams
 OTHER = "generic_sensor_view_configuration"
@@ -45,28 +45,36 @@ STAND_IN_RANGE_M = 100.0
 """Range of a LiDAR if the file states none; it is that of the stand-in model."""
 
 
-def write(sensors: PortableRig, _texts: FileTexts) -> Export:
+def write(sensors: PortableRig, into: MergeTarget | None) -> Export:
     """Return a configuration with all sensors, and messages on names and ranges it cannot hold. Ids
-    count from 0 in rig order, around those of imported entries. Every beam is written, so more than
-    `MAX_BEAMS` raise `InputError`."""
+    of new sensors count from 0 in rig order, around those of the file. Every beam is written, so
+    more than `MAX_BEAMS` raise `InputError`."""
     beams = sum(s.scan.beam_count for s in sensors if s.scan is not None)
     require_at_most("osi", "sensors", beams, MAX_BEAMS, "beams, each of which is written")
     figures = ((s.name, s.scan or s.field) for s in sensors)
     ranges = {name: own.max_range for name, own in figures if own is not None}
-    farthest = max(ranges.values(), default=0.0)
-    rows = [
-        (sensor, entry_row(sensor, _row, ("mounting_position",), FIGURES))
-        for sensor in sensors
-        if sensor.is_left_out or sensor.entry
-    ]
-    used_ids = {_id_of(Message(row, "passthrough")) for _, row in rows}
+    top: dict[str, Any] = {} if into is None else into.document
+    known_range = Message(top, FILE).figures.number("range") or 0.0
+    farthest = max([known_range, *ranges.values()])
+    if ranges:
+        top["range"] = farthest
+    in_file = [row for key in (*LISTS.values(), OTHER) for row in top.get(key, ())]
+    used_ids = {_id_of(Message(row, FILE)) for row in in_file}
     free_ids = (number for number in count() if number not in used_ids)
-    ours = [sensor for sensor in sensors if not (sensor.is_left_out or sensor.entry)]
-    by_id = dict(zip(free_ids, ours, strict=False))
-    own_rows = [(s, {"sensor_id": {"value": number}, **_row(s)}) for number, s in by_id.items()]
-    top: dict[str, Any] = {"range": farthest} if ranges else {}
-    for sensor, row in (*own_rows, *rows):
-        top.setdefault(LISTS.get(sensor.kind or "", OTHER), []).append(row)
+    new = [sensor for sensor in sensors if sensor.entry is None]
+    by_id = dict(zip(free_ids, new, strict=False))
+    ids = {sensor.name: number for number, sensor in by_id.items()}
+
+    def fresh(sensor: PortableSensor) -> dict[str, Any]:
+        return {"sensor_id": {"value": ids.get(sensor.name)}, **_row(sensor)}
+
+    for kind in dict.fromkeys([*(sensor.kind for sensor in sensors), *LISTS]):
+        own = [sensor for sensor in sensors if sensor.kind == kind]
+        key = LISTS.get(kind or "", OTHER)
+        rows = top.get(key, [])
+        merge_rows(rows, own, into, fresh, pose_keys=("mounting_position",), figure_keys=FIGURES)
+        if rows or key in top:
+            top[key] = rows
     text = json.dumps(top, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
     order = ", ".join(f"{number} {sensor.name}" for number, sensor in by_id.items())
     lines = [f"OSI numbers sensors, it has no names: {order}"]
@@ -95,20 +103,20 @@ def _figures(sensor: PortableSensor) -> dict[str, Any]:
     if sensor.picture is not None and sensor.picture.size is not None:
         (width, height), p = sensor.picture.size, sensor.picture
         return {
-            "field_of_view_horizontal": 2.0 * math.atan(width / (2.0 * p.fx)),
-            "field_of_view_vertical": 2.0 * math.atan(height / (2.0 * p.fy)),
-            "number_of_pixels_horizontal": width,
-            "number_of_pixels_vertical": height,
+            FIELD[0]: 2.0 * math.atan(width / (2.0 * p.fx)),
+            FIELD[1]: 2.0 * math.atan(height / (2.0 * p.fy)),
+            PIXELS[0]: width,
+            PIXELS[1]: height,
         }
     if sensor.field is not None:
         angles = (2.0 * max(map(abs, ends)) for ends in (sensor.field.across, sensor.field.up))
-        return dict(zip(FIGURES, angles, strict=True))
+        return dict(zip(FIELD, angles, strict=True))
     if sensor.scan is None or (beams := sensor.scan.beams) is None:
         return {}
     low, high = sensor.scan.fov
     return {
-        "field_of_view_horizontal": min(high - low, 2.0 * math.pi),
-        "field_of_view_vertical": 2.0 * max(abs(sensor.scan.low), abs(sensor.scan.high)),
+        FIELD[0]: min(high - low, 2.0 * math.pi),
+        FIELD[1]: 2.0 * max(abs(sensor.scan.low), abs(sensor.scan.high)),
         "number_of_rays_horizontal": sensor.scan.azimuths,
         "number_of_rays_vertical": sensor.scan.channels,
         "max_number_of_interactions": 1,
@@ -119,20 +127,24 @@ def _figures(sensor: PortableSensor) -> dict[str, Any]:
     }
 
 
-def read(path: Path) -> PortableRig:
+def read(path: Path) -> ForeignRig:
     """Read the sensors of a configuration; a sensor's name is its kind and id. Fields may have the
     names of the schema (snake case) or of protobuf's JSON (camel case)."""
     top = Message(values.json_of(path, values.BEAM_BYTES), str(path))
     max_range = top.figures.number("range", RANGE)
     sensors: dict[int, PortableSensor] = {}
     for kind, key in (*LISTS.items(), (None, OTHER)):
-        for row in top.messages(key):
+        rows = top.messages(key)
+        if rows:
+            top.fields[key] = [row.fields for row in rows]
+        for row in rows:
             number = _id_of(row)
             number = len(sensors) if number is None else number
             if number in sensors:
                 raise InputError(path, row.field("sensor_id"), "an id used once", number)
             sensors[number] = _sensor(path, row, kind, number, max_range)
-    return tuple(sensors[number] for number in sorted(sensors))
+    in_order = tuple(sensors[number] for number in sorted(sensors))
+    return ForeignRig(in_order, document=top.fields)
 
 
 def _sensor(
@@ -143,12 +155,11 @@ def _sensor(
     coordinates = [position.number(key, METRES) or 0.0 for key in XYZ]
     angles = [orientation.number(key) or 0.0 for key in RPY]
     pose = values.pose_from(path, mounting.path, coordinates, angles)
-    sensor = PortableSensor(f"{kind or 'sensor'}_{number}", pose, kind)
+    sensor = PortableSensor(f"{kind or 'sensor'}_{number}", pose, kind, entry=row.fields)
     # No release of OSI has a range per sensor, but configurations written by hand do.
     reach = figures.number("range", RANGE) or max_range
-    across, up = (figures.number(key, WIDEST) for key in FIGURES)
+    across, up = (figures.number(key, WIDEST) for key in FIELD)
     if kind in OTHER_KINDS:
-        sensor = replace(sensor, entry=json_entry(row.data))
         if across is None or up is None or reach is None:
             return sensor
         ends = (-across / 2.0, across / 2.0), (-up / 2.0, up / 2.0)
@@ -156,7 +167,7 @@ def _sensor(
     for key in COUNTS:
         figures.whole(key, COUNT)
     if kind == CAMERA:
-        width, height = (figures.whole(f"number_of_pixels_{s}") for s in ("horizontal", "vertical"))
+        width, height = (figures.whole(key) for key in PIXELS)
         if width is None or height is None or across is None or max(across, up or 0.0) >= math.pi:
             return sensor
         return replace(sensor, picture=picture_of_fov(across, (width, height), up))
@@ -199,10 +210,11 @@ CAPITAL = re.compile(r"(?<=[a-z0-9])([A-Z])")
 class Message(Table):
     """A protobuf message: a table with the schema's field names, ``like_this``. A field that is
     null is absent; one that occurs under both of its names raises `InputError`. Numbers may be
-    given as text. Names in nested messages are converted when these are accessed."""
+    given as text. `fields` are its values by name. Names in nested messages are converted when
+    these are accessed."""
 
     def __init__(self, data: Any, source: str, path: str = "") -> None:
-        fields: dict[str, Any] = {}
+        self.fields = fields = dict[str, Any]()
         super().__init__(fields if isinstance(data, dict) else data, source, path)
         for key, value in data.items():
             name = CAPITAL.sub(r"_\1", key).lower()

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from pe_core.base.arrays import Floats
 from pe_core.geometry.poses import Pose
@@ -63,12 +64,11 @@ class PortableSensor:
     file. `pose`: axes are those of this project (a camera looks along x); the origin is the
     format's. `kind`: ``"camera"``, ``"lidar"``, another one that the file names, or None if
     unknown. `min_range`, `max_range`: [m]; None if the file has none. `told`: note on how it was
-    read. `entry`: its entry in the imported file, a JSON object of its format, which an export
-    writes again with the changes; empty if the format keeps none. `is_left_out`: whether it is of
-    an unknown kind; an export then writes only its entry. `is_unmoved`: whether it has the pose of
-    its entry. `is_stand_in`: whether the model is a stand-in because the file names none.
-    `parameters`: table of its model in a study (JSON), of a kind that has neither picture nor scan.
-    `field`: to what a kind reduces in formats without room for its parameters."""
+    read. `entry`: its part of the file's document, as the format knows it; None for a sensor that
+    is not in the file. An export into the file updates it, unless the sensor `is_unmoved` and its
+    model `is_unchanged`. `is_stand_in`: whether the model is a stand-in because the file names
+    none. `parameters`: table of its model in a study (JSON), of a kind that has neither picture nor
+    scan. `field`: to what a kind reduces in formats without room for its parameters."""
 
     name: str
     pose: Pose
@@ -80,9 +80,9 @@ class PortableSensor:
     min_range: float | None = None
     max_range: float | None = None
     told: str = ""
-    entry: str = ""
-    is_left_out: bool = False
+    entry: Any = None
     is_unmoved: bool = False
+    is_unchanged: bool = False
     is_stand_in: bool = False
     parameters: str = ""
     field: FieldOfView | None = None
@@ -100,6 +100,27 @@ class PortableSensor:
 
 
 PortableRig = tuple[PortableSensor, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ForeignRig:
+    """The content of a file of another program. `sensors`: in the format's frame. `lines`: messages
+    on what is not read, or is guessed. `document`: the whole content, which an export into the file
+    updates; None if the format has no more than the sensors."""
+
+    sensors: PortableRig
+    lines: Sequence[str] = ()
+    document: Any = None
+
+
+@dataclass(frozen=True, slots=True)
+class MergeTarget:
+    """The file that an export goes into. `document`: its content. `gone`: its sensors that the rig
+    no longer has. `taken`: names in the file of what is no sensor of the rig."""
+
+    document: Any
+    gone: PortableRig = ()
+    taken: Sequence[str] = ()
 
 
 def uneven(sensors: Iterable[PortableSensor], title: str) -> list[str]:

@@ -21,7 +21,6 @@ from pe_core.sensors.lidar import Lidar
 from pe_core.sensors.lidar.model import FULL_CIRCLE
 from pe_core.sensors.radar import Radar, RadarMode
 from pe_core.sensors.ultrasonic import Ultrasonic
-from pe_core.study.passthrough import json_entry
 
 from .foreign_values import MAX_BEAMS
 from .lens_pictures import ALIKE_PX, Picture, Size
@@ -243,7 +242,12 @@ def _model_by_field(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
 
 def _with_field(model: Radar | Ultrasonic) -> dict[str, Any]:
     seen = FieldOfView(*model.window, model.max_range, model.min_range)
-    return {"parameters": json_entry(catalog.to_table(model)), "field": seen}
+    return {"parameters": _parameters(model), "field": seen}
+
+
+def _parameters(model: SensorModel) -> str:
+    """Return the table of a model as JSON, on one line."""
+    return json.dumps(catalog.to_table(model), ensure_ascii=False, separators=(",", ":"))
 
 
 PORTABLE_KINDS: dict[str, PortableKind] = {
@@ -259,5 +263,5 @@ PORTABLE_KINDS: dict[str, PortableKind] = {
     ULTRASONIC: PortableKind(_with_field, _model_by_field, "Bosch Ultrasonic 3.1"),
 }  # Rows by kind; other kinds are expressed by `OTHER`
 OTHER = PortableKind(
-    lambda model: {"parameters": json_entry(catalog.to_table(model))}, _model_by_table
+    lambda model: {"parameters": _parameters(model)}, _model_by_table
 )  # The row of a kind without one

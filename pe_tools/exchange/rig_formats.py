@@ -1,19 +1,30 @@
 """Registry of the rig formats for import and export, one row per format."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import Protocol
 
 from pe_core.base.errors import InputError
 from pe_core.base.values import choice
 
-from . import argoverse2, autoware, carla, csv_table, driveworks, kitti, nuscenes, osi, ros, urdf
+from . import (
+    argoverse2,
+    autoware,
+    carla,
+    csv_table,
+    driveworks,
+    kitti,
+    nuscenes,
+    osi,
+    ros,
+    urdf,
+    urdf_writer,
+)
 from . import lens_pictures as lenses
-from .foreign_values import Export, FileTexts
+from .foreign_values import Export
 from .frames import GROUND, REAR_AXLE, REAR_AXLE_GROUND
-from .portable import PortableRig, PortableSensor
+from .portable import ForeignRig, MergeTarget, PortableRig, PortableSensor
 
 MODEL = "model"  # The model name; properties of a catalogued model are then not lost
 BEAMS = "beams"  # A LiDAR's channels, azimuths and range
@@ -23,104 +34,151 @@ FUSION, CURVE = "fusion group", "AP curve"
 EVERYTHING = (BEAMS, PARAMETERS, MIN_RANGE, MAX_RANGE, FUSION, CURVE)
 
 
-class Codec(Protocol):
-    """A module that reads and writes a format."""
-
-    def read(self, path: Path, /) -> PortableRig:
-        """Return the sensors of a file or folder, in the format's frame."""
-
-    def write(self, sensors: PortableRig, texts: FileTexts, /) -> Export:
-        """Return bytes by file name, and messages, of sensors in the format's frame. `texts` are
-        those of imported or existing files whose other content it keeps."""
-
-
 @dataclass(frozen=True, slots=True)
 class RigFormat:
     """A format of rigs. `name`, `title`: name in commands, and title in messages. `origin`: origin
     of its frame on the vehicle; `GROUND` is the origin of the ground frame. `files`: names of the
-    written files; the first one identifies the format. `code`: module that reads and writes it.
-    `holds`: properties that it holds besides poses and lenses. `keeps`: function that reduces a
-    camera's intrinsics to what the format can express. `settled`: function that adjusts a sensor
-    once its model is known. `source`: function of an imported path; returns the texts that `write`
-    takes, by file name. `remarks`: function of an imported path; returns messages on what was not
-    read, or was guessed. `usual_size` (int, int): image size of the format's data set [px], for a
-    format that states no size. `beside`: whether files with camera intrinsics are beside the main
-    file. `passes_through`: whether an export restores imported sensors of unknown kinds."""
+    written files; the first one identifies the format, as do `suffixes` of other names. `read`:
+    function that returns the content of a file or folder. `write`: function of sensors and of the
+    file that they go into (None: a new one); returns bytes by file name, and messages. `holds`:
+    properties that it holds besides poses and lenses. `keeps`: function that reduces a camera's
+    intrinsics to what the format can express. `settled`: function that adjusts a sensor once its
+    model is known. `usual_size` (int, int): image size of the format's data set [px], for a format
+    that states no size. `beside`: whether files with camera intrinsics are beside the main file.
+    `merges`: whether an export into a file keeps what the file has besides the rig."""
 
     name: str
     title: str
     origin: str
     files: tuple[str, ...]
-    code: Codec
+    read: Callable[[Path], ForeignRig]
+    write: Callable[[PortableRig, MergeTarget | None], Export]
+    suffixes: tuple[str, ...] = ()
     holds: frozenset[str] = frozenset()
     keeps: lenses.KeptPicture = lambda picture: picture
     settled: Callable[[PortableSensor], PortableSensor] = lambda sensor: sensor
-    source: Callable[[Path], FileTexts] = lambda path: {}
-    remarks: Callable[[Path], Sequence[str]] = lambda path: ()
     usual_size: lenses.Size | None = None
     beside: bool = False
-    passes_through: bool = True
+    merges: bool = True
+
+    @property
+    def is_folder(self) -> bool:
+        """Whether a rig of the format is a folder of several files."""
+        return len(self.files) > 1
 
     def path_to_read(self, path: Path) -> Path:
-        """Return the path that `code` reads: of a folder the file in it, where a rig of the format
+        """Return the path that `read` takes: of a folder the file in it, where a rig of the format
         is one file."""
-        return path / self.files[0] if len(self.files) == 1 and path.is_dir() else path
+        return path / self.files[0] if path.is_dir() and not self.is_folder else path
 
 
 _TABLE = frozenset({MODEL, PARAMETERS, FUSION, MIN_RANGE, MAX_RANGE})
 _BEAMS = frozenset({BEAMS})
 _ROWS = (
-    RigFormat("csv", "table (CSV)", GROUND, (csv_table.FILE,), csv_table, _TABLE),
     RigFormat(
-        *("urdf", "URDF", GROUND, (urdf.FILE,), urdf, _TABLE | _BEAMS, lenses.opencv_of_five),
-        source=urdf.source,
-        remarks=urdf.remarks,
+        name="csv",
+        title="table (CSV)",
+        origin=GROUND,
+        files=(csv_table.FILE,),
+        suffixes=(".csv",),
+        read=csv_table.read,
+        write=csv_table.write,
+        holds=_TABLE,
     ),
     RigFormat(
-        *("ros", "ROS 2 static transforms", GROUND, (ros.FILE,), ros),
+        name="urdf",
+        title="URDF",
+        origin=GROUND,
+        files=(urdf_writer.FILE,),
+        suffixes=(".urdf", ".xacro", ".sdf"),
+        read=urdf.read,
+        write=urdf_writer.write,
+        holds=_TABLE | _BEAMS,
+        keeps=lenses.opencv_of_five,
+    ),
+    RigFormat(
+        name="ros",
+        title="ROS 2 static transforms",
+        origin=GROUND,
+        files=(ros.FILE,),
+        suffixes=(".sh", ".xml", ".launch"),
+        read=ros.read,
+        write=ros.write,
         keeps=lenses.opencv,
-        source=ros.source,
         beside=True,
     ),
     RigFormat(
-        "autoware",
-        "Autoware sensor kit",
-        *(REAR_AXLE_GROUND, (autoware.IN_KIT, autoware.TO_KIT), autoware),
+        name="autoware",
+        title="Autoware sensor kit",
+        origin=REAR_AXLE_GROUND,
+        files=(autoware.IN_KIT, autoware.TO_KIT),
+        read=autoware.read,
+        write=autoware.write,
         keeps=lenses.opencv,
         settled=autoware.lifted,
-        source=autoware.source,
-        remarks=autoware.remarks,
         beside=True,
     ),
     RigFormat(
-        *("nuscenes", "nuScenes", REAR_AXLE_GROUND, nuscenes.FILES, nuscenes),
+        name="nuscenes",
+        title="nuScenes",
+        origin=REAR_AXLE_GROUND,
+        files=nuscenes.FILES,
+        read=nuscenes.read,
+        write=nuscenes.write,
         keeps=lenses.opencv_of_five,
         usual_size=(1600, 900),
     ),
     RigFormat(
-        *("argoverse2", argoverse2.TITLE, REAR_AXLE, argoverse2.FILES, argoverse2),
+        name="argoverse2",
+        title=argoverse2.TITLE,
+        origin=REAR_AXLE,
+        files=argoverse2.FILES,
+        read=argoverse2.read,
+        write=argoverse2.write,
         keeps=lenses.straight,
-        passes_through=False,
+        merges=False,
     ),
     RigFormat(
-        *("carla", "CARLA objects.json", GROUND, (carla.FILE,), carla, _BEAMS, lenses.square),
-        source=carla.source,
+        name="carla",
+        title="CARLA objects.json",
+        origin=GROUND,
+        files=(carla.FILE,),
+        read=carla.read,
+        write=carla.write,
+        holds=_BEAMS,
+        keeps=lenses.square,
     ),
     RigFormat(
-        *("kitti", "KITTI calibration", GROUND, (kitti.FILE,), kitti),
+        name="kitti",
+        title="KITTI calibration",
+        origin=GROUND,
+        files=(kitti.FILE,),
+        suffixes=(".txt",),
+        read=kitti.read,
+        write=kitti.write,
         keeps=lenses.straight,
         usual_size=(1242, 375),
-        passes_through=False,
+        merges=False,
     ),
     RigFormat(
-        *("osi", "ASAM OSI mounting positions", REAR_AXLE, (osi.FILE,), osi, _BEAMS),
+        name="osi",
+        title="ASAM OSI mounting positions",
+        origin=REAR_AXLE,
+        files=(osi.FILE,),
+        read=osi.read,
+        write=osi.write,
+        holds=_BEAMS,
         keeps=lenses.centred,
     ),
     RigFormat(
-        *("driveworks", "DriveWorks rig.json", REAR_AXLE_GROUND, (driveworks.FILE,), driveworks),
+        name="driveworks",
+        title="DriveWorks rig.json",
+        origin=REAR_AXLE_GROUND,
+        files=(driveworks.FILE,),
+        read=driveworks.read,
+        write=driveworks.write,
         holds=frozenset({MODEL}),
         keeps=lenses.of_driveworks,
-        source=driveworks.source,
     ),
 )
 RIG_FORMATS = MappingProxyType({row.name: row for row in _ROWS})  # Formats by name
@@ -155,19 +213,27 @@ def format_of_file(output: Path, files: Mapping[str, str], chosen: str | None = 
     return fitting[0]
 
 
-FILES = MappingProxyType({row.name: row.files[0] for row in _ROWS if len(row.files) == 1})
+FILES = MappingProxyType({row.name: row.files[0] for row in _ROWS if not row.is_folder})
 """Usual name of the file by format, of the formats that have one."""
 
 
 def detect_format(path: Path) -> RigFormat:
     """Return the format that a file name identifies. Raise `InputError` if none does."""
     names = {entry.name for entry in path.iterdir()} if path.is_dir() else {path.name}
-    for row in RIG_FORMATS.values():
-        if names & set(row.files):
-            return row
-    ending = {".csv": "csv", ".urdf": "urdf", ".xacro": "urdf", ".sh": "ros", ".xml": "ros"}
-    ending |= {".sdf": "urdf", ".txt": "kitti", ".launch": "ros"}
-    if path.suffix.lower() in ending:
-        return RIG_FORMATS[ending[path.suffix.lower()]]
-    expected = f"a file name of a known format, or the name of a format: {', '.join(RIG_FORMATS)}"
-    raise InputError(path, "format", expected, path.name)
+    by_name = (row for row in _ROWS if names & set(row.files))
+    by_suffix = (row for row in _ROWS if path.suffix.lower() in row.suffixes)
+    row = next(by_name, None) or next(by_suffix, None)
+    if row is None:
+        known = ", ".join(RIG_FORMATS)
+        expected = f"a file name of a known format, or the name of a format: {known}"
+        raise InputError(path, "format", expected, path.name)
+    return row
+
+
+def format_to_read(path: Path, name: str | None) -> tuple[RigFormat, Path]:
+    """Return the format of a file or folder, by its `name` or else by the path's, and the path that
+    it reads. `InputError` if there is no file."""
+    if not path.exists():
+        raise InputError(path, "", "", "no such file or folder")
+    row = detect_format(path) if name is None else rig_format(name)
+    return row, row.path_to_read(path)

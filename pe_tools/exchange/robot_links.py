@@ -12,7 +12,7 @@ from xml.etree.ElementTree import Element
 from pe_core.sensors import KINDS
 
 from .frames import OPTICAL_NAME, camera_frames
-from .passthrough import listed_kinds
+from .merging import listed_kinds
 from .portable_kinds import CAMERA
 from .sensor_names import FRAME, said_kind
 

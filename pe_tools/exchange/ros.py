@@ -10,10 +10,10 @@ Kannala-Brandt distortion equidistant.
 import re
 import shlex
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
-from xml.sax.saxutils import unescape
+from xml.sax.saxutils import escape, unescape
 
 import numpy as np
 
@@ -22,14 +22,14 @@ from pe_core.base.table_reader import Table
 from pe_core.base.values import numbers
 from pe_core.geometry.poses import Pose
 from pe_core.sensors.camera import BrownConrady, KannalaBrandt, Lens, Pinhole
-from pe_tools.formats.xml_text import parse_xml
 from pe_tools.formats.yaml_text import parse_yaml
 
 from . import foreign_values as values
 from . import frames
-from .foreign_values import RPY, XYZ, Export, FileTexts
+from .foreign_values import RPY, XYZ, Export
 from .lens_pictures import Picture
-from .portable import PortableRig, PortableSensor
+from .merging import gone_lines
+from .portable import ForeignRig, MergeTarget, PortableRig, PortableSensor
 from .portable_kinds import CAMERA, camera_of
 
 FILE, ROOT = "rig.launch.xml", "base_link"
@@ -41,8 +41,11 @@ NODE = re.compile(r"<node\b([^<]*)")
 ATTRIBUTE = re.compile(r"""(?<![\w.:-])([\w.:-]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 CALL = re.compile(rf"{PUBLISHER}[\"']?([^<\"'\n]*)")
 """Nodes of a launch file up to the next tag, their attributes, and calls in other files."""
+END = re.compile(r"\s+(&&?|\|\|?|>>?|2>&1|#|--ros-args)(\s|$)|\s*;")
+EXEC = re.compile(r"<node\b[^<]*\bexec\s*=")  # A node of ROS 2; one of ROS 1 has a type instead
+NO_LINE_END = re.compile(r"[^\n]")
 END_WORDS = frozenset(("&", "&&", "|", "||", ";", ">", ">>", "2>&1", "#", "--ros-args"))
-"""Words behind the arguments of a call."""
+"""Words behind the arguments of a call, and where the first of them is."""
 POSITIONAL = ("x", "y", "z", "yaw", "pitch", "roll")
 POSITIONAL_QUATERNION = ("x", "y", "z", "qx", "qy", "qz", "qw")
 """Numbers before both frames in a call without options; ROS 1 has a period [ms] after these."""
@@ -59,39 +62,137 @@ LENSES: dict[str, type[Lens]] = {
 }
 
 
-def write(sensors: PortableRig, texts: FileTexts) -> Export:
-    """Return a launch file with a publisher for each sensor, with the root of an imported one."""
-    root = ROOT
-    if texts:
-        root = parse_xml("passthrough", texts.get(FILE, "").encode()).get("root", ROOT)
-    launch = Element("launch")
-    linked, lines = frames.linked(sensors, root)
-    for _, links in linked:
-        for parent, child, pose in links:
-            pairs = values.pose_numbers(pose).items()
-            args = " ".join(f"--{key} {values.plain_number(value)}" for key, value in pairs)
-            args += f" --{ENDS[0]} {parent} --{ENDS[1]} {child}"
-            SubElement(launch, "node", {"pkg": "tf2_ros", "exec": PUBLISHER, "args": args})
-    indent(launch)
-    head = f"<!-- {root}{frames.origin_text(texts)}{frames.AXES}-->\n"
-    files = {FILE: f"{head}{tostring(launch, 'unicode')}\n"}
-    files |= info_files(sensor for sensor, _ in linked if not sensor.is_left_out)
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A call of the publisher: where its arguments are in the text of the file, and these."""
+
+    start: int
+    end: int
+    args: str
+
+
+@dataclass(frozen=True, slots=True)
+class Transforms:
+    """The content of a file: its text, the calls by the frame that they place, the frames on their
+    parents, and the poses of all frames in the root frame, by name."""
+
+    text: str
+    calls: dict[str, Call]
+    links: dict[str, tuple[str, Pose]]
+    poses: dict[str, Pose]
+
+    @property
+    def root(self) -> str:
+        """Name of the frame without a parent."""
+        return next(name for name in self.poses if name not in self.links)
+
+
+@dataclass(frozen=True, slots=True)
+class FrameEntry:
+    """The frame of a file that carries a sensor, and the sensor's pose there."""
+
+    frame: str
+    pose: Pose
+
+
+def write(sensors: PortableRig, into: MergeTarget | None) -> Export:
+    """Return a launch file with a publisher for each sensor, or a file with its calls updated. Its
+    frames that are gone stay, with a message."""
+    document: Transforms | None = None if into is None else into.document
+    root = ROOT if document is None else document.root
+    taken = () if document is None else document.poses
+    linked, lines = frames.linked(sensors, root, taken)
+    added = [link for sensor, links in linked if sensor.entry is None for link in links]
+    if into is None or document is None:
+        text = _new(added)
+    else:
+        text = _updated(document, sensors, added)
+        lines += gone_lines(sensor.entry.frame for sensor in into.gone)
+    files = {FILE: text} | info_files(sensor for sensor, _ in linked)
     return {name: text.encode() for name, text in files.items()}, lines
 
 
-def source(path: Path) -> dict[str, str]:
-    """Return an empty launch file that stores the root frame of this file, for `write`."""
-    links = _links(path / FILE if path.is_dir() else path)
-    root = next(parent for parent, _ in links.values() if parent not in links)
-    return {FILE: tostring(Element("launch", {"root": root}), "unicode")}
+def _new(links: Iterable[tuple[str, str, Pose]]) -> str:
+    launch = Element("launch")
+    for parent, child, pose in links:
+        args = _options_text(parent, child, pose)
+        SubElement(launch, "node", {"pkg": "tf2_ros", "exec": PUBLISHER, "args": args})
+    indent(launch)
+    return f"<!-- {ROOT}{frames.AXES}-->\n{tostring(launch, 'unicode')}\n"
 
 
-def read(path: Path) -> PortableRig:
+def _options_text(parent: str, child: str, pose: Pose) -> str:
+    pairs = values.pose_numbers(pose).items()
+    args = " ".join(f"--{key} {values.plain_number(value)}" for key, value in pairs)
+    return f"{args} --{ENDS[0]} {parent} --{ENDS[1]} {child}"
+
+
+def _positional_text(order: Sequence[str], pose: Pose) -> str:
+    """Return the numbers of a call without options."""
+    w, x, y, z = frames.quaternion(pose.ground_from_sensor)
+    turn = dict(zip(QUATERNION, (w, x, y, z), strict=True))
+    numbers = values.pose_numbers(pose) | turn
+    return values.spaced([numbers[key] for key in order])
+
+
+def _updated(
+    document: Transforms, sensors: PortableRig, added: Sequence[tuple[str, str, Pose]]
+) -> str:
+    """Return the text with the arguments of frames that moved, and calls for added ones."""
+    wanted = {
+        sensor.entry.frame: frames.carried_along(
+            sensor, sensor.entry.pose, document.poses[sensor.entry.frame]
+        )
+        for sensor in sensors
+        if sensor.entry is not None
+    }
+    text = document.text
+    is_launch = "<node" in text
+    places, _ = frames.new_places(document.links, document.poses, wanted)
+    for child in sorted(places, key=lambda name: -document.calls[name].start):
+        call = document.calls[child]
+        args = _new_args(call.args, document.links[child][0], child, places[child])
+        args = escape(args, {'"': "&quot;", "'": "&apos;"}) if is_launch else args
+        text = text[: call.start] + args + text[call.end :]
+    is_old = is_launch and not EXEC.search(text)
+    lines = []
+    for parent, child, pose in added:
+        args = _options_text(parent, child, pose)
+        if is_old:  # a launch file of ROS 1, whose publisher knows no options
+            args = f"{_positional_text(POSITIONAL, pose)} {parent} {child}"
+            lines.append(f'<node pkg="tf2_ros" type="{PUBLISHER}" name="{child}" args="{args}"/>')
+        elif is_launch:
+            lines.append(f'<node pkg="tf2_ros" exec="{PUBLISHER}" args="{args}"/>')
+        else:
+            lines.append(f"ros2 run tf2_ros {PUBLISHER} {args}")
+    if not lines:
+        return text
+    before, end, after = text.rpartition("</launch>") if is_launch else (text, "", "")
+    indentation = "  " if is_launch else ""
+    new = "".join(f"{indentation}{line}\n" for line in lines)
+    return f"{before}{'' if before.endswith(chr(10)) else chr(10)}{new}{end}{after}"
+
+
+def _new_args(args: str, parent: str, child: str, pose: Pose) -> str:
+    """Return the arguments of a call with another pose; what follows them in a script stays."""
+    end = END.search(args)
+    tail = "" if end is None else args[end.start() :]
+    blank = " " if args[:1] == " " else ""
+    words = _until_end(_words(args))
+    order = _order(words)
+    if not order:
+        return f"{blank}{_options_text(parent, child, pose)}{tail}"
+    others = " ".join(words[len(order) :])
+    return f"{blank}{_positional_text(order, pose)} {others}{tail}"
+
+
+def read(path: Path) -> ForeignRig:
     """Read the transforms of all calls of the publisher in a file, in the frame of their root. A
     frame with one optical frame below it is a camera, that looks along the optical axis; so is an
     optical frame on its own. The kind of others is unknown."""
     path = path / FILE if path.is_dir() else path
-    links = _links(path)
+    text = values.text_of(path)
+    links, calls = _links(path, text)
     names = dict.fromkeys(name for child, (parent, _) in links.items() for name in (parent, child))
     poses = frames.poses_from_root(path, links, names, "frame")
     owners = frames.camera_frames({child: parent for child, (parent, _) in links.items()})
@@ -103,18 +204,22 @@ def read(path: Path) -> PortableRig:
             continue
         sensor = PortableSensor(owner or name, poses[name], CAMERA if owner else None)
         if name in optical_of:
-            sensors.append(frames.as_camera(sensor, poses[optical_of[name]]))
+            sensor = frames.as_camera(sensor, poses[optical_of[name]])
         else:
-            sensors.append(frames.with_body_axes(sensor, name))
-    return with_info(path.parent, sensors)
+            sensor = frames.with_body_axes(sensor, name)
+        sensors.append(replace(sensor, entry=FrameEntry(name, sensor.pose)))
+    document = Transforms(text, calls, links, poses)
+    return ForeignRig(with_info(path.parent, sensors), document=document)
 
 
-def _links(path: Path) -> dict[str, tuple[str, Pose]]:
-    """Return the parent and the pose in the parent frame, by frame name."""
-    calls = _calls(without_comments(values.text_of(path)))
+def _links(path: Path, text: str) -> tuple[dict[str, tuple[str, Pose]], dict[str, Call]]:
+    """Return the parent and the pose in the parent frame, and the calls, by frame name."""
+    calls = _calls(without_comments(text))
     values.require_at_most(path, "file", len(calls), values.MAX_FRAMES, f"calls of {PUBLISHER}")
     links: dict[str, tuple[str, Pose]] = {}
-    for number, arguments in enumerate(calls):
+    by_frame: dict[str, Call] = {}
+    for number, call in enumerate(calls):
+        arguments = call.args
         field = f"transform {number + 1}"
         longest = values.MAX_LINE_LENGTH
         values.require_at_most(path, field, len(arguments), longest, "characters")
@@ -122,35 +227,42 @@ def _links(path: Path) -> dict[str, tuple[str, Pose]]:
         if child in links:
             raise InputError(path, f"frame {child}", "one parent", "two")
         links[child] = parent, pose
+        by_frame[child] = call
     if not links:
         raise InputError(path, "file", f"calls of {PUBLISHER}", "none")
-    return links
+    return links, by_frame
 
 
-def _calls(text: str) -> list[str]:
-    """Return the arguments of the publisher in each call: of nodes of a launch file, else of lines
-    of a script."""
+def _calls(text: str) -> list[Call]:
+    """Return the calls of the publisher: nodes of a launch file, else lines of a script."""
     calls = []
     for node in NODE.finditer(text):
         if PUBLISHER not in node[1]:
             continue
         if len(node[1]) > 2 * values.MAX_LINE_LENGTH:  # it is refused by its length
-            calls.append(node[1])
+            calls.append(Call(*node.span(1), node[1]))
             continue
-        found = ATTRIBUTE.findall(node[1])
-        attributes = {key: unescape(double or single) for key, double, single in found}
+        found = {each[1]: each for each in ATTRIBUTE.finditer(node[1])}
+        attributes = {key: unescape(each[2] or each[3] or "") for key, each in found.items()}
         if PUBLISHER in (attributes.get("exec"), attributes.get("type")):
-            calls.append(attributes.get("args", ""))
-    return calls if "<node" in text else CALL.findall(text)
+            args = found.get("args")
+            if args is None:
+                calls.append(Call(*node.span(1), ""))
+                continue
+            start, end = args.span(2 if args[2] is not None else 3)
+            first = node.start(1)
+            calls.append(Call(first + start, first + end, attributes["args"]))
+    if "<node" in text:
+        return calls
+    return [Call(*call.span(1), call[1]) for call in CALL.finditer(text)]
 
 
 def _transform(path: Path, field: str, args: str) -> tuple[str, str, Pose]:
     """Return parent, child and pose of one call."""
     try:
-        words = shlex.split(EQUALS.sub(r"\1 ", args))
+        words = _until_end(_words(args))
     except ValueError as error:
         raise InputError(path, field, "arguments", error) from None
-    words = _until_end(words)
     options = _positional(words) or dict(zip(words[::2], words[1::2], strict=False))
     ends = [options.get(f"--{end}", "") for end in ENDS]
     if not all(ends):
@@ -168,6 +280,10 @@ def _transform(path: Path, field: str, args: str) -> tuple[str, str, Pose]:
     return ends[0], ends[1], values.pose_from(path, field, position, figures(RPY))
 
 
+def _words(args: str) -> list[str]:
+    return shlex.split(EQUALS.sub(r"\1 ", args))
+
+
 def _until_end(words: Sequence[str]) -> list[str]:
     """Return the words of a call up to the shell's end of a command, or ROS's own arguments."""
     ends = (k for k, word in enumerate(words) if word in END_WORDS or word.endswith(";"))
@@ -177,26 +293,37 @@ def _until_end(words: Sequence[str]) -> list[str]:
 
 
 def _positional(words: Sequence[str]) -> dict[str, str]:
-    """Return a call of numbers and frames as options; empty if it is none. It has x, y, z, then
-    yaw, pitch, roll or a quaternion, parent and child, and in ROS 1 a period."""
+    """Return a call of numbers and frames as options; empty if it is none."""
+    order = _order(words)
+    numbers = dict(zip((f"--{key}" for key in order), words, strict=False))
+    ends = dict(zip((f"--{end}" for end in ENDS), words[len(order) :], strict=False))
+    return numbers | ends if order else {}
+
+
+def _order(words: Sequence[str]) -> Sequence[str]:
+    """Return the order of the numbers in a call without options; empty if it is none. It has x, y,
+    z, then yaw, pitch, roll or a quaternion, parent and child, and in ROS 1 a period."""
     keys = {f"--{key}" for key in (*XYZ, *RPY, *QUATERNION, *ENDS)}
     if keys & set(words):
-        return {}
+        return ()
     is_number = [values.PLAIN.fullmatch(word) is not None for word in words]
     for order in (POSITIONAL_QUATERNION, POSITIONAL):
         count = len(order)
         is_call = len(words) == count + 2 or (len(words) == count + 3 and is_number[-1])
         if is_call and all(is_number[:count]) and not any(is_number[count : count + 2]):
-            numbers = dict(zip((f"--{key}" for key in order), words, strict=False))
-            ends = dict(zip((f"--{end}" for end in ENDS), words[count:], strict=False))
-            return numbers | ends
-    return {}
+            return order
+    return ()
 
 
 def without_comments(text: str) -> str:
-    """Return XML without its comments, in one pass; an unclosed comment extends to the end."""
+    """Return XML with blanks in place of its comments, in one pass; an unclosed comment extends to
+    the end."""
     first, *parts = text.split("<!--")
-    return first + "".join(part.partition("-->")[2] for part in parts)
+    plain = [first]
+    for part in parts:
+        comment, end, after = part.partition("-->")
+        plain += [NO_LINE_END.sub(" ", f"<!--{comment}{end}"), after]
+    return "".join(plain)
 
 
 def info_name(camera: str) -> str:

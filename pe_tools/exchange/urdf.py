@@ -1,12 +1,10 @@
-"""URDF: links and fixed joints, an optical frame for each camera (REP 103). Intrinsics are in
-Gazebo's sensor elements, as far as these can express them. The model name is in an element beside
-them, which other readers of URDF ignore."""
+"""URDF, read: links, joints and Gazebo's sensors; an SDF is handed on."""
 
 import re
 from collections.abc import Collection, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
+from xml.etree.ElementTree import Element
 
 from pe_core.base.errors import InputError, plural, shown
 from pe_core.base.files import decode_text, read_bytes
@@ -15,130 +13,44 @@ from pe_tools.formats.xml_text import parse_xml
 
 from . import foreign_values as values
 from . import frames
-from .foreign_values import Export, FileTexts, spaced
-from .gazebo import write_clip, write_picture, write_scan
-from .gazebo_sensors import OWN, RANGES, LinkBlock, read_sensors
-from .passthrough import entry_row
-from .portable import PortableRig, PortableSensor, uneven
-from .portable_kinds import CAMERA, LIDAR
+from .gazebo_sensors import OWN, LinkBlock, LinkEntry, read_sensors
+from .portable import ForeignRig, PortableSensor
 from .robot_links import LinkTree, SensorLink, has_mass, sensor_links, unread_lines
 from .ros import without_comments
 from .sdf import read_sdf
 
-FILE, ROOT, NAME = "rig.urdf", "base_link", "rig"
 XACRO = re.compile(r"<xacro:|\$\{|\$\((find|arg|eval|env|optenv|dirname|anon)\b")
 """What only a file of xacro has."""
 ON_GROUND = "base_footprint"  # The link on the ground under a robot (REP 120)
-MASSES = (
-    "Links have a mass and joints are preserved, so that Gazebo keeps each sensor's frame; gravity "
-    "does not move them. "
-)
-GAZEBO_KINDS = {CAMERA: CAMERA, LIDAR: "gpu_lidar"}
-INERTIA_KEYS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-MASS_KG, INERTIA = 0.01, 1e-5
-"""Of every link [kg, kg m2]: Gazebo has none without (sdformat's issue 199), nor below 1e-5 kg."""
+HEAD = re.compile(r"(?:\s*(?:<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^>]*>))*\s*", re.DOTALL)
+DECLARATION = re.compile(r"\s*<\?xml.*?\?>\s*", re.DOTALL)
+"""What is before the root of a document, and its first part."""
 
 
-def write(sensors: PortableRig, texts: FileTexts) -> Export:
-    """Return a robot that consists of the rig alone, and messages on losses. Its name and its root
-    link are those of an imported one, if there is one."""
-    name, root = NAME, ROOT
-    if texts:
-        imported = parse_xml("passthrough", texts.get(FILE, "").encode())
-        link = imported.find("link")
-        root = ROOT if link is None else link.get("name", ROOT)
-        name = imported.get("name", NAME)
-    robot = Element("robot", {"name": name})
-    _link(robot, root)
-    linked, lines = frames.linked(sensors, root)
-    for sensor, links in linked:
-        for link_and_pose in links:
-            _joint(robot, *link_and_pose)
-        if not sensor.is_left_out:
-            _gazebo(robot, sensor)
-            continue
-        for block in entry_row(sensor, lambda _: {}, (), ()).get("gazebo", ()):  # as imported
-            robot.append(parse_xml("passthrough", str(block).encode()))
-    indent(robot)
-    comment = f"{root}{frames.origin_text(texts)}{frames.AXES}{MASSES}"
-    text = f'<?xml version="1.0"?>\n<!-- {comment}-->\n{tostring(robot, "unicode")}\n'
-    return {FILE: text.encode()}, lines + uneven((sensor for sensor, _ in linked), "Gazebo")
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """The content of a URDF: the `head` before its root, without the XML declaration, the root, the
+    parents and poses of links (`hung`), the poses of all links in the root link (`poses`), and the
+    link that is the origin."""
+
+    head: str
+    root: Element
+    hung: Mapping[str, tuple[str, Pose]]
+    poses: Mapping[str, Pose]
+    origin: str
 
 
-def source(path: Path) -> dict[str, str]:
-    """Return a robot of the same name with only the origin link, for `write`."""
-    root = _description(path)
-    name = root.get("name", NAME) if root.tag == "robot" else NAME
-    skeleton = Element("robot", {"name": name})
-    link = ROOT if root.tag == "sdf" else _origin_of(_poses(path, root))
-    SubElement(skeleton, "link", {"name": link})
-    return {FILE: tostring(skeleton, "unicode")}
-
-
-def _link(robot: Element, name: str) -> None:
-    """Add a link with a mass, which Gazebo requires, and without gravity."""
-    inertial = SubElement(SubElement(robot, "link", {"name": name}), "inertial")
-    SubElement(inertial, "mass", {"value": repr(MASS_KG)})
-    moments = {key: repr(INERTIA if key[1] == key[2] else 0.0) for key in INERTIA_KEYS}
-    SubElement(inertial, "inertia", moments)
-    block = SubElement(robot, "gazebo", {"reference": name})
-    SubElement(block, "turnGravityOff").text = "true"
-
-
-def _joint(robot: Element, parent: str, child: str, pose: Pose) -> None:
-    """Add a link on a fixed joint that Gazebo must not merge into the parent."""
-    _link(robot, child)
-    name = f"{child}_joint"
-    joint = SubElement(robot, "joint", {"name": name, "type": "fixed"})
-    SubElement(joint, "parent", {"link": parent})
-    SubElement(joint, "child", {"link": child})
-    SubElement(joint, "origin", {"xyz": spaced(pose.position), "rpy": spaced(pose.rpy)})
-    block = SubElement(robot, "gazebo", {"reference": name})
-    SubElement(block, "preserveFixedJoint").text = "true"
-
-
-def _gazebo(robot: Element, sensor: PortableSensor) -> None:
-    block = SubElement(robot, "gazebo", {"reference": sensor.name})
-    kind = GAZEBO_KINDS.get(sensor.kind or "")
-    ranges = {key: getattr(sensor, key) for key in RANGES}
-    optional = {
-        "fusion": sensor.fusion,
-        **{k: None if v is None else values.plain_number(v) for k, v in ranges.items()},
-        "parameters": sensor.parameters,
-    }
-    attributes = {"kind": sensor.kind or "", "model": sensor.known_model or ""}
-    attributes |= {key: text for key, text in optional.items() if text}
-    SubElement(block, OWN, attributes)
-    if kind is None or (sensor.picture is None and sensor.scan is None):
-        return
-    element = SubElement(block, "sensor", {"name": sensor.name, "type": kind})
-    if sensor.picture is not None and sensor.picture.size is not None:
-        camera = SubElement(element, CAMERA)
-        write_picture(camera, sensor.picture, sensor.picture.size)
-        write_clip(camera, sensor.min_range, sensor.max_range)
-    elif sensor.scan is not None:
-        write_scan(SubElement(element, LIDAR), sensor.scan)
-
-
-def read(path: Path) -> PortableRig:
-    """Read the sensors of a robot, in the frame of its root. Sensors are Gazebo's. If there are
-    none, names, joints and masses of links decide: see `robot_links`."""
-    return _read(path)[0]
-
-
-def remarks(path: Path) -> list[str]:
-    """Return messages on links that are left out, or taken without a name that says so."""
-    return _read(path)[1]
-
-
-def _read(path: Path) -> tuple[PortableRig, list[str]]:
-    root = _description(path)
+def read(path: Path) -> ForeignRig:
+    """Read the sensors of a robot, in the frame of its root, with messages on links that are left
+    out, or taken without a name that says so. Sensors are Gazebo's. If there are none, names,
+    joints and masses of links decide: see `robot_links`."""
+    root, head = _description(path)
     if root.tag == "sdf":
-        return read_sdf(path, root)
-    in_root = _poses(path, root)
-    origin = _origin_of(in_root)
+        return ForeignRig(*read_sdf(path, root))
+    hung, in_root = _poses(path, root)
+    origin = ON_GROUND if ON_GROUND in in_root else next(iter(in_root))
     poses = {name: frames.seen_from(in_root[origin], pose) for name, pose in in_root.items()}
-    blocks = _sensor_blocks(root)
+    blocks = sensor_blocks(root)
     tree = _tree(root, in_root)
     lines: list[str] = []
     if any(name in blocks for name in poses):
@@ -157,10 +69,10 @@ def _read(path: Path) -> tuple[PortableRig, list[str]]:
         lines = [*lines, f"left out, {count} on links that the robot does not have: {listed}"]
     line = _origin_line(root, in_root, origin)
     noted = [replace(s, told="; ".join(filter(None, [s.told, line]))) for s in sensors]
-    return tuple(noted), lines
+    return ForeignRig(tuple(noted), lines, Robot(head, root, hung, in_root, origin))
 
 
-def _sensor_blocks(robot: Element) -> dict[str, list[Element]]:
+def sensor_blocks(robot: Element) -> dict[str, list[Element]]:
     """Return Gazebo's elements with sensors by their link."""
     blocks: dict[str, list[Element]] = {}
     for block in robot.findall("gazebo"):
@@ -196,29 +108,30 @@ def _tree(robot: Element, in_root: Mapping[str, Pose]) -> LinkTree:
 def _sensor_of_link(link: SensorLink, poses: Mapping[str, Pose]) -> PortableSensor:
     sensor = PortableSensor(link.name, poses[link.frame], link.kind)
     if link.optical is not None and link.optical != link.frame:
-        return frames.as_camera(sensor, poses[link.optical])
-    return frames.with_body_axes(sensor, link.frame)
+        sensor = frames.as_camera(sensor, poses[link.optical])
+    else:
+        sensor = frames.with_body_axes(sensor, link.frame)
+    return replace(sensor, entry=LinkEntry(link.frame, sensor.pose))
 
 
-def _description(path: Path) -> Element:
-    """Return the root of a URDF or an SDF. A file of xacro is not one yet."""
+def _description(path: Path) -> tuple[Element, str]:
+    """Return the root of a URDF or an SDF, and the text before it without the XML declaration. A
+    file of xacro is not one yet."""
     data = read_bytes(path)
-    if XACRO.search(without_comments(decode_text(data))):
+    text = decode_text(data)
+    if XACRO.search(without_comments(text)):
         expected = f"URDF, as `xacro {path.name}` writes it to a file"
         raise InputError(path, "file", expected, "xacro, whose macros are not expanded")
-    root = parse_xml(str(path), data)
+    root = parse_xml(str(path), data, comments=True)
     if root.tag not in ("robot", "sdf"):
         raise InputError(path, "file", "URDF, a <robot>, or SDF", f"<{root.tag}>")
-    return root
+    head = HEAD.match(text)
+    return root, "" if head is None else DECLARATION.sub("", head[0])
 
 
-def _origin_of(poses: dict[str, Pose]) -> str:
-    """Return the origin link: the link on the ground (REP 120), or else the root."""
-    return ON_GROUND if ON_GROUND in poses else next(iter(poses))
-
-
-def _poses(path: Path, robot: Element) -> dict[str, Pose]:
-    """Return the poses of links in the root frame, by name, ordered by depth."""
+def _poses(path: Path, robot: Element) -> tuple[dict[str, tuple[str, Pose]], dict[str, Pose]]:
+    """Return the parents of links and the poses in these, and the poses of links in the root frame,
+    ordered by depth; both by name."""
     links = dict.fromkeys(link.get("name", "") for link in robot.findall("link"))
     values.require_at_most(path, "link", len(links), values.MAX_FRAMES, "links")
     joints = {}
@@ -233,7 +146,7 @@ def _poses(path: Path, robot: Element) -> dict[str, Pose]:
             for key in ("xyz", "rpy")
         ]
         joints[child] = parent, values.pose_from(path, field, *numbers)
-    return frames.poses_from_root(path, joints, links, "link")
+    return joints, frames.poses_from_root(path, joints, links, "link")
 
 
 def _end(path: Path, joint: Element, end: str, links: Collection[str]) -> str:

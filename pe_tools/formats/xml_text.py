@@ -8,12 +8,17 @@ from pe_core.base.errors import InputError
 MAX_DEPTH = 100  # Maximum levels of elements; calibrations have fewer than ten
 
 
-def parse_xml(source: str, data: bytes) -> Element:
-    """Return the root of an XML document. Definitions in the document (``<!DOCTYPE a [...]>``) are
-    refused: a few lines of them can expand to gigabytes. A DOCTYPE without definitions is ignored.
-    `InputError` when it is not well-formed, has definitions or is nested deeper than
-    `MAX_DEPTH`."""
-    tree, parser, depth = TreeBuilder(), expat.ParserCreate(), 0
+def text_in(element: Element | None) -> str | None:
+    """Return the text of an element without its comments; None if there is no element."""
+    return None if element is None else "".join(element.itertext())
+
+
+def parse_xml(source: str, data: bytes, *, comments: bool = False) -> Element:
+    """Return the root of an XML document, with its `comments` if asked for. Definitions in the
+    document (``<!DOCTYPE a [...]>``) are refused: a few lines of them can expand to gigabytes. A
+    DOCTYPE without definitions is ignored. `InputError` when it is not well-formed, has definitions
+    or is nested deeper than `MAX_DEPTH`."""
+    tree, parser, depth = TreeBuilder(insert_comments=comments), expat.ParserCreate(), 0
 
     def start(tag: str, attributes: dict[str, str]) -> None:
         nonlocal depth
@@ -34,6 +39,7 @@ def parse_xml(source: str, data: bytes) -> Element:
 
     parser.StartElementHandler, parser.EndElementHandler = start, end
     parser.CharacterDataHandler, parser.StartDoctypeDeclHandler = tree.data, doctype
+    parser.CommentHandler = tree.comment if comments else None
     try:
         parser.Parse(data, True)
         root: Element = tree.close()

@@ -90,7 +90,7 @@ def fingerprint(study: Study) -> str:
 
 
 def _parts(study: Study) -> Iterator[bytes]:
-    yield study_text(replace(study, passthrough=None)).encode()
+    yield study_text(study).encode()
     yield json.dumps([catalog.to_table(sensor.model) for sensor in study.rig]).encode()
     if (vehicle := study.vehicle) is not None:
         yield np.ascontiguousarray(vehicle.triangles).tobytes()

@@ -10,7 +10,7 @@ from blender_addon.engine import exchange, pe
 from pe_tools.cli.verbs import main
 from tests.addon import scenes
 from tests.addon.command_line import run_here
-from tests.engine.test_passthrough import CARLA
+from tests.engine.test_merging import CARLA
 
 AXLE = pe.Reference(-1.31, 0.33, 2.8)
 
@@ -70,8 +70,9 @@ def test_the_command_in_blender_writes_a_rig(axled, tmp_path):
         assert (tmp_path / "kit" / name).read_bytes() == from_panel
 
 
-def test_what_a_file_has_besides_its_rig_stays_in_the_scene(axled, tmp_path, capfd):
-    """A collision sensor is named, kept through a .blend and a study, and goes out as it came."""
+def test_what_a_file_has_besides_its_rig_stays_in_it(axled, tmp_path, capfd):
+    """A collision sensor is named, and is in the file into which the rig goes: by the dialog that
+    replaces it, by `into`, and by the command."""
     objects = tmp_path / "objects.json"
     objects.write_text(json.dumps(CARLA))
     assert bpy.ops.pe.import_rig(filepath=str(objects)) == {"FINISHED"}
@@ -79,15 +80,14 @@ def test_what_a_file_has_besides_its_rig_stays_in_the_scene(axled, tmp_path, cap
     assert line in capfd.readouterr().out
     assert line in bridge.active_variant(axled).note
     assert {s.name for s in scenes.study().rig} == {"rgb_front", "lidar", "radar_front"}
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "car.blend"))
-    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "car.blend"))
     study = tmp_path / "study" / "study.toml"
     study.parent.mkdir()
     assert bpy.ops.pe.export_study(filepath=str(study)) == {"FINISHED"}
-    bridge.write_passthrough(bpy.context.scene.perception_entropy, None)
-    assert bpy.ops.pe.import_study(filepath=str(study)) == {"FINISHED"}
     out = tmp_path / "out.json"
-    assert bpy.ops.pe.export_rig(filepath=str(out), format="carla") == {"FINISHED"}
+    options = {"filepath": str(out), "format": "carla", "into": str(objects)}
+    assert bpy.ops.pe.export_rig(**options) == {"FINISHED"}
     assert json.loads(out.read_text()) == CARLA
-    main(["export", str(study), "--to", "carla", "-o", str(tmp_path / "command.json")])
+    assert bpy.ops.pe.export_rig(filepath=str(objects)) == {"FINISHED"}
+    assert json.loads(objects.read_text()) == CARLA
+    main(["export", str(study), "--into", str(objects), "-o", str(tmp_path / "command.json")])
     assert (tmp_path / "command.json").read_bytes() == out.read_bytes()

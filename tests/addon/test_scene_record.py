@@ -109,7 +109,6 @@ def rich(car):
     settings.track_needed, settings.track_window, settings.track_correlation = 2, 4, 0.5
     bpy.ops.pe.add_story(story="cut_in")
     settings.stories[0].speed_kmh = 50.0
-    settings.passthrough = '{"format": "carla", "files": {"a": "b"}}'
     settings.max_price, settings.max_sensors, settings.currency = 9000.0, 9, "EUR"
     scenes.add_mount(car, "cabin", bpy.data.objects["cabin"], standoff=0.04, orientation="normal")
     scenes.paint(bpy.data.objects["cabin"], "top", lambda co: 1.0 if co.z > 0 else 0.0)

@@ -114,9 +114,6 @@ def test_carla_s_ground_truth_and_spectator_are_no_sensors(tmp_path):
         "2 spectator sensors (rgb_view, Spectator)" in line
         and "1 camera.dvs sensor (events)" in line
     )
-    back, _ = rig_files(found.rig, "carla", passthrough=found.passthrough)
-    again = json.loads(back["objects.json"])["objects"][0]["sensors"]
-    assert [row["type"] for row in again] == [row["type"] for row in rows]
 
 
 @pytest.mark.parametrize("name", [n for n, row in RIG_FORMATS.items() if n != "argoverse2"])

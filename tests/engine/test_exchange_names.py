@@ -117,6 +117,9 @@ def test_what_is_no_sensor_is_left_out_of_a_kit_and_told(tmp_path):
     assert found.lines[0].startswith("left out: 1 gnss sensor (gnss), 1 imu sensor (imu), 1 frame")
     chosen = pt.import_rig(tmp_path, None, AXLE, {"gnss": PUCK})
     assert chosen.rig["gnss"].kind == "lidar", "unless a model is chosen for it"
+    before = texts_of(tmp_path)
+    pt.export_rig(chosen.rig, "autoware", tmp_path, AXLE, replace=True)
+    assert texts_of(tmp_path) == before, "and is that frame of the kit"
 
 
 def test_a_lidar_is_lifted_by_its_own_housing_and_a_stand_in_by_none(tmp_path):
@@ -131,11 +134,8 @@ def test_a_lidar_is_lifted_by_its_own_housing_and_a_stand_in_by_none(tmp_path):
     assert heights == pytest.approx([1.7 + 0.06611, 1.7, 1.7 + 0.047], abs=1e-9)
     assert scan_above_base("Velodyne VLS-128 Alpha Prime") == 0.06611
     before = texts_of(kit)
-    for passthrough in (found.passthrough, None):
-        out = tmp_path / ("kept" if passthrough else "kit")
-        pt.export_rig(
-            found.rig, "autoware", out, AXLE, replace=passthrough is None, passthrough=passthrough
-        )
+    for out in (tmp_path / "kept", kit):
+        pt.export_rig(found.rig, "autoware", out, AXLE, into=kit, replace=out == kit)
         assert texts_of(out) == before
         again = pt.import_rig(out, None, AXLE).rig
         for ours, theirs in zip(found.rig, again, strict=True):
@@ -277,12 +277,12 @@ def test_an_odd_lens_is_told_and_its_file_is_kept(field, tmp_path):
     found = pt.import_rig(kit, None, AXLE)
     assert found.to_choose == ("a",) and found.rig["b"].model.width == 640
     assert any(f"camera_info/a.yaml: {field}" in line for line in found.lines)
-    for passthrough in (None, found.passthrough):
-        _, lines = pt.export_rig(
-            found.rig, "autoware", kit, AXLE, replace=True, passthrough=passthrough
-        )
+    own = pe.Sensor("a", catalog.load("KITTI cam2"), found.rig["a"].pose)
+    for rig in (found.rig, pe.Rig([own, found.rig["b"]])):
+        _, lines = pt.export_rig(rig, "autoware", kit, AXLE, replace=True)
         assert (kit / "camera_info" / "a.yaml").read_text() == ODD[field]
-        assert passthrough or any(line.startswith("a: its camera_info") for line in lines)
+        told = [line for line in lines if line.startswith("a: its camera_info")]
+        assert bool(told) == (rig is not found.rig), "the stand-in was not of the file"
 
 
 def test_an_odd_lens_of_another_format_does_not_refuse_its_rig(tmp_path):

@@ -109,20 +109,3 @@ def test_what_is_none_of_osi_s_is_refused(tmp_path):
 
     rows = [(f"lidar_sensor_view_configuration[1].{field}", given) for field, given in WRONG]
     assert wrongly_refused(imported, rows, path) == []
-
-
-def test_fields_of_radars_that_are_not_read_are_kept(tmp_path):
-    (path,), _ = pt.export_rig(RIG, "osi", tmp_path / "osi.json", AXLE)
-    data = json.loads(path.read_text())
-    radar = {"sensorId": {"value": "7"}, "emitter_frequency": 77e9, "rx_antenna_diagram": [{}]}
-    data["radar_sensor_view_configuration"] = [radar]
-    path.write_text(json.dumps(data))
-    found = pt.import_rig(path, "osi", AXLE)
-    assert [s.name for s in found.rig] == ["lidar_0", "lidar_1", "camera_2", "radar_7"]
-    assert found.to_choose == ("radar_7",)
-    (again,), _ = pt.export_rig(
-        found.rig, "osi", tmp_path / "again.json", AXLE, passthrough=found.passthrough
-    )
-    (row,) = json.loads(again.read_text())["radar_sensor_view_configuration"]
-    assert row["emitter_frequency"] == 77e9 and row["rx_antenna_diagram"] == [{}]
-    assert row["sensor_id"] == {"value": "7"}, "as it came"

@@ -72,7 +72,7 @@ def test_the_schema_of_a_study_has_the_keys_that_the_reader_asks_for(monkeypatch
     assert not {path: left for path, left in unknown.items() if path}, unknown
     # Where a table was read, whatever the schema has beside was asked for only where it stands.
     at_times = {"ap", "boxes", "grid", "origin", "space", "density", "classes", "class", "options"}
-    at_times |= {"objects", "passthrough", "reference", "covers", "model", "preset", "area"}
+    at_times |= {"objects", "reference", "covers", "model", "preset", "area"}
     left = {path: known[path] - asked[path] - at_times for path in known if asked[path]}
     assert not {path: keys for path, keys in left.items() if keys}
     assert len([path for path in known if asked[path]]) > 20

@@ -29,8 +29,8 @@ def car(addon):
 
 def test_a_story_is_added_checked_and_shown(car):
     settings = car.perception_entropy
-    assert bpy.ops.pe.add_story(story="cyclist_from_right") == {"FINISHED"}
-    assert bpy.ops.pe.add_story(story="crossing_child") == {"FINISHED"}
+    assert bpy.ops.pe.add_row(rows="stories", kind="cyclist_from_right") == {"FINISHED"}
+    assert bpy.ops.pe.add_row(rows="stories", kind="crossing_child") == {"FINISHED"}
     settings.stories[0].speed_kmh = 20.0
     study = scenes.study()
     assert [each.name for each in study.stories] == ["cyclist_from_right", "crossing_child"]
@@ -44,7 +44,7 @@ def test_a_story_is_added_checked_and_shown(car):
     assert ("prop", "speed_kmh") in drawn.notes and ("prop", "track_needed") in drawn.notes
     settings.stories[1].enabled = False
     assert len(scenes.study().stories) == 1
-    bpy.ops.pe.remove_story()
+    bpy.ops.pe.remove_row(rows="stories")
     assert len(settings.stories) == 1
 
 
@@ -54,7 +54,7 @@ def test_how_sensors_scan_gives_seams_and_is_kept(car):
     for obj, phase in ((bpy.data.objects["roof"], 0.0), (low, 0.5)):
         obj.perception_entropy.scan_turns, obj.perception_entropy.scan_phase = "left", phase
     settings.box_latency_s = 0.2
-    bpy.ops.pe.add_story(story="cyclist_from_right")
+    bpy.ops.pe.add_row(rows="stories", kind="cyclist_from_right")
     bpy.ops.pe.check_requirements()
     told = json.loads(settings.stories[0].result)["bodies"][0]
     assert told["seam_of"] == ["low", "roof"] and told["seam_m"] > 0.1
@@ -73,7 +73,7 @@ def test_how_sensors_scan_gives_seams_and_is_kept(car):
 
 def test_variants_that_differ_in_a_scan_are_two_and_keep_their_own_figures(car):
     settings, roof = car.perception_entropy, bpy.data.objects["roof"].perception_entropy
-    bpy.ops.pe.add_story(story="cyclist_from_right")
+    bpy.ops.pe.add_row(rows="stories", kind="cyclist_from_right")
     roof.scan_turns = "left"
     bpy.ops.pe.save_variant()
     roof.scan_phase = 0.25
@@ -104,14 +104,14 @@ def animated(scene, name, body, path):
 def test_any_animated_object_is_a_story(car):
     settings = car.perception_entropy
     with pytest.raises(RuntimeError, match="test bodies"):
-        bpy.ops.pe.add_story(story="animated")
+        bpy.ops.pe.add_row(rows="stories", kind="animated")
     assert not settings.stories
     bpy.context.preferences.edit.keyframe_new_interpolation_type = "LINEAR"
     car.frame_start, car.frame_end = 1, 73
     animated(car, "runner", "child", [(1, 14.0, -6.0), (73, 2.0, 0.0)])
     box = animated(car, "box", "HIDES", [(1, 8.0, -3.0)])
     box.rotation_euler.z = 0.5
-    assert bpy.ops.pe.add_story(story="animated") == {"FINISHED"}
+    assert bpy.ops.pe.add_row(rows="stories", kind="animated") == {"FINISHED"}
     assert bpy.ops.pe.play_story() == {"FINISHED"}
     (story,) = scenes.study().stories
     assert (story.start_s, story.end_s, story.anchor) == (-3.0, 0.0, "origin")
@@ -133,7 +133,7 @@ def test_any_animated_object_is_a_story(car):
 
 
 def test_the_3d_view_shows_what_a_check_says(car):
-    bpy.ops.pe.add_story(story="cyclist_from_right")
+    bpy.ops.pe.add_row(rows="stories", kind="cyclist_from_right")
     (item,) = scenes.drawn(car)["story"].values()
     driven = scenes.study().drive_by(scenes.study().stories[0])
     moment = driven.bodies[0].moments[0.9]

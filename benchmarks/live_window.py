@@ -41,7 +41,7 @@ for model, name, place, turn in (
     made.name, made.location, made.rotation_euler.z = name, place, turn
 view.show_ground = view.show_beams = view.show_blind = True
 settings.live.on = settings.show_overlay = True
-bpy.ops.pe.add_requirement(preset="ALL")
+bpy.ops.pe.add_row(rows="requirements", kind="ALL")
 """
 FINE = """
 body = next(each for each in settings.vehicle.all_objects if each.type == "MESH")

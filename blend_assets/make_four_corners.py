@@ -88,8 +88,8 @@ def add_requirements() -> None:
     """Hold the shuttle to presets, and to an adult ahead that two sensors see."""
     settings = bpy.context.scene.perception_entropy
     for preset in PRESETS:
-        bpy.ops.pe.add_requirement(preset=preset)
-    bpy.ops.pe.add_requirement(preset="OWN")
+        bpy.ops.pe.add_row(rows="requirements", kind=preset)
+    bpy.ops.pe.add_row(rows="requirements", kind="OWN")
     row = settings.requirements[-1]
     row.name = STOPPING
     row.x_from, row.x_to = "front + 3.7", f"front + {STOPPING_M}"

@@ -1,12 +1,13 @@
 """States, weathers and stories in the panel: add, remove; show a state, read its motions again."""
 
 import bpy
-from bpy.props import EnumProperty, IntProperty
+from bpy.props import IntProperty
 
 from .. import bridge, film, signals
 from ..engine import motion, pe
-from .declared import RowList, chosen_file, operator
+from .declared import chosen_file, operator
 from .exports import dialog
+from .rows import new_row, row_list, unless_selected
 
 DRAWN = -1
 WEATHERS = (
@@ -17,21 +18,19 @@ WEATHERS = (
     ("NIGHT", "Night", "Cameras see what headlamps light"),
 )
 STARTS = {"RAIN": ("rain_mm_h", 25.0), "SNOW": ("snow_mm_h", 2.5), "FOG": ("fog_mor_m", 100.0)}
-STATE_ROWS = RowList("states", "state_index", "state")
-WEATHER_ROWS = RowList("weathers", "weather_index", "weather")
-STATE_ROWS.operators(remove="Remove the selected state")
-WEATHER_ROWS.operators(remove="Remove the selected weather")
-STORY_ROWS = RowList("stories", "story_index", "story")
-STORY_ROWS.operators(remove="Remove the selected story")
+ANIMATED = "animated"
+STORY_ITEMS = (
+    (ANIMATED, "Own Animation", "Test bodies, as keyframes move them"),
+    *((name, each.title, each.source) for name, each in motion.stories().items()),
+)
 
 
-@operator("Add State of This Frame", signal=signals.study_changed)
-def add_state(context: bpy.types.Context) -> str:
+def add_state(context: bpy.types.Context, _kind: str) -> str:
     """Add the frame that is shown as a state of the vehicle; what has moved is read here"""
     scene, settings = context.scene, context.scene.perception_entropy
     before, frame = settings.state_index, scene.frame_current
     is_drawn = frame == settings.drawn_frame
-    row = STATE_ROWS.add(scene, "As Drawn" if is_drawn else f"Frame {frame}")
+    row = new_row(scene, "states", "As Drawn" if is_drawn else f"Frame {frame}")
     name, row.frame = row.name, frame
     try:
         bridge.read_states(scene)
@@ -64,15 +63,10 @@ def show_state(context: bpy.types.Context, index: int) -> None:
     context.scene.frame_set(frame)
 
 
-@operator(
-    "Add Weather",
-    signal=signals.study_changed,
-    weather=EnumProperty(items=WEATHERS, name="Weather", description="What it starts with"),
-)
 def add_weather(context: bpy.types.Context, weather: str) -> None:
     """Add a weather in which the rig is scored"""
     label = next(label for key, label, _ in WEATHERS if key == weather)
-    row = WEATHER_ROWS.add(context.scene, label)
+    row = new_row(context.scene, "weathers", label)
     row.night = weather == "NIGHT"
     if weather in STARTS:
         setattr(row, *STARTS[weather])
@@ -81,20 +75,20 @@ def add_weather(context: bpy.types.Context, weather: str) -> None:
 STORY_ITEMS = [(name, each.title, each.source) for name, each in motion.stories().items()]
 
 
-@operator(
-    "Add Story",
-    signal=signals.study_changed,
-    story=EnumProperty(items=STORY_ITEMS, name="Story", description="What moves"),
-)
 def add_story(context: bpy.types.Context, story: str) -> None:
     """Add a story of what moves: when is it confirmed, and does the vehicle stop in time?"""
-    row = STORY_ROWS.add(context.scene, story)
+    row = new_row(context.scene, "stories", story)
     name = row.name
     bridge.write_story(row, motion.stories()[story])
     row.name = name
 
 
-@operator("Play", signal=signals.study_changed, unless=STORY_ROWS.unless_selected)
+row_list("states", "state", add=add_state)
+row_list("weathers", "weather", add=add_weather, kinds=WEATHERS)
+row_list("stories", "story", add=add_story, kinds=STORY_ITEMS)
+
+
+@operator("Play", signal=signals.study_changed, unless=unless_selected("stories"))
 def play_story(context: bpy.types.Context) -> None:
     """Play the selected story from its first frame. Again: stop"""
     scene, settings = context.scene, context.scene.perception_entropy
@@ -111,7 +105,7 @@ def play_story(context: bpy.types.Context) -> None:
 
 
 @operator(
-    "Film", unless=STORY_ROWS.unless_selected, **dialog("", lambda _self: f"drive_by{film.WEBM}")
+    "Film", unless=unless_selected("stories"), **dialog("", lambda _self: f"drive_by{film.WEBM}")
 )
 def film_story(context: bpy.types.Context, filepath: str) -> str:
     """Render the selected story as a film (.webm, .mp4), with what the 3D view shows over it"""

@@ -1,19 +1,16 @@
-"""How operators are made: of a function, or of a row of a list; and what they report.
+"""How operators are made of functions, and what they report.
 
 A report is one line in the status bar, whatever the input was.
 """
 
 import inspect
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 import bpy
-from bpy.props import IntProperty
 
 from .. import signals
-from ..choices import free_name
 from ..engine import pe, text
 from ..english import DEFERRED
 from ..panel_text import typeset
@@ -137,99 +134,6 @@ def operator(
         return declared(type(f"PE_OT_{function.__name__}", bl_bases, members_of_class))
 
     return make
-
-
-@dataclass(frozen=True, slots=True)
-class RowList:
-    """A list of the scene's settings: properties of its rows and of the selected row's index.
-    `noun` is what a row is."""
-
-    rows: str
-    index: str
-    noun: str
-    signal: signals.Signal = signals.study_changed
-
-    def operators(
-        self,
-        *,
-        remove: str,
-        copy: str = "",
-        copied: tuple[str, ...] = (),
-        move: str = "",
-        removed: Callable[[bpy.types.Scene, str], None] | None = None,
-    ) -> None:
-        """Declare operators on the selected row, by their tooltips. `copied` are the properties
-        that a copy takes over; `removed` mends what refers to a row of that name."""
-        noun = self.noun.replace(" ", "_")
-
-        def remove_selected(context: bpy.types.Context) -> str:
-            settings, number, _ = self._selected(context)
-            name = remove_row(settings, self.rows, self.index, number)
-            if removed is not None:
-                removed(context.scene, name)
-            return f"Removed {name}"
-
-        def copy_selected(context: bpy.types.Context) -> str:
-            settings, number, rows = self._selected(context)
-            values = {each: getattr(rows[number], each) for each in copied}
-            row = self.add(context.scene, rows[number].name)
-            for each, value in values.items():
-                setattr(row, each, value)
-            name = row.name
-            rows.move(len(rows) - 1, number + 1)
-            setattr(settings, self.index, number + 1)
-            return f"Added {name}"
-
-        def move_selected(context: bpy.types.Context, step: int) -> Answer:
-            settings, number, rows = self._selected(context)
-            if not 0 <= number + step < len(rows):
-                return {"CANCELLED"}
-            rows.move(number, number + step)
-            setattr(settings, self.index, number + step)
-            return None
-
-        step = IntProperty(name="Step", description="-1: up; 1: down", default=-1, min=-1, max=1)
-        given: dict[str, Any] = {"unless": self.unless_selected, "signal": self.signal}
-        rows: tuple[tuple[str, Callable[..., Answer], str, dict[str, Any]], ...] = (
-            ("remove", remove_selected, remove, {}),
-            ("copy", copy_selected, copy, {}),
-            ("move", move_selected, move, {"step": step}),
-        )
-        for verb, function, about, members in rows:
-            if about:
-                function.__name__, function.__doc__ = f"{verb}_{noun}", about
-                operator(f"{verb} {self.noun}".title(), **given, **members)(function)
-
-    def unless_selected(self, context: bpy.types.Context) -> str | None:
-        """Return why nothing can be done with the selected row: there is none."""
-        settings = context.scene.perception_entropy
-        is_there = getattr(settings, self.index) < len(getattr(settings, self.rows))
-        return None if is_there else f"No {self.noun} is selected"
-
-    def add(
-        self, scene: bpy.types.Scene, wanted: str, taken: set[str] | None = None
-    ) -> bpy.types.PropertyGroup:
-        """Add a row, select it, and return it; its name is the wanted one, numbered where taken."""
-        settings = scene.perception_entropy
-        rows = getattr(settings, self.rows)
-        name = free_name(wanted, {row.name for row in rows} if taken is None else taken)
-        row = rows.add()
-        row.name = name
-        setattr(settings, self.index, len(rows) - 1)
-        return row
-
-    def _selected(self, context: bpy.types.Context) -> tuple[bpy.types.PropertyGroup, int, Any]:
-        settings = context.scene.perception_entropy
-        return settings, getattr(settings, self.index), getattr(settings, self.rows)
-
-
-def remove_row(settings: bpy.types.PropertyGroup, rows: str, index: str, number: int) -> str:
-    """Remove a row, select one that is left, and return the name of the removed one."""
-    found = getattr(settings, rows)
-    name = str(found[number].name)
-    found.remove(number)
-    setattr(settings, index, max(0, min(number, len(found) - 1)))
-    return name
 
 
 def report_error(operator: bpy.types.Operator, error: Exception) -> OperatorResult:

@@ -10,8 +10,9 @@ from .. import bridge, signals
 from ..choices import BY_GROUP, BY_PARTS
 from ..engine import catalog, search
 from .add_sensor import select_only
-from .declared import Refused, RowList, chosen_sensor, operator
+from .declared import Refused, chosen_sensor, operator
 from .edit_sensors import NAME
+from .rows import new_row, row_list, unless_selected
 
 IN_A_BOX = "BOX"  # The entry for no mount in the menu of a sensor's mounts
 NO_GO_SIZE_M = 0.25  # Half a side of a no-go area that encloses no part
@@ -21,33 +22,34 @@ _listed: list[tuple[str, str, str]] = []
 """What the menu lists: Blender reads the texts after the function that made them returned."""
 
 
-def _sensors_off(scene: bpy.types.Scene, name: str) -> None:
-    """Take sensors off a mount that was removed."""
+def take_sensors_off(scene: bpy.types.Scene, mount: bpy.types.PropertyGroup) -> None:
+    """Take sensors off a mount that is about to be removed."""
     for obj in bridge.sensor_objects(scene):
-        if obj.perception_entropy.mount == name:
+        if obj.perception_entropy.mount == mount.name:
             obj.perception_entropy.mount = ""
     signals.view_changed.emit()
 
 
-MOUNT_ROWS = RowList("mounts", "mount_index", "mount")
-MOUNT_ROWS.operators(
-    remove="Remove the selected mount; a search then moves its sensors in boxes again",
-    removed=_sensors_off,
-)
-
-
-@operator("Add Mount", signal=signals.view_changed)
-def add_mount(context: bpy.types.Context) -> None:
+def add_mount(context: bpy.types.Context, _kind: str) -> None:
     """Add a surface for sensors: of the vehicle's selected objects, or the group being painted"""
     painted = painted_group(context)
     parts = [] if painted else selected_parts(context)
     name = painted or (parts[0].name if len(parts) == 1 else "Mount")
-    row = MOUNT_ROWS.add(context.scene, name)
+    row = new_row(context.scene, "mounts", name)
     row.faces, row.group = (BY_GROUP, painted) if painted else (BY_PARTS, "")
     _set_parts(row, parts)
 
 
-@operator("Take Selected", unless=MOUNT_ROWS.unless_selected, signal=signals.view_changed)
+row_list(
+    "mounts",
+    "mount",
+    add=add_mount,
+    removing=take_sensors_off,
+    loss="; a search then moves its sensors in boxes again",
+)
+
+
+@operator("Take Selected", unless=unless_selected("mounts"), signal=signals.view_changed)
 def mount_parts(context: bpy.types.Context) -> None:
     """Use all faces of the vehicle's selected objects for this mount"""
     settings, parts = context.scene.perception_entropy, selected_parts(context)

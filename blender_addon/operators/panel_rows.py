@@ -4,89 +4,73 @@ import math
 from itertools import count
 
 import bpy
-from bpy.props import EnumProperty, IntProperty
+from bpy.props import IntProperty
 
-from .. import bridge, signals, vehicle_cache
+from .. import bridge, vehicle_cache
 from ..choices import REGION_ITEMS
 from ..engine import catalog, kinds, pe, search
 from ..properties import DEFAULT_REGION
 from ..sensor_kinds import own_kinds
 from ..view_settings import FITTED
-from .declared import INTERNAL, Refused, RowList, operator
+from .declared import INTERNAL, Refused, operator
+from .rows import new_row, row_list
 
-FOCUS_ROWS = RowList("focus", "focus_index", "focus")
-OWN_ROWS = RowList("own_sensors", "own_index", "own sensor")
-FOCUS_ROWS.operators(remove="Remove the focus that is selected in the list")
-OWN_ROWS.operators(
-    remove="Remove this own sensor; sensors of this model can then no longer be scored"
-)
+REGION_KINDS = tuple(sorted(REGION_ITEMS, key=lambda item: item[0] != DEFAULT_REGION))
+"""Regions of a new focus, the usual one first."""
 
 
-@operator(
-    "Add Focus",
-    signal=signals.study_changed,
-    region=EnumProperty(
-        items=REGION_ITEMS,
-        name="Region",
-        description="Region of the ground",
-        default=DEFAULT_REGION,
-    ),
-)
 def add_focus(context: bpy.types.Context, region: str) -> str:
     """Add a weight for a region, or for some classes of objects"""
     taken = {row.name for row in context.scene.perception_entropy.focus}
     free = next(name for name in (f"Focus {n}" for n in count(1)) if name not in taken)
-    row = FOCUS_ROWS.add(context.scene, free)
+    row = new_row(context.scene, "focus", free)
     row.region = region
     return f"Added {row.name}"
 
 
-@operator(
-    "Add Own Sensor",
-    signal=signals.study_changed,
-    kind=EnumProperty(items=own_kinds, name="Kind", description="Kind of the sensor"),
-)
 def add_own_sensor(context: bpy.types.Context, kind: str) -> None:
     """Define your own sensor: a LiDAR by channels, view and range, or a camera by its pixels"""
     name = f"My {kinds.KINDS[kind].label}"
-    row = OWN_ROWS.add(context.scene, name, set(catalog.entries()))
+    row = new_row(context.scene, "own_sensors", name, set(catalog.entries()))
     row.kind = kind
 
 
-@operator("Own AP Curves")
-def own_curves(context: bpy.types.Context) -> None:
+def add_curves(context: bpy.types.Context, _kind: str) -> None:
     """Set your own AP curves; they start as the curves of each kind"""
     rows = context.scene.perception_entropy.curves
     for name, kind in kinds.KINDS.items():
         if name not in rows:
             row = rows.add()
-            row.name, row.a, row.b = name, kind.curve.a, kind.curve.b
+            row.name = name
+            row.a = kind.curve.a
+            row.b = kind.curve.b
 
 
-def _unless_sensor(context: bpy.types.Context) -> str | None:
+def of_sensor(context: bpy.types.Context) -> bpy.types.PropertyGroup:
+    """Return the settings of the selected sensor. `Refused` where none is selected."""
     obj = context.active_object
-    return "Select a sensor" if obj is None or not obj.perception_entropy.is_sensor else None
+    if obj is None or not obj.perception_entropy.is_sensor:
+        raise Refused("Select a sensor")
+    return obj.perception_entropy
 
 
-@operator("Add Model", unless=_unless_sensor)
-def add_option(context: bpy.types.Context) -> None:
+def add_option(context: bpy.types.Context, _kind: str) -> None:
     """Add a model to the choices for this sensor: first its own model, then others"""
-    settings = context.active_object.perception_entropy
-    first = not settings.options
-    settings.options.add().model = settings.model if first else ""
+    settings = of_sensor(context)
+    is_first = not settings.options
+    settings.options.add().model = settings.model if is_first else ""
 
 
-@operator(
-    "Remove Model",
-    unless=_unless_sensor,
-    index=IntProperty(name="Index", description="Position of the model in the list", min=0),
+row_list("focus", "focus", add=add_focus, kinds=REGION_KINDS)
+row_list(
+    "own_sensors",
+    "own sensor",
+    add=add_own_sensor,
+    kinds=lambda: [(name, label, about) for name, label, about, *_ in own_kinds(None, None)],
+    loss="; sensors of this model can then no longer be scored",
 )
-def remove_option(context: bpy.types.Context, index: int) -> None:
-    """Remove this model from the choices"""
-    options = context.active_object.perception_entropy.options
-    if index >= len(options):
-        raise Refused("This model was already removed")
-    options.remove(index)
+row_list("curves", "AP curve", add=add_curves)
+row_list("options", "model", add=add_option, owner=of_sensor)
 
 
 BOUND_REACH = (0.5, 10.0)

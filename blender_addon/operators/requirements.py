@@ -1,15 +1,14 @@
 """Requirements in the panel: add a preset or an own one, remove, order."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import bpy
-from bpy.props import EnumProperty
 
-from .. import bridge, signals, vehicle_cache
+from .. import bridge, vehicle_cache
 from ..engine import requirements, studies, wording
 from ..overlay.layer_cache import shown_of
 from ..overlay.requirement_zones import VerdictShape
-from .declared import OperatorResult, RowList, operator
+from .rows import new_row, row_list
 
 OWN, ALL = "OWN", "ALL"
 PRESETS = (
@@ -31,27 +30,6 @@ class ShownVerdict(NamedTuple):
     preview: bool = False
 
 
-ROWS = RowList("requirements", "requirement_index", "requirement")
-ROWS.operators(
-    remove="Remove the requirement that is selected in the list",
-    copy="Add a copy of the selected requirement below it",
-    copied=("table", "enabled"),
-    move="Move the selected requirement in the list: tables and pages have this order",
-)
-
-
-def _search(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
-    context.window_manager.invoke_search_popup(self)
-    return {"RUNNING_MODAL"}
-
-
-@operator(
-    "Add Requirement",
-    signal=signals.study_changed,
-    bl_property="preset",
-    invoke=_search,
-    preset=EnumProperty(items=PRESETS, name="Preset", description="What has to be met"),
-)
 def add_requirement(context: bpy.types.Context, preset: str) -> str:
     """Hold the rig to a requirement: a preset with its source, or one of your own"""
     scene = context.scene
@@ -76,11 +54,32 @@ def add_requirement(context: bpy.types.Context, preset: str) -> str:
 
 def _add(scene: bpy.types.Scene, made: requirements.Requirement, wanted: str) -> str:
     """Add a row with a requirement; return the name that it got."""
-    row = ROWS.add(scene, wanted)
+    row = new_row(scene, "requirements", wanted)
     name = row.name
     bridge.write_row(row, made)
     row.name = name
     return name
+
+
+def copy_requirement(context: bpy.types.Context, source: bpy.types.PropertyGroup) -> str:
+    """Add a requirement with the table of another one; return its name."""
+    name = source.name
+    table = source.table
+    is_used = source.enabled
+    row = new_row(context.scene, "requirements", name)
+    row.table = table
+    row.enabled = is_used
+    return str(row.name)
+
+
+row_list(
+    "requirements",
+    "requirement",
+    add=add_requirement,
+    kinds=PRESETS,
+    copy=copy_requirement,
+    is_ordered=True,
+)
 
 
 def shown_verdicts(scene: bpy.types.Scene) -> dict[str, ShownVerdict]:

@@ -1,4 +1,4 @@
-"""Operators of variants: save, update, switch, duplicate, delete, show as a ghost."""
+"""Operators of variants: save, update, switch, show as a ghost; and their list."""
 
 import contextlib
 from collections.abc import Callable
@@ -10,7 +10,8 @@ from bpy.props import IntProperty
 from .. import bridge, diagnostics, result_staleness, signals
 from ..choices import BEFORE_MOVE, free_name
 from ..engine import pe
-from .declared import INTERNAL, UNDO, operator, remove_row
+from .declared import INTERNAL, UNDO, operator
+from .rows import row_list
 
 UNSAVED = "Unsaved"
 KEY = IntProperty(
@@ -89,30 +90,35 @@ def switch_variant(scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> 
     return f"Switched to {variant.name}{f'; what was here is kept as {kept}' if kept else ''}"
 
 
-@of_variant("Duplicate Variant")
-def duplicate_variant(scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> str:
-    """Add a copy of the selected variant"""
-    source, name = variant.key, variant.name
-    copy = bridge.add_variant(scene, _free(scene, name), bridge.records_of(variant))
-    settings = scene.perception_entropy
-    original = next(row for row in settings.variants if row.key == source)
-    bridge.copy_score(original, copy)
-    settings.variant_index = len(settings.variants) - 1
-    return f"{name} is copied as {copy.name}"
+def copy_variant(context: bpy.types.Context, source: bpy.types.PropertyGroup) -> str:
+    """Add a copy of a variant with its score; return its name."""
+    scene = context.scene
+    key = source.key
+    made = bridge.add_variant(scene, _free(scene, source.name), bridge.records_of(source))
+    original = next(row for row in scene.perception_entropy.variants if row.key == key)
+    bridge.copy_score(original, made)
+    return str(made.name)
 
 
-@of_variant("Delete Variant")
-def delete_variant(scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> str:
-    """Delete the selected variant. The sensors in the scene stay"""
+def forget_variant(scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> None:
+    """Remove what refers to a variant that is about to be removed. The scene's sensors stay."""
     settings = scene.perception_entropy
-    number = [row.key for row in settings.variants].index(variant.key)
     if variant.key == settings.view.ghost_key:
         settings.view.ghost_key = 0
     if variant.key == settings.live.against:
         settings.live.against = BEFORE_MOVE
     if variant.key == settings.variant_key:
-        settings.variant_key, settings.variant_changed = 0, False
-    return f"Deleted {remove_row(settings, 'variants', 'variant_index', number)}"
+        settings.variant_key = 0
+        settings.variant_changed = False
+
+
+row_list(
+    "variants",
+    "variant",
+    copy=copy_variant,
+    removing=forget_variant,
+    loss=". The sensors in the scene stay",
+)
 
 
 @of_variant("Show Ghost", options=INTERNAL)

@@ -35,8 +35,7 @@ def weathers_rows(_context: Context, layout: UILayout, _settings: Any, item: Any
 @panel("Conditions", bl_ui_units_x=17)
 def conditions(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """States of the vehicle and weathers in which the rig is scored, too"""
-    names, buttons = ("states", "state_index"), ("pe.add_state", "pe.remove_state")
-    draw_list(layout, states_rows, settings, names, buttons)
+    draw_list(layout, states_rows, settings, "states")
     if settings.states:
         row = layout.row(align=True)
         row.operator("pe.show_state", text="Show as Drawn", icon="LOOP_BACK").index = -1
@@ -44,8 +43,7 @@ def conditions(layout: UILayout, settings: PropertyGroup, context: Context) -> N
         draw_properties(layout, settings, ("drawn_frame",))
     else:
         draw_sentence(layout, context, "Pose the vehicle at another frame, then add the frame")
-    names, buttons = ("weathers", "weather_index"), ("pe.add_weather", "pe.remove_weather")
-    draw_list(layout, weathers_rows, settings, names, buttons, menu="weather")
+    draw_list(layout, weathers_rows, settings, "weathers")
     if settings.weather_index < len(settings.weathers):
         draw_declared(layout, settings.weathers[settings.weather_index], "weather")
     if settings.states or settings.weathers:
@@ -73,8 +71,7 @@ def stories_rows(_context: Context, layout: UILayout, _settings: Any, item: Any)
 @panel("Seen in Time", bl_ui_units_x=17)
 def seen_in_time(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """Stories of what moves: when a track is confirmed, and whether the vehicle stops in time"""
-    names, buttons = ("stories", "story_index"), ("pe.add_story", "pe.remove_story")
-    draw_list(layout, stories_rows, settings, names, buttons, menu="story")
+    draw_list(layout, stories_rows, settings, "stories")
     if settings.stories:
         row = layout.row(align=True)
         row.operator("pe.check_requirements", text="Check", icon="VIEWZOOM")

@@ -12,9 +12,9 @@ from bpy.types import Context, PropertyGroup, UILayout
 
 from ..engine import advice
 from ..live import SAME, SENSE_ICONS
-from ..operators import FIX_LABELS
+from ..operators import FIX_LABELS, MENU_LENGTH, ROW_LISTS
 from ..panel_text import draw_label, is_simple, worded
-from ..properties import ROWS, DeclaredRow, declared_rows
+from ..properties import INDEX_OF, ROWS, DeclaredRow, declared_rows
 from ..sensor_cache import sensors as listed_sensors
 
 DrawPanel = Callable[[UILayout, PropertyGroup, Context], None]
@@ -157,25 +157,39 @@ def draw_list(
     layout: UILayout,
     kind: type[bpy.types.UIList],
     settings: PropertyGroup,
-    names: tuple[str, str],
-    buttons: tuple[str, str],
-    rows: int = 3,
-    menu: str = "",
-) -> UILayout:
-    """Draw a list with the buttons Add and Remove beside it; return the column of buttons. `names`
-    are the properties of the rows and of the selected row's index, `buttons` the operators; `menu`
-    is the property of the first that a menu asks for."""
+    name: str,
+    height: int = 3,
+    add: str = "pe.add_row",
+) -> None:
+    """Draw the list of some rows, by their property, with its buttons beside it. `add` is the
+    operator that adds a row, where that has a button of its own."""
     row = layout.row()
     row.use_property_split = False
-    row.template_list(kind.__name__, "", settings, names[0], settings, names[1], rows=rows)
+    row.template_list(kind.__name__, "", settings, name, settings, INDEX_OF[name], rows=height)
     column = row.column(align=True)
-    add, remove = buttons
-    if menu:
-        column.operator_menu_enum(add, menu, text="", icon="ADD")
-    else:
+    rows = ROW_LISTS[name]
+    if rows.add is None:
         column.operator(add, text="", icon="ADD")
-    column.operator(remove, text="", icon="REMOVE")
-    return column
+    else:
+        draw_add(column, name)
+    below = column.column(align=True)
+    below.enabled = getattr(settings, INDEX_OF[name]) < len(getattr(settings, name))
+    below.operator("pe.remove_row", text="", icon="REMOVE").rows = name
+    if rows.copy is not None:
+        below.operator("pe.copy_row", text="", icon="DUPLICATE").rows = name
+    for step, icon in ((-1, "TRIA_UP"), (1, "TRIA_DOWN")) if rows.is_ordered else ():
+        move = below.operator("pe.move_row", text="", icon=icon)
+        move.rows = name
+        move.step = step
+
+
+def draw_add(layout: UILayout, name: str, text: str = "") -> None:
+    """Draw the button that adds a row to a list: a menu of kinds, where these are few."""
+    if 0 < len(ROW_LISTS[name].kinds_now()) <= MENU_LENGTH:
+        button = layout.operator_menu_enum("pe.add_row", "kind", text=text, icon="ADD")
+    else:
+        button = layout.operator("pe.add_row", text=text, icon="ADD")
+    button.rows = name
 
 
 def draw_stale_mark(layout: UILayout, settings: PropertyGroup) -> None:

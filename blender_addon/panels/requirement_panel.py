@@ -19,8 +19,6 @@ from .layout import (
 )
 from .score_details import draw_offers
 
-ADD_REMOVE = ("pe.add_requirement", "pe.remove_requirement")
-
 BELOW_SCALE = 0.75
 """Height of a requirement's second line, with its regulation and its figure."""
 ICONS = {True: "CHECKMARK", False: "CANCEL", None: "QUESTION"}
@@ -61,11 +59,7 @@ def _requirements_header(layout: UILayout, context: Context) -> None:
 @panel("Requirements", simple=True, bl_ui_units_x=17, preset=_requirements_header)
 def requirements(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """Zones in which test bodies have to be seen: met or not, and by which margin"""
-    names, operators = ("requirements", "requirement_index"), ADD_REMOVE
-    buttons = draw_list(layout, requirements_rows, settings, names, operators, rows=4)
-    buttons.operator("pe.copy_requirement", text="", icon="DUPLICATE")
-    for step, icon in ((-1, "TRIA_UP"), (1, "TRIA_DOWN")):
-        buttons.operator("pe.move_requirement", text="", icon=icon).step = step
+    draw_list(layout, requirements_rows, settings, "requirements", height=4)
     if not settings.requirements:
         draw_sentence(layout, context, "Add a preset of a regulation or test, or an own zone")
         return

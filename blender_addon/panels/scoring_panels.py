@@ -9,6 +9,7 @@ from ..panel_text import draw_label
 from ..sensor_kinds import kind_label, row_of
 from .layout import (
     columns,
+    draw_add,
     draw_declared,
     draw_list,
     draw_properties,
@@ -46,8 +47,7 @@ def focus_rows(_context: Context, layout: UILayout, _settings: Any, item: Any) -
 @panel("Focus", count="focus")
 def focus(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
     """Regions and classes with a weight of their own"""
-    names, buttons = ("focus", "focus_index"), ("pe.add_focus", "pe.remove_focus")
-    draw_list(layout, focus_rows, settings, names, buttons)
+    draw_list(layout, focus_rows, settings, "focus")
     if settings.focus_index < len(settings.focus):
         focus = settings.focus[settings.focus_index]
         draw_properties(layout, focus, ("factor", "region"))
@@ -67,8 +67,7 @@ def own_sensors_rows(_context: Context, layout: UILayout, _settings: Any, item: 
 def advanced(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """Settings that are rarely changed: own sensors, AP curves, space, clearance"""
     draw_label(layout, "Own Sensors")
-    names, buttons = ("own_sensors", "own_index"), ("pe.add_own_sensor", "pe.remove_own_sensor")
-    draw_list(layout, own_sensors_rows, settings, names, buttons, rows=2, menu="kind")
+    draw_list(layout, own_sensors_rows, settings, "own_sensors", height=2)
     if settings.own_index < len(settings.own_sensors):
         sensor = settings.own_sensors[settings.own_index]
         draw_properties(layout.column(), sensor, ("kind", *row_of(sensor.kind).own_fields))
@@ -76,7 +75,7 @@ def advanced(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
             draw_sentence(layout, context, sensor.problem, icon="ERROR")
     draw_label(layout, "AP = a ln m - c ln R + b")
     if not settings.curves:
-        layout.operator("pe.own_curves")
+        draw_add(layout, "curves", "Own AP Curves")
     for curve in settings.curves:
         layout.prop(curve, "own", text=kind_label(curve.name), translate=False)
         numbers = layout.row(align=True)

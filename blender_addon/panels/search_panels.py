@@ -42,8 +42,7 @@ def mounts_rows(_context: Context, layout: UILayout, _settings: Any, item: Any) 
 @panel("Mounts", simple=True, parent="PE_PT_search", count="mounts")
 def mounts(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
     """Where sensors may be mounted: surfaces of the vehicle, or slots of a rack"""
-    names, buttons = ("mounts", "mount_index"), ("pe.add_mount", "pe.remove_mount")
-    draw_list(layout, mounts_rows, settings, names, buttons)
+    draw_list(layout, mounts_rows, settings, "mounts")
     if settings.mount_index < len(settings.mounts):
         draw_mount(layout, settings.mounts[settings.mount_index])
 

@@ -10,6 +10,7 @@ from ..operators import menu_of_rigs, reference_label
 from ..panel_text import draw_label
 from .layout import (
     columns,
+    draw_add,
     draw_declared,
     draw_list,
     draw_properties,
@@ -48,10 +49,7 @@ def variants(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
         layout.menu(PE_MT_known_rigs.bl_idname, icon="AUTO")
         draw_text(layout)
         return
-    names, operators = ("variants", "variant_index"), ("pe.save_variant", "pe.delete_variant")
-    buttons = draw_list(layout, variants_rows, settings, names, operators, rows=4)
-    buttons.separator()
-    buttons.operator("pe.duplicate_variant", text="", icon="DUPLICATE")
+    draw_list(layout, variants_rows, settings, "variants", height=4, add="pe.save_variant")
     draw_state(layout, settings)
     if settings.view.ghost_key:
         row = layout.row(align=True)
@@ -152,11 +150,13 @@ def draw_options(layout: UILayout, obj: Object) -> None:
         model, price = columns(column, 0.66)
         model.prop(option, "model", text="")
         price.prop(option, "price", text="")
-        price.operator("pe.remove_option", text="", icon="REMOVE", emboss=False).index = number
+        remove = price.operator("pe.remove_row", text="", icon="REMOVE", emboss=False)
+        remove.rows = "options"
+        remove.index = number
         row = column.row(align=True)
         for name in ("mass", "power", "data_rate"):
             row.prop(option, name)
-    column.operator("pe.add_option", icon="ADD")
+    draw_add(column, "options", "Add Model")
     if settings.options:
         layout.prop(settings, "may_be_left_out")
 

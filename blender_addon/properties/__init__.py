@@ -24,7 +24,7 @@ from .list_rows import (
     PE_Weather,
 )
 from .requirement import PE_Requirement
-from .scene import PE_SceneSettings
+from .scene import INDEX_OF, PE_SceneSettings
 from .sensor import AXIS_LABELS, FREE_BY_DEFAULT, PE_ObjectSettings
 from .view import PE_LiveSettings, PE_ViewSettings
 

@@ -48,6 +48,8 @@ LISTS = (
 )
 """Lists of rows: the properties of the rows and of the selected row's place, what they are, and a
 row's group."""
+INDEX_OF = {name: index for name, index, *_ in LISTS}
+"""The property of the selected row's place, by that of the rows."""
 
 
 def _lists() -> Any:

@@ -33,6 +33,7 @@ class Layout:
 
     def operator_menu_enum(self, name, _property, **_):
         self.notes.append(("menu", name))
+        return SimpleNamespace()
 
     def template_list(self, name, *_lists, **_):
         self.notes.append(("list", name))

@@ -96,9 +96,9 @@ def seen_rig(car) -> bpy.types.Scene:
         setattr(view, f"show_{layer.name}", True)
     view.beams_of = "ALL"
     car.perception_entropy.axles_known = True
-    bpy.ops.pe.add_focus(region="front")
-    bpy.ops.pe.add_requirement(preset="OWN")
-    bpy.ops.pe.add_story(story="cyclist_from_right")
+    bpy.ops.pe.add_row(rows="focus", kind="front")
+    bpy.ops.pe.add_row(rows="requirements", kind="OWN")
+    bpy.ops.pe.add_row(rows="stories", kind="cyclist_from_right")
     return car
 
 

@@ -14,7 +14,7 @@ from tests.addon import scenes
 
 def add_own(kind="lidar", **figures):
     """Return a new own sensor of the scene."""
-    assert bpy.ops.pe.add_own_sensor(kind=kind) == {"FINISHED"}
+    assert bpy.ops.pe.add_row(rows="own_sensors", kind=kind) == {"FINISHED"}
     row = bpy.context.scene.perception_entropy.own_sensors[-1]
     for name, value in figures.items():
         setattr(row, name, value)
@@ -38,7 +38,7 @@ def full(car):
     settings = car.perception_entropy
     add_own(channels=16, elevations=(-15.0, 15.0), max_range=90.0)
     scenes.add_sensor("bumper", model="My LiDAR", location=(2.2, 0.0, 0.6))
-    bpy.ops.pe.own_curves()
+    bpy.ops.pe.add_row(rows="curves")
     settings.curves["lidar"].own, settings.curves["lidar"].a = True, 0.2
     settings.space_x, settings.space_interval, settings.clearance = (-20.0, 40.0), 0.2, 0.05
     bounds = bpy.data.objects["roof"].perception_entropy

@@ -64,7 +64,7 @@ def test_the_scene_shows_the_variant_whose_ghost_is_on(two):
     bpy.ops.pe.ghost_variant(key=key)
     assert "ghosts" not in scenes.drawn(two)
     bpy.ops.pe.ghost_variant(key=key)
-    bpy.ops.pe.delete_variant(key=key)
+    bpy.ops.pe.remove_row(rows="variants")
     assert "ghosts" not in scenes.drawn(two)
 
 

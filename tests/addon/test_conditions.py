@@ -55,13 +55,13 @@ def car(scene):
 
 def add_open_state(scene):
     scene.frame_set(OPEN_FRAME)
-    assert bpy.ops.pe.add_state() == {"FINISHED"}
+    assert bpy.ops.pe.add_row(rows="states") == {"FINISHED"}
     scene.perception_entropy.states[-1].name = "door open"
     scene.frame_set(1)
 
 
 def test_a_frame_is_a_state_and_its_motions_are_those_of_the_hinge(car):
-    bpy.ops.pe.add_state()
+    bpy.ops.pe.add_row(rows="states")
     add_open_state(car)
     drawn, opened = car.perception_entropy.states
     assert (drawn.name, drawn.frame, json.loads(drawn.table)) == ("As Drawn", 1, {})
@@ -102,7 +102,7 @@ def test_a_part_that_bends_is_refused_by_name(car):
     body.keyframe_insert("scale", frame=OPEN_FRAME)
     car.frame_set(OPEN_FRAME)
     with pytest.raises(RuntimeError, match="part 'body': expected a rigid motion"):
-        bpy.ops.pe.add_state()
+        bpy.ops.pe.add_row(rows="states")
     assert not car.perception_entropy.states and car.frame_current == OPEN_FRAME
 
 

@@ -25,7 +25,7 @@ LABELS = "class,x,y,z,length,width,height,yaw\ncar,20,3,0.8,4,2,1.6,0\ntram,-30,
 
 def add_focus(scene, region="front", **settings) -> bpy.types.PropertyGroup:
     """Return a new row of the list; settings are its properties."""
-    assert bpy.ops.pe.add_focus(region=region) == {"FINISHED"}
+    assert bpy.ops.pe.add_row(rows="focus", kind=region) == {"FINISHED"}
     row = scene.perception_entropy.focus[-1]
     for key, value in settings.items():
         setattr(row, key, value)
@@ -41,7 +41,7 @@ def labels(tmp_path):
 
 
 def test_new_row_doubles_the_front_for_all_classes(scene):
-    assert bpy.ops.pe.add_focus() == {"FINISHED"}
+    assert bpy.ops.pe.add_row(rows="focus") == {"FINISHED"}
     (row,) = scene.perception_entropy.focus
     assert (row.name, row.factor, row.region) == ("Focus 1", 2.0, "front")
     assert row.classes == set(CLASSES)

@@ -93,7 +93,7 @@ def test_numbers_at_their_limits(small, tmp_path):
         else:
             said_by(bpy.ops.pe.optimize)
         setattr(settings, name, before)
-    bpy.ops.pe.add_focus(region="custom")
+    bpy.ops.pe.add_row(rows="focus", kind="custom")
     (focus,) = small.perception_entropy.focus
     for focus.factor in FACTORS:
         said = score_and_export(tmp_path)
@@ -105,7 +105,7 @@ def test_numbers_at_their_limits(small, tmp_path):
         said = score_and_export(tmp_path)
         if not bounds[0] < bounds[1]:
             assert all("focus 1 (Focus 1): x: expected two" in line for line in said)
-    bpy.ops.pe.remove_focus()
+    bpy.ops.pe.remove_row(rows="focus")
     assert said_by(bpy.ops.pe.score) is None
 
 
@@ -121,7 +121,7 @@ def test_names(small, tmp_path, what, kind):
     elif what == "part":
         small.objects["body"].name = name
     elif what == "focus":
-        bpy.ops.pe.add_focus()
+        bpy.ops.pe.add_row(rows="focus")
         small.perception_entropy.focus[0].name = name
         small.perception_entropy.focus[0].factor = math.nan  # so that its name is told
     elif what == "boxes":

@@ -144,7 +144,7 @@ def test_a_variant_is_what_it_is_compared_with(live):
     bpy.ops.pe.update_variant()
     rest()
     assert told(reading(live).before) == told(exact()) != told(start)
-    bpy.ops.pe.delete_variant()
+    bpy.ops.pe.remove_row(rows="variants")
     rest()
     assert reading(live).baseline is None or reading(live).baseline.label != "Variant"
 

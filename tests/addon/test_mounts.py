@@ -122,12 +122,12 @@ def test_a_mount_is_added_of_what_is_selected_or_painted(car):
     bpy.ops.object.select_all(action="DESELECT")
     cabin.select_set(True)
     bpy.context.view_layer.objects.active = cabin
-    assert bpy.ops.pe.add_mount() == {"FINISHED"}
+    assert bpy.ops.pe.add_row(rows="mounts") == {"FINISHED"}
     row = car.perception_entropy.mounts[0]
     assert row.name == "cabin" and [each.part for each in row.parts] == [cabin]
     cabin.vertex_groups.new(name="painted")
     bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
-    assert bpy.ops.pe.add_mount() == {"FINISHED"}
+    assert bpy.ops.pe.add_row(rows="mounts") == {"FINISHED"}
     bpy.ops.object.mode_set(mode="OBJECT")
     row = car.perception_entropy.mounts[1]
     assert (row.name, row.faces, row.group) == ("painted", "GROUP", "painted")

@@ -38,10 +38,10 @@ def told(scene):
 
 
 def test_panel_headless_and_pe_agree_to_the_bit(parked, tmp_path):
-    bpy.ops.pe.add_state()
+    bpy.ops.pe.add_row(rows="states")
     add_open_state(parked)
-    bpy.ops.pe.add_weather(weather="CLEAR")
-    bpy.ops.pe.add_weather(weather="RAIN")
+    bpy.ops.pe.add_row(rows="weathers", kind="CLEAR")
+    bpy.ops.pe.add_row(rows="weathers", kind="RAIN")
     parked.perception_entropy.weathers[1].weight = 0.1
     parked.frame_set(OPEN_FRAME)  # what is shown does not matter: all score the vehicle as drawn
     assert bpy.ops.pe.score() == {"FINISHED"}

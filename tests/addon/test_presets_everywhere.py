@@ -76,7 +76,7 @@ def test_all_presets_have_the_same_bits_everywhere(vehicle, tmp_path):
     assert json.loads(headless.stdout) == json.loads(alone.stdout)
     found = json.loads(headless.stdout)
     verdicts = {each["preset"]: each for each in found["requirements"]}
-    assert bpy.ops.pe.add_requirement(preset="ALL") == {"FINISHED"}
+    assert bpy.ops.pe.add_row(rows="requirements", kind="ALL") == {"FINISHED"}
     assert bpy.ops.pe.check_requirements() == {"FINISHED"}
     rows = {bridge.preset_of(r): r for r in bpy.context.scene.perception_entropy.requirements}
     assert rows.keys() == verdicts.keys()

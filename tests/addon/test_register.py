@@ -120,7 +120,7 @@ def test_a_change_is_reported_to_those_who_listen(car, heard):
     settings.score_samples = 10
     assert heard == ["picture", "study"]
     car.objects["roof"].perception_entropy.model = "Pandar40"
-    bpy.ops.pe.add_focus()
+    bpy.ops.pe.add_row(rows="focus")
     assert len(heard) > 3 and set(heard[2:]) == {"study"}
 
 

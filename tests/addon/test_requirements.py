@@ -25,7 +25,7 @@ def held(car):
     settings.score_samples = 4096
     settings.requirements.clear()
     for preset in ("ncap26_reverse_static", "OWN", "OWN"):
-        assert bpy.ops.pe.add_requirement(preset=preset) == {"FINISHED"}
+        assert bpy.ops.pe.add_row(rows="requirements", kind=preset) == {"FINISHED"}
     settings.requirements[1].zone = AHEAD
     settings.requirements[2].zone = AHEAD.replace("front", "rear")
     settings.requirements[2].kinds = 2

@@ -19,8 +19,8 @@ LABELS = "class,x,y,z,length,width,height,yaw\ncar,20,3,0.8,4,2,1.6,30\n"
 def focus_on_boxes(settings, folder):
     (folder / "labels.csv").write_text(LABELS)
     settings.prior, settings.boxes = "boxes", str(folder / "labels.csv")
-    bpy.ops.pe.add_focus(region="far")
-    bpy.ops.pe.add_focus(region="custom")
+    bpy.ops.pe.add_row(rows="focus", kind="far")
+    bpy.ops.pe.add_row(rows="focus", kind="custom")
     settings.focus[1].x_range, settings.focus[1].classes = (0.1, 33.3), {"car"}
 
 
@@ -34,7 +34,7 @@ def returns_of_the_road(settings, folder):
 
 
 def curve_with_a_range_term_and_the_floor(settings, _):
-    bpy.ops.pe.own_curves()
+    bpy.ops.pe.add_row(rows="curves")
     settings.curves["lidar"].own, settings.curves["lidar"].c = True, 0.25
 
 

@@ -92,7 +92,7 @@ def rich(car):
     settings.space_x, settings.space_interval, settings.clearance = (-40.0, 40.0), 0.2, 0.03
     settings.space_y, settings.space_z = (-20.0, 20.0), (0.0, 3.0)
     settings.prior, settings.returns = "highway", "road"
-    assert bpy.ops.pe.add_focus(region="front") == {"FINISHED"}
+    assert bpy.ops.pe.add_row(rows="focus", kind="front") == {"FINISHED"}
     settings.targets, settings.traffic, settings.scenes = "objects", True, 24
     settings.ap_model = "scans"
     curve = settings.curves.add()
@@ -107,7 +107,7 @@ def rich(car):
     settings.time_text = '{"noises": {"car": 1.0}, "rates": {"camera": 30.0}}'
     settings.time_frames, settings.time_q, settings.time_rate_hz = 5, 2.0, 20.0
     settings.track_needed, settings.track_window, settings.track_correlation = 2, 4, 0.5
-    bpy.ops.pe.add_story(story="cut_in")
+    bpy.ops.pe.add_row(rows="stories", kind="cut_in")
     settings.stories[0].speed_kmh = 50.0
     settings.max_price, settings.max_sensors, settings.currency = 9000.0, 9, "EUR"
     scenes.add_mount(car, "cabin", bpy.data.objects["cabin"], standoff=0.04, orientation="normal")
@@ -147,11 +147,11 @@ def rich(car):
     own.stays = True
     settings.front_objectives = {"entropy", "height"}
     settings.start_poses = '[["other", {"eye": [2.1, 0.0, 1.1, 0.0, 0.0, 0.0]}]]'
-    bpy.ops.pe.add_state()
-    bpy.ops.pe.add_weather(weather="FOG")
+    bpy.ops.pe.add_row(rows="states")
+    bpy.ops.pe.add_row(rows="weathers", kind="FOG")
     settings.search_conditions = "worst"
     settings.keep_requirements, settings.objective = True, "expected_ap"
-    assert bpy.ops.pe.add_requirement(preset="r158_camera") == {"FINISHED"}
+    assert bpy.ops.pe.add_row(rows="requirements", kind="r158_camera") == {"FINISHED"}
     set_what_is_by_default(settings)
     scenes.add_sensor("hidden", CAN, location=(0.0, 0.0, 3.0)).hide_set(True)
     bpy.context.view_layer.update()

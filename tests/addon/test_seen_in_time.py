@@ -28,8 +28,8 @@ def car(addon):
 
 def test_a_story_is_added_checked_and_shown(car):
     settings = car.perception_entropy
-    assert bpy.ops.pe.add_story(story="cyclist_from_right") == {"FINISHED"}
-    assert bpy.ops.pe.add_story(story="crossing_child") == {"FINISHED"}
+    assert bpy.ops.pe.add_row(rows="stories", kind="cyclist_from_right") == {"FINISHED"}
+    assert bpy.ops.pe.add_row(rows="stories", kind="crossing_child") == {"FINISHED"}
     settings.stories[0].speed_kmh = 20.0
     study = scenes.study()
     assert [each.name for each in study.stories] == ["cyclist_from_right", "crossing_child"]
@@ -43,13 +43,13 @@ def test_a_story_is_added_checked_and_shown(car):
     assert ("prop", "speed_kmh") in drawn.notes and ("prop", "track_needed") in drawn.notes
     settings.stories[1].enabled = False
     assert len(scenes.study().stories) == 1
-    bpy.ops.pe.remove_story()
+    bpy.ops.pe.remove_row(rows="stories")
     assert len(settings.stories) == 1
 
 
 def test_a_change_of_a_story_makes_the_figures_of_variants_stale(car):
     settings = car.perception_entropy
-    bpy.ops.pe.add_story(story="cyclist_from_right")
+    bpy.ops.pe.add_row(rows="stories", kind="cyclist_from_right")
     bpy.ops.pe.save_variant()
     bpy.data.objects["roof"].location.x += 0.25
     bpy.ops.pe.save_variant()
@@ -60,7 +60,7 @@ def test_a_change_of_a_story_makes_the_figures_of_variants_stale(car):
 
 
 def test_the_3d_view_shows_what_a_check_says(car):
-    bpy.ops.pe.add_story(story="cyclist_from_right")
+    bpy.ops.pe.add_row(rows="stories", kind="cyclist_from_right")
     (item,) = scenes.drawn(car)["story"].values()
     driven = scenes.study().drive_by(scenes.study().stories[0])
     moment = driven.bodies[0].moments[0.9]

@@ -83,7 +83,7 @@ def test_place_score_optimize_check_and_export(scene, tmp_path, small_pictures):
     assert poses() == found and settings.result.entropy == pytest.approx(expected.after.entropy)
 
     # Check: rows of verdicts are the engine's.
-    bpy.ops.pe.add_requirement(preset="OWN")
+    bpy.ops.pe.add_row(rows="requirements", kind="OWN")
     assert bpy.ops.pe.check_requirements() == {"FINISHED"}
     (verdict,) = scenes.study().verdicts()
     (row,) = settings.requirements
@@ -144,7 +144,7 @@ def test_import_rigs_and_compare_them(car, tmp_path):
 
     # Compared: each is scored as if it stood there, and nothing in the scene moves.
     for name in [row.name for row in settings.variants if row.name not in ("Unsaved", "KITTI")]:
-        bpy.ops.pe.delete_variant(key=settings.variants[name].key)
+        bpy.ops.pe.remove_row(rows="variants", index=settings.variants.find(name))
     start, study = poses(), scenes.study()
     assert bpy.ops.pe.compare_variants() == {"FINISHED"} and poses() == start
     shown, table = compare_variants.comparison_of(car)
@@ -224,12 +224,21 @@ def test_undo_save_and_reload(car, tmp_path):
     # Each act is one step of undo.
     acts = (
         (lambda: bpy.ops.pe.add_sensor("EXEC_DEFAULT", True, model="Camera 60 deg"), "sensors"),
-        (lambda: bpy.ops.pe.add_focus("EXEC_DEFAULT", True, region="front"), "focus"),
-        (lambda: bpy.ops.pe.add_weather("EXEC_DEFAULT", True, weather="RAIN"), "weathers"),
-        (lambda: bpy.ops.pe.add_state("EXEC_DEFAULT", True), "states"),
-        (lambda: bpy.ops.pe.add_requirement("EXEC_DEFAULT", True, preset="OWN"), "requirements"),
+        (lambda: bpy.ops.pe.add_row("EXEC_DEFAULT", True, rows="focus", kind="front"), "focus"),
+        (
+            lambda: bpy.ops.pe.add_row("EXEC_DEFAULT", True, rows="weathers", kind="RAIN"),
+            "weathers",
+        ),
+        (lambda: bpy.ops.pe.add_row("EXEC_DEFAULT", True, rows="states"), "states"),
+        (
+            lambda: bpy.ops.pe.add_row("EXEC_DEFAULT", True, rows="requirements", kind="OWN"),
+            "requirements",
+        ),
         (lambda: bpy.ops.pe.save_variant("EXEC_DEFAULT", True), "variants"),
-        (lambda: bpy.ops.pe.add_own_sensor("EXEC_DEFAULT", True, kind="lidar"), "own_sensors"),
+        (
+            lambda: bpy.ops.pe.add_row("EXEC_DEFAULT", True, rows="own_sensors", kind="lidar"),
+            "own_sensors",
+        ),
     )
 
     def count(what) -> int:
@@ -317,20 +326,20 @@ def test_rename_duplicate_and_remove_what_others_are_tied_to(car):
     scenes.add_mount(car, "top")
     assert names(settings.mounts) == ["top", "top 2"], "no name is there twice"
     settings.mount_index = 0
-    bpy.ops.pe.remove_mount()
+    bpy.ops.pe.remove_row(rows="mounts")
     assert not roof.perception_entropy.mount
 
     # So does a model of one's own; models to choose from come and go.
-    bpy.ops.pe.add_own_sensor(kind="lidar")
+    bpy.ops.pe.add_row(rows="own_sensors", kind="lidar")
     roof.perception_entropy.model = "My LiDAR"
     settings.own_sensors[0].name = "Mine"
     bridge.sync_own_sensors()
     assert roof.perception_entropy.model == "Mine"
     bpy.context.view_layer.objects.active = roof
-    assert [bpy.ops.pe.add_option() for _ in range(2)] == 2 * [{"FINISHED"}]
-    assert bpy.ops.pe.remove_option(index=1) == {"FINISHED"}
+    assert [bpy.ops.pe.add_row(rows="options") for _ in range(2)] == 2 * [{"FINISHED"}]
+    assert bpy.ops.pe.remove_row(rows="options", index=1) == {"FINISHED"}
     assert [row.model for row in roof.perception_entropy.options] == ["Mine"]
-    bpy.ops.pe.remove_own_sensor()
+    bpy.ops.pe.remove_row(rows="own_sensors")
     with pytest.raises(RuntimeError, match=r"roof.*model"):
         bpy.ops.pe.score()
     roof.perception_entropy.model = PUCK
@@ -343,7 +352,7 @@ def test_rename_duplicate_and_remove_what_others_are_tied_to(car):
     assert {s.name for s in scenes.study().rig} == {"roof", "another"}
     assert bpy.ops.pe.select_part(name="cabin") == {"FINISHED"} and bpy.context.object == cabin
     car.frame_set(20)
-    bpy.ops.pe.add_state()
+    bpy.ops.pe.add_row(rows="states")
     car.frame_set(1)
     for index, frame in ((0, 20), (-1, 1)):
         bpy.ops.pe.show_state(index=index)
@@ -351,9 +360,9 @@ def test_rename_duplicate_and_remove_what_others_are_tied_to(car):
 
     # Rows of a list keep their order, and the selection is where the removed one was.
     for _ in range(3):
-        bpy.ops.pe.add_focus()
+        bpy.ops.pe.add_row(rows="focus")
     settings.focus_index = 1
-    bpy.ops.pe.remove_focus()
+    bpy.ops.pe.remove_row(rows="focus")
     assert (names(settings.focus), settings.focus_index) == (["Focus 1", "Focus 3"], 1)
     assert scenes.study()
 

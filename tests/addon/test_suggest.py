@@ -50,7 +50,7 @@ def test_taking_an_added_sensor_gives_the_promised_figures(car):
 
 
 def test_a_failed_requirement_is_mended_as_the_job_says(car):
-    bpy.ops.pe.add_requirement(preset="OWN")
+    bpy.ops.pe.add_row(rows="requirements", kind="OWN")
     name = car.perception_entropy.requirements[0].name
     job = jobs.SuggestJob(scenes.study(), (name,))
     assert list(job)

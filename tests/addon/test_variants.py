@@ -120,7 +120,7 @@ def test_the_mark_tells_that_the_scene_is_another(ideas):
 
 def test_a_score_goes_to_the_variant_that_stands(ideas):
     assert not rows(ideas)["Variant"].has_result
-    bpy.ops.pe.duplicate_variant()
+    bpy.ops.pe.copy_row(rows="variants")
     ideas.objects["roof"].location.z = 2.5
     bpy.context.view_layer.update()
     bpy.ops.pe.score()
@@ -203,7 +203,7 @@ def unknown(variant):
 
 
 def test_a_variant_that_cannot_be_scored_is_reported_and_the_others_are(ideas):
-    bpy.ops.pe.duplicate_variant()
+    bpy.ops.pe.copy_row(rows="variants")
     unknown(ideas.perception_entropy.variants[0])
     bpy.ops.pe.compare_variants()
     assert [row.has_result for row in ideas.perception_entropy.variants] == [False, True]
@@ -229,7 +229,7 @@ def test_a_story_that_is_never_confirmed_is_drawn_as_the_worst(addon):
 
 def test_bars_have_the_largest_difference_first_and_the_longest_is_full(ideas):
     """Rows without a sure difference are last; a bar is as long as its value in the row."""
-    bpy.ops.pe.duplicate_variant()
+    bpy.ops.pe.copy_row(rows="variants")
     ideas.objects["roof"].location.z += 0.6
     bpy.context.view_layer.update()
     bpy.ops.pe.update_variant()

@@ -22,8 +22,8 @@ for frame, angle in ((1, 0.0), (20, -0.3)):
     hood.keyframe_insert("rotation_euler", frame=frame)
 for frame in (1, 20):
     scene.frame_set(frame)
-    assert bpy.ops.pe.add_state() == {"FINISHED"}
-assert bpy.ops.pe.add_weather(weather="FOG") == {"FINISHED"}
+    assert bpy.ops.pe.add_row(rows="states") == {"FINISHED"}
+assert bpy.ops.pe.add_row(rows="weathers", kind="FOG") == {"FINISHED"}
 bpy.ops.wm.save_as_mainfile(filepath=saved)  # with the hood open
 assert bpy.ops.pe.export_study(filepath=folder + "/study.toml") == {"FINISHED"}
 """

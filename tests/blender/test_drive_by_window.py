@@ -9,7 +9,7 @@ bpy.ops.pe.add_sensor(model="Pandar64")
 bpy.context.object.name, bpy.context.object.location = "corner", (2.2, 0.8, 0.7)
 for each in ("beams", "frustums", "ground", "blind", "reach"):
     setattr(settings.view, "show_" + each, False)
-bpy.ops.pe.add_story(story="crossing_child")
+bpy.ops.pe.add_row(rows="stories", kind="crossing_child")
 look = area.spaces.active.region_3d
 look.view_location, look.view_distance = (6.0, 0.0, 0.5), 24.0
 """

@@ -14,7 +14,7 @@ camera = bpy.context.object
 camera.name, camera.location = "behind", (-2.6, 0.0, 1.3)
 camera.rotation_euler = (0.0, 1.05, 3.14159)
 for preset in {PRESETS!r}:
-    bpy.ops.pe.add_requirement(preset=preset)
+    bpy.ops.pe.add_row(rows="requirements", kind=preset)
 window.scene.perception_entropy.requirement_index = 0
 for each in ("beams", "frustums", "ground", "blind", "reach"):
     setattr(window.scene.perception_entropy.view, "show_" + each, False)
@@ -37,7 +37,7 @@ CHECK = f"""
 from {NAME}.operators import running_job
 settings = window.scene.perception_entropy
 settings.view.show_requirements = False
-bpy.ops.pe.add_requirement(preset="ALL")
+bpy.ops.pe.add_row(rows="requirements", kind="ALL")
 known = kept["known"] = []
 def tick():
     known.append(sum(bool(row.verdict) for row in settings.requirements))

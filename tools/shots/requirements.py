@@ -29,7 +29,7 @@ def held(camera: Camera) -> None:
         for name in ("beams", "frustums", "ground", "blind", "reach"):
             setattr(settings.view, "show_" + name, False)
         for preset in {PRESETS!r}:
-            bpy.ops.pe.add_requirement(preset=preset)
+            bpy.ops.pe.add_row(rows="requirements", kind=preset)
         settings.requirement_index = 0
         bpy.ops.object.select_all(action="DESELECT")
         window.view_layer.objects.active = None

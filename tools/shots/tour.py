@@ -145,7 +145,7 @@ def driven(camera: Camera) -> None:
         settings.view.ghost_key = 0
         for each in ("frustums", "ground", "blind"):
             setattr(settings.view, "show_" + each, False)
-        bpy.ops.pe.add_story(story="crossing_child")
+        bpy.ops.pe.add_row(rows="stories", kind="crossing_child")
     """)
     stage.do(AHEAD)
     stage.wait_until(STORY, 200)

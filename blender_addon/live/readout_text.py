@@ -124,9 +124,7 @@ def zone_lines(now: pe.Score, before: pe.Score | None) -> list[ReadoutLine]:
     return lines
 
 
-def change_text(
-    row: search.FigureOfMerit, values: Sequence[float], error: float = 0.0
-) -> tuple[str, int]:
+def change_text(row: search.Figure, values: Sequence[float], error: float = 0.0) -> tuple[str, int]:
     """Return a figure of a rig, the last of `values`, and whether it is better than the first.
     `error` is the standard error of their difference."""
     texts = list(map(row.text, values)) or [NO_FIGURE]

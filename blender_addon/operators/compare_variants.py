@@ -8,7 +8,7 @@ import bpy
 from bpy.props import EnumProperty
 
 from .. import bridge, result_staleness, variant_pictures
-from ..engine import advice, pe
+from ..engine import advice, pe, search
 from ..live import SENSE_ICONS
 from ..own_jobs import ComparedVariant, CompareJob, PendingVariant
 from ..panel_text import draw_label, worded
@@ -22,7 +22,7 @@ MIN_WIDTH_PX, LETTER_PX = 560, 7
 PICTURE_SCALE, BAR_SHARE = 6.0, 0.45
 """Height of a picture in rows, and share of a cell that is its bar."""
 MAX_VARIANTS = 8
-KEY_FIGURES = ("margin", "sector", "blind", "reach", "ap")
+OF_PARTS = ("entropy", "coverage")  # Figures that zones and classes have as well
 WHOLE_RIG = "Everywhere"
 WHOLE = "RIG"
 PARTS = (
@@ -99,7 +99,7 @@ def _draw(self: Any, context: bpy.types.Context) -> None:
         for line in self.said:
             said.label(text=worded(context.scene, line), translate=False)
     else:
-        _draw_table(self.layout, self.names, [r for r in self.rows if r.measure not in KEY_FIGURES])
+        _draw_table(self.layout, self.names, [r for r in self.rows if r.measure in OF_PARTS])
     text = (
         f"A star marks the best; in brackets: the difference to {self.names[0]}, "
         "blue for a clear gain, orange for any loss"
@@ -120,7 +120,7 @@ def show_comparison(_context: bpy.types.Context) -> None:
 
 def of_rigs(rows: Sequence[advice.ComparedRow]) -> list[advice.ComparedRow]:
     """Return what rigs are decided by, that with the largest difference first."""
-    whole = [r for r in rows if r.measure in KEY_FIGURES or (r.group, r.name) == ("rig", "")]
+    whole = [r for r in rows if r.measure not in OF_PARTS or (r.group, r.name) == ("rig", "")]
     return sorted(whole, key=lambda row: -row.spread)
 
 
@@ -150,10 +150,10 @@ def _draw_table(
     """Draw a row a zone and class under the heading of each measure."""
     lines = layout.box().column(align=True)
     _draw_names(lines, names, "")
-    for measure in advice.MEASURES.values():
-        found = [row for row in rows if row.how is measure]
+    for figure in search.FIGURES.values():
+        found = [row for row in rows if row.how is figure]
         if found:
-            _line(lines, names, measure.heading)
+            _line(lines, names, figure.heading)
         for row, last in zip(found, [*found[:1], *found], strict=False):
             if row.group != last.group:
                 lines.separator(factor=0.6)

@@ -18,11 +18,7 @@ WEATHERS = (
     ("NIGHT", "Night", "Cameras see what headlamps light"),
 )
 STARTS = {"RAIN": ("rain_mm_h", 25.0), "SNOW": ("snow_mm_h", 2.5), "FOG": ("fog_mor_m", 100.0)}
-ANIMATED = "animated"
-STORY_ITEMS = (
-    (ANIMATED, "Own Animation", "Test bodies, as keyframes move them"),
-    *((name, each.title, each.source) for name, each in motion.stories().items()),
-)
+STORY_ITEMS = [(name, each.title, each.source) for name, each in motion.stories().items()]
 
 
 def add_state(context: bpy.types.Context, _kind: str) -> str:
@@ -70,9 +66,6 @@ def add_weather(context: bpy.types.Context, weather: str) -> None:
     row.night = weather == "NIGHT"
     if weather in STARTS:
         setattr(row, *STARTS[weather])
-
-
-STORY_ITEMS = [(name, each.title, each.source) for name, each in motion.stories().items()]
 
 
 def add_story(context: bpy.types.Context, story: str) -> None:

@@ -52,7 +52,9 @@ def _lacks(context: bpy.types.Context) -> str | None:
     figure=EnumProperty(
         name="By",
         description="Figure of the rig by which places are compared",
-        items=[(key, row.label, row.unit) for key, row in jobs.PLACE_FIGURES.items()],
+        items=[
+            (key, row.figure.label, row.figure.about) for key, row in jobs.PLACE_FIGURES.items()
+        ],
     ),
     on=EnumProperty(name="On", description="Surface that is covered", items=_surfaces),
     places=IntProperty(

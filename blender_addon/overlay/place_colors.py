@@ -21,6 +21,7 @@ def place_colors(found: "jobs.PlaceMap", sensors: "Sequence[pe.Sensor]") -> grap
     """Return the surface in colours, bright is good, with the best place named. `sensors` are those
     of the scene: where they are not those that were scored with, the legend says so."""
     row = found.row
+    figure = row.figure
     values = np.array([math.nan if e.value is None else e.value for e in found.places])
     points, normals = (
         np.array([getattr(each, name) for each in found.places]) for name in ("point", "normal")
@@ -32,16 +33,16 @@ def place_colors(found: "jobs.PlaceMap", sensors: "Sequence[pe.Sensor]") -> grap
     faces = graphics.colored_surface(found.surface, points, normals, values, (low, high))
     ends = [low + (high - low) * k / (TICKS - 1) for k in range(TICKS)]
     classes = [(GREY, f"forbidden: {why} ({n:,})") for why, n in found.reasons().items()]
-    unit = f" [{row.unit}]" if row.unit else ""
+    unit = f" [{figure.unit}]" if figure.unit else ""
     legend = graphics.ColorKey(
-        f"{row.label} with {found.sensor.model.name} here{unit}{_state(found, sensors)}",
+        f"{figure.label} with {found.sensor.model.name} here{unit}{_state(found, sensors)}",
         scale=graphics.swatches_of(graphics.VIRIDIS),
-        ticks=tuple(f"{end:.{row.decimals}f}" for end in ends),
-        values=tuple(f"{end - found.base:+.{row.decimals}f}" for end in ends),
+        ticks=tuple(f"{end:.{figure.decimals}f}" for end in ends),
+        values=tuple(f"{end - found.base:+.{figure.decimals}f}" for end in ends),
         classes=tuple(classes[:REASONS_NAMED]),
     )
     labels = [
-        graphics.Tag(f"best: {row.text(e.value or 0.0)}", e.pose.position, MARK, strong=True)
+        graphics.Tag(f"best: {figure.text(e.value or 0.0)}", e.pose.position, MARK, strong=True)
         for e in found.best()
     ]
     return graphics.LayerShape(faces=faces, labels=tuple(labels), legend=legend)
@@ -53,4 +54,4 @@ def _state(found: "jobs.PlaceMap", sensors: "Sequence[pe.Sensor]") -> str:
         return " (before the last change)"
     if len(found.places) < found.count:
         return f" ({len(found.places):,} of {found.count:,} places)"
-    return f", ± {found.error:.{found.row.decimals}f}" if found.error else ""
+    return f", ± {found.error:.{found.row.figure.decimals}f}" if found.error else ""

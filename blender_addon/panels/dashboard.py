@@ -52,7 +52,7 @@ def draw_dashboard(layout: UILayout, context: Context) -> None:
     draw_label(wanted, f"{sum(judged)} of {len(judged)} met" if judged else "Wanted")
     errors = change_errors(figures, result)
     for row in rows:
-        known = [row.figure.value(each) for each in figures] if row.figure.part else [row.value]
+        known = [row.figure.value(each) for each in figures] if row.figure.is_seen else [row.value]
         known = entropies if row.figure.key == search.ENTROPY else known
         values = [value for value in known if value is not None]
         draw_row(column, scene, row, values, errors.get(row.figure.key, 0.0))

@@ -71,9 +71,9 @@ KeepFields: Any = mixin(
     "Keep",
     {
         f"keep_{key}": switch(
-            f"Keep {search.KEY_FIGURES[key].label}",
+            f"Keep {search.FIGURES[key].label}",
             "Optimize keeps it: as wanted, or as good as now where nothing is wanted. "
-            f"{search.KEY_FIGURES[key].about}",
+            f"{search.FIGURES[key].about}",
             key in KEPT_AT_FIRST,
         )
         for key in search.KEPT

@@ -9,7 +9,7 @@ table of keys in docs/settings.md.
 
 import functools
 import math
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import MISSING, dataclass, field, fields
 from typing import Any, Protocol, TypeVar
 
@@ -93,7 +93,7 @@ class Texts:
 class Several:
     """A list of some of several texts, each once."""
 
-    among: tuple[str, ...]
+    among: Collection[str]
 
     def checked(self, source: object, field: str, value: Any) -> tuple[str, ...]:
         """Return the value, or raise `InputError`."""

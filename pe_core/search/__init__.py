@@ -11,18 +11,11 @@ from .domains import (
     snap_to_mount,
     standoff_point,
 )
+from .figure import HIGHER, LOWER, NO_FIGURE, Figure
+from .figures import ENTROPY, FIGURES, KEPT, ON_FRONT, REQUIREMENTS, RigView, figure_of
 from .goals import Front, Goals, Start, Stop
 from .journal import EvaluatedRig, Journal, checked_entries
-from .key_figures import (
-    ENTROPY,
-    KEPT,
-    KEY_FIGURES,
-    FigureOfMerit,
-    KeyFigures,
-    Reading,
-    Wanted,
-    dashboard,
-)
+from .key_figures import KeyFigures, Reading, Wanted, dashboard
 from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_method
 from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .optimize import Step, as_objective, optimize

@@ -1,21 +1,24 @@
-"""What can be built: figures of a rig on its vehicle, a row a figure.
+"""What can be built: figures of a rig on its vehicle, rows of `FIGURES`.
 
 The limits of a search and of a choice, the objectives of a front, the lines of a score and the
 fields of the panel follow from the rows. A figure of which something is not known has no value.
 """
 
+from __future__ import annotations
+
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from itertools import combinations, pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..base.arrays import Flags, Floats
 from ..base.errors import InputError
 from ..base.plugins import shipped
+from ..base.values import Number
 from ..geometry.grids import PerceptionSpace, top_heights
 from ..geometry.overlap import Hull
 from ..geometry.poses import Pose, dot
@@ -25,6 +28,10 @@ from ..scene.vehicle import Vehicle
 from ..scoring.requirements.planes import convex_outline
 from ..sensors.kind import kind_of
 from .domains import ROUNDING_M
+from .figure import Figure
+
+if TYPE_CHECKING:
+    from .figures import RigView
 
 CELL_M = 0.01  # Side of the squares in which a frontal area is counted [m]
 AROUND_M = 2.0  # So far round the body housings are seen from the front [m]
@@ -46,7 +53,7 @@ class Placement:
     _hulls: dict[str, Hull] = field(default_factory=dict)
 
     @classmethod
-    def on(cls, rig: Rig, vehicle: Vehicle | None) -> "Placement":
+    def on(cls, rig: Rig, vehicle: Vehicle | None) -> Placement:
         """Return a rig on a vehicle, with the housings of the catalogue."""
         return cls(rig, vehicle, housings_of(rig))
 
@@ -175,56 +182,47 @@ KNOWN: dict[str, Callable[[str, Placement, Sensor], bool]] = {
 
 
 @dataclass(frozen=True, slots=True)
-class BuildFigure:
-    """A figure of what can be built. `of` is the figure of a `Placement` and the names of `arity`
+class BuildFigure(Figure):
+    """A figure of what can be built. `each` is the figure of a `Placement` and the names of `arity`
     sensors: none, one, or two. `needs` is what it takes of each sensor, of `KNOWN`. Rounding may
     move a placement by `slack`."""
 
-    key: str
-    unit: str
-    of: Callable[..., float]
-    arity: int
+    each: Callable[..., float] = float
+    arity: int = 0
     needs: str = ""
     on_body: bool = False
     slack: float = 0.0
-    decimals: int = 2
-
-    @property
-    def label(self) -> str:
-        """Its name in words."""
-        return self.key.replace("_", " ")
-
-    @property
-    def is_least(self) -> bool:
-        """Whether the smallest value counts and a higher one is better, not the largest."""
-        return self.key in ("distance", "overlap")
 
     @property
     def limit(self) -> str:
         """Name of its limit."""
-        return f"{'min' if self.is_least else 'max'}_{self.key}"
+        return f"{'min' if self.higher else 'max'}_{self.key}"
 
     def lacking(self, placed: Placement) -> tuple[str, ...]:
         """Return of what it is not known: names of sensors, or why there is no such figure."""
         if self.on_body and placed.vehicle is None:
             return ("no vehicle",)
-        if self.is_least and len(placed.rig) < 2:
+        if self.higher and len(placed.rig) < 2:
             return (ALONE,)
         known = KNOWN[self.needs]
         return tuple(s.name for s in placed.rig if not known(self.key, placed, s))
 
-    def value(self, placed: Placement) -> float | None:
+    def values(self, view: RigView) -> Sequence[float]:
+        """Return the figure of a rig; none where something is not known."""
+        value = self.of_placement(view.placement)
+        return () if value is None else (value,)
+
+    def of_placement(self, placed: Placement) -> float | None:
         """Return the figure of a placement; None where something is not known."""
         if self.lacking(placed):
             return None
         names = [sensor.name for sensor in placed.rig]
-        values = [self.of(placed, *some) for some in combinations(names, self.arity)]
-        return min(values) if self.is_least else max(values)
+        return self.worst([self.each(placed, *some) for some in combinations(names, self.arity)])
 
     def required(self, placed: Placement, field: str) -> None:
         """Raise `InputError` where something is not known; `field` is what asks for it."""
         if lacking := self.lacking(placed):
-            expected = f"a known {self.label} of each sensor"
+            expected = f"a known {self.name} of each sensor"
             raise InputError(
                 "optimize", field, expected, f"unknown: {', '.join(dict.fromkeys(lacking))}"
             )
@@ -234,42 +232,101 @@ class BuildFigure:
     ) -> Iterator[tuple[str, Callable[[Placement], bool]]]:
         """Yield the rules of a limit: their texts, and whether a placement breaks them.
         `InputError` where what the limit needs is not known of the start."""
-        if limit is None or (self.is_least and (not limit or len(start.rig) < 2)):
+        if limit is None or (self.higher and (not limit or len(start.rig) < 2)):
             return
         self.required(start, self.limit)
-        sign = -1.0 if self.is_least else 1.0
+        sign = -1.0 if self.higher else 1.0
         edge = sign * limit + self.slack + (limit * RELATIVE if self.needs == SUM else 0.0)
 
         def breaks(some: tuple[str, ...], placed: Placement) -> bool:
-            return sign * self.of(placed, *some) > edge
+            return sign * self.each(placed, *some) > edge
 
         for some in combinations([sensor.name for sensor in start.rig], self.arity):
             if not some or moving & set(some):
                 named = f" of {' and '.join(map(repr, some))}" if some else ""
                 yield f"{self.limit}{named}", partial(breaks, some)
 
-    def text(self, value: float) -> str:
-        """Return a value with its unit."""
-        return f"{value:,.{self.decimals}f} {self.unit}".strip()
-
 
 AT = ROUNDING_M
 SUMS = ("mass", "power", "data_rate", "price")
 """Figures that add up over the sensors' data sheets, wherever these are."""
+LIMIT = {unit: Number(0.0, cap=1e6, unit=unit) for unit in ("m", "m2", "deg", "kg", "W", "Mbit/s")}
+LIMIT[""] = Number(0.0, cap=1e12)
+"""What a limit may be, by the unit of its figure."""
+
+
+def _row(key: str, unit: str, about: str, each: Callable[..., float], **more: Any) -> BuildFigure:
+    label = key.replace("_", " ").capitalize()
+    return BuildFigure(key, label, unit, about, rule=LIMIT[unit], each=each, **more)
+
+
+def _sum_row(key: str, unit: str) -> BuildFigure:
+    label = key.replace("_", " ")
+    return _row(key, unit, f"Sum of all sensors: {label}", partial(_sum, key), needs=SUM)
+
+
 BUILD_FIGURES = {
     row.key: row
     for row in (
-        BuildFigure("height", "m", _top, 1, slack=AT),
-        BuildFigure("width", "m", _width, 1, slack=2 * AT),
-        BuildFigure("distance", "m", _distance, 2, slack=AT),
-        BuildFigure("protrusion", "m", _protrusion, 1, HOUSING, on_body=True, slack=AT),
-        BuildFigure("cleaning_reach", "m", _cleaning_reach, 1, on_body=True, slack=AT),
-        BuildFigure("frontal_area", "m2", _frontal_area, 0, HOUSING, on_body=True, decimals=4),
-        BuildFigure("overlap", "deg", _overlap, 0, FIELD, decimals=0),
-        *(
-            BuildFigure(key, unit, partial(_sum, key), 0, SUM)
-            for key, unit in zip(SUMS, ("kg", "W", "Mbit/s", ""), strict=True)
+        _row("height", "m", "Top of the highest housing", _top, arity=1, slack=AT),
+        _row(
+            "width",
+            "m",
+            "Overall width: twice the distance of a housing from the middle",
+            _width,
+            arity=1,
+            slack=2 * AT,
         ),
+        _row(
+            "distance",
+            "m",
+            "Smallest distance between any two sensors' origins",
+            _distance,
+            arity=2,
+            slack=AT,
+            higher=True,
+        ),
+        _row(
+            "protrusion",
+            "m",
+            "How far a housing reaches beyond the body's length or width",
+            _protrusion,
+            arity=1,
+            needs=HOUSING,
+            on_body=True,
+            slack=AT,
+        ),
+        _row(
+            "cleaning_reach",
+            "m",
+            "How far a sensor is from the nearest ground beside the body",
+            _cleaning_reach,
+            arity=1,
+            on_body=True,
+            slack=AT,
+        ),
+        _row(
+            "frontal_area",
+            "m2",
+            "Area that housings add to the body's silhouette from the front",
+            _frontal_area,
+            needs=HOUSING,
+            on_body=True,
+            decimals=4,
+        ),
+        _row(
+            "overlap",
+            "deg",
+            "Smallest azimuth that neighbours have in common, to calibrate them to each other",
+            _overlap,
+            needs=FIELD,
+            decimals=0,
+            higher=True,
+        ),
+        _sum_row("mass", "kg"),
+        _sum_row("power", "W"),
+        _sum_row("data_rate", "Mbit/s"),
+        _sum_row("price", ""),
     )
 }
 """What can be built, by name."""

@@ -7,7 +7,7 @@ from the given placement alone, and minimises one value.
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import Any
 
 from ..base.arrays import ReadOnlyDict
 from ..base.errors import InputError, require_kind, require_name, shown
@@ -15,33 +15,9 @@ from ..base.setting import NAMES, Panel, Several, check_settings, setting
 from ..base.values import A_NAME, Number, Whole, listed
 from ..geometry.poses import Pose
 from ..scene.rig import Rig
-from .build_figures import BUILD_FIGURES
-from .key_figures import KEPT, Wanted
+from .figures import FIGURES, KEPT, ON_FRONT
+from .key_figures import Wanted
 from .mounts import Mounting
-
-ENTROPY, AP, BLIND_GROUND, PRICE = "entropy", "ap", "blind_ground", "price"
-WORST_LOSS, MARGIN, BLIND_ZONES = "worst_loss", "margin", "blind_zones"
-FIRST = ("height", PRICE)
-"""What can be built that comes first: .blend files store numbers."""
-OBJECTIVES = {
-    ENTROPY: ("entropy", "nats"),
-    AP: ("expected AP", ""),
-    BLIND_GROUND: ("blind ground", "m2"),
-    **{key: (row.label, row.unit) for key, row in BUILD_FIGURES.items() if key in FIRST},
-    WORST_LOSS: ("worst loss", "nats"),
-    MARGIN: ("worst margin", "m"),
-    BLIND_ZONES: ("blind in zones", "m2"),
-    **{key: (row.label, row.unit) for key, row in BUILD_FIGURES.items() if key not in FIRST},
-}
-"""What may be on a Pareto front: label and unit by name."""
-HIGHER_IS_BETTER = (AP, MARGIN, *(key for key, row in BUILD_FIGURES.items() if row.is_least))
-"""Objectives that are maximised; all others are minimised."""
-
-
-def label_of(objective: str) -> tuple[str, str]:
-    """Return the label and the unit of an objective; of a function from Python, its name."""
-    return OBJECTIVES.get(objective, (objective.replace("_", " "), ""))
-
 
 OVER = 200  # Placements over which the gain of a search is taken by default
 
@@ -112,21 +88,16 @@ class Stop:
 
 @dataclass(frozen=True, slots=True)
 class Front:
-    """Objectives, names of `OBJECTIVES`, and the number of points of their Pareto front."""
-
-    KNOWN: ClassVar[Mapping[str, tuple[str, str]]] = OBJECTIVES
+    """Objectives, names of `FIGURES`, and the number of points of their Pareto front."""
 
     objectives: Sequence[str] = setting(
         (),
-        Several(tuple(OBJECTIVES)),
+        Several(ON_FRONT),
         "Two or more: the search looks for their Pareto front",
         Panel(
             "front_objectives",
             "Objectives",
-            menu=tuple(
-                (label[:1].upper() + label[1:], f"{label[:1].upper() + label[1:]} is on the front")
-                for label, _ in OBJECTIVES.values()
-            ),
+            menu=tuple((FIGURES[name].label, FIGURES[name].about) for name in ON_FRONT),
         ),
     )
     points: int = setting(
@@ -139,7 +110,7 @@ class Front:
     def __post_init__(self) -> None:
         check_settings(self, "optimize", "front.")
         if len(self.objectives) == 1:
-            expected = f"two or more of {', '.join(OBJECTIVES)}"
+            expected = f"two or more of {', '.join(ON_FRONT)}"
             raise InputError("optimize", "front.objectives", expected, shown(self.objectives[0]))
 
 

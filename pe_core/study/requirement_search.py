@@ -8,7 +8,6 @@ ground than is wanted, or than the study's own where nothing is wanted, is infea
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Any
 
 from ..base.errors import InputError
 from ..base.values import rounded
@@ -18,7 +17,8 @@ from ..scoring.score import Objective
 from ..scoring.sight import Sight
 from ..search import shared_parts
 from ..search.dispatch import value_below
-from ..search.key_figures import KEPT, KEY_FIGURES, PARTS, Wanted
+from ..search.figures import FIGURES, KEPT, REACH, RigView
+from ..search.key_figures import Wanted
 from .conditions import mounting_cases
 from .study import Study
 
@@ -42,7 +42,7 @@ class FiguresLimit:
     reported : Sight
         Has the scenes that the result is reported on.
     keys : sequence of str
-        Names of `KEY_FIGURES`.
+        Names of `FIGURES`.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class FiguresLimit:
         self._limits = dict(_costs(sight, self._keys, start))
         asked = [key for key in self._keys if getattr(wanted, key) is not None]
         for key, costs in _costs(reported, asked, start):
-            limit = KEY_FIGURES[key].cost_of(getattr(wanted, key))
+            limit = FIGURES[key].cost_of(getattr(wanted, key))
             pairs = zip(self._limits[key], costs, strict=True)
             self._limits[key] = tuple(rounded(limit + searched - own) for searched, own in pairs)
 
@@ -69,12 +69,10 @@ class FiguresLimit:
 
 
 def _costs(sight: Sight, keys: Sequence[str], rig: Rig) -> Iterator[tuple[str, tuple[float, ...]]]:
-    """Yield the names of key figures and their costs; each part of the figures is computed once."""
-    found = dict[str, Any]()
-    for row in (KEY_FIGURES[key] for key in keys):
-        if row.part not in found:
-            found[row.part] = PARTS[row.part](sight, rig)
-        yield row.key, row.costs(found[row.part])
+    """Yield the names of figures and their costs."""
+    view = RigView(sight, rig)
+    for key in keys:
+        yield key, FIGURES[key].costs(view)
 
 
 class RequirementConstraint:
@@ -147,7 +145,7 @@ def constraints_of(study: Study) -> tuple[FeasibilityRule, ...]:
     if search.requirements == KEEP and study.requirements:
         constraints.append(RequirementConstraint(study))
     if keep := [key for key in KEPT if key in search.goals.keep]:
-        if "reach" in keep and study.targets.are_objects:
+        if REACH in keep and study.targets.are_objects:
             raise InputError("optimize", "keep", "a reach of voxels", "a study on objects")
         limit = FiguresLimit(
             study.sight(SEARCHED), study.sight(), keep, search.goals.wanted, study.rig

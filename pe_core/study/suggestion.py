@@ -33,7 +33,7 @@ from ..scoring.sight.blind_ground import BLIND_TO_M
 from ..search import MountingPlaces, Parametrization
 from ..search.build_figures import sheet_of
 from ..search.domains import ANGLE_DECIMALS_DEG, METRE, POSITION_DECIMALS, RADIAN, SHARE
-from ..search.key_figures import blind_area
+from ..search.figures import RigView
 from ..search.methods.method import sampled_candidate
 from ..search.parametrization import Candidate
 from ..sensors import kind_of
@@ -338,7 +338,7 @@ class _Mender:
     def _effect(self, rig: Rig) -> Effect:
         blind = None
         with suppress(InputError):  # the ground is not in the space
-            blind = blind_area(self._sight, rig)
+            blind = RigView(self._sight, rig).blind_m2
         return Effect(self._evaluator.entropy(rig), blind)
 
 

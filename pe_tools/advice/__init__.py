@@ -2,7 +2,7 @@
 Nothing here computes a score; results of `pe_core` are checked, compared and described."""
 
 from pe_core.base.values import error_text
-from pe_core.search.key_figures import KeyFigures
+from pe_core.search import KeyFigures
 from pe_tools.wording import joined, percent
 from ..wording import off_by
 from .advice import FRAGILE, NOT_KEPT, UNMET, Advice, fragile, not_kept, unmet
@@ -13,7 +13,7 @@ from .key_figures import built_lines
 from .location import AskedPlace, SensorAtPlace, ask_place
 from .mount_checks import check_mirror_image, occluded_shares
 from .ranking import costs_nothing, disagreement, gain_sentence, ranking, search_cost
-from .score_comparison import MEASURES, OTHER_HARDWARE, TRAFFIC, ComparedRow, compare
+from .score_comparison import OTHER_HARDWARE, TRAFFIC, ComparedRow, compare
 from .score_comparison import compare_figures, difference_error, hardware_note
 from .summary import WHERE, Outlook, class_of, lone_reach, object_words, objects_looked_at, outlook
 from .summary import rig_words

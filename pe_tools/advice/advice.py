@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from pe_core.scoring.score import SURE
-from pe_core.search.key_figures import Reading
+from pe_core.search import Reading
 from pe_core.study.suggestion import Suggestion
 
 from ..wording import warning_text
@@ -93,5 +93,5 @@ def not_kept(rows: Iterable[Reading]) -> tuple[Advice, ...]:
     return tuple(
         Advice(None, NOT_KEPT, {"name": row.figure.name, "told": row.text})
         for row in rows
-        if row.kept and row.met is False and row.figure.part
+        if row.kept and row.met is False and row.figure.is_seen
     )

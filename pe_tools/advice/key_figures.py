@@ -7,9 +7,9 @@ from typing import Any
 from pe_core.scene.rig import Rig
 from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.score import FAR_M, NEAR_M, Score
+from pe_core.search import NO_FIGURE, KeyFigures
 from pe_core.search.build_figures import ALONE, BUILD_FIGURES
-from pe_core.search.goals import PRICE
-from pe_core.search.key_figures import NO_FIGURE, KeyFigures
+from pe_core.search.figures import PRICE
 from pe_tools.wording import aligned, percent
 
 from .mount_checks import occluded_shares
@@ -105,10 +105,10 @@ def built_lines(figures: Sequence[KeyFigures]) -> list[str]:
     Figures that are not known are named with their sensors; prices only where there are some."""
     last, texts, by_sensors = figures[-1], [], dict[str, list[str]]()
     for key, row in BUILD_FIGURES.items():
-        if found := dict.fromkeys(row.text(f.built[key]) for f in figures if key in f.built):
-            texts.append(f"{row.label} {' -> '.join(found)}")
+        if found := dict.fromkeys(row.text(f.values[key]) for f in figures if key in f.values):
+            texts.append(f"{row.name} {' -> '.join(found)}")
         elif (lacking := last.unknown.get(key, [ALONE])) != [ALONE] and key != PRICE:
-            by_sensors.setdefault(", ".join(lacking), []).append(row.label)
+            by_sensors.setdefault(", ".join(lacking), []).append(row.name)
     named = [f"{', '.join(labels)} ({who})" for who, labels in by_sensors.items()]
     lines = {"to build": ", ".join(texts), "unknown": "; ".join(named)}
     return [f"{name}  {text}" for name, text in lines.items() if text]

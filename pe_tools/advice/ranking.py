@@ -5,30 +5,18 @@ from collections.abc import Iterator, Sequence
 
 from pe_core.scene.rig import Rig
 from pe_core.scoring.score import SURE, Score
-from pe_core.search.key_figures import KEY_FIGURES, KeyFigures
+from pe_core.search import FIGURES, KeyFigures
+from pe_core.search.figures import AP, BLIND_SECTOR, COVERAGE, ENTROPY, on_dashboard
 
 from ..wording import joined, metres, percent
 from .location import WAYS
-from .score_comparison import (
-    AP,
-    COVERAGE,
-    ENTROPY,
-    MEASURES,
-    SECTOR,
-    TRAFFIC,
-    ComparedRow,
-    difference_error,
-)
+from .score_comparison import TRAFFIC, ComparedRow, difference_error
 from .summary import WHERE
 
 ZONES_NAMED = 2
 SENSORS_NAMED = 3
 NOTHING = "It cost nothing"
-RANKED = {
-    ENTROPY: ("entropy", " nats", " nats"),
-    COVERAGE: ("coverage", "%", " points"),
-    AP: ("expected AP", "", ""),
-}  # Measures that rank rigs: name, units after a value and after a difference
+RANKED = (ENTROPY, COVERAGE, AP)  # Figures that rank rigs
 
 
 def ranking(names: Sequence[str], rows: Sequence[ComparedRow]) -> tuple[str, ...]:
@@ -42,17 +30,19 @@ def ranking(names: Sequence[str], rows: Sequence[ComparedRow]) -> tuple[str, ...
 
 
 def _ranked(names: Sequence[str], row: ComparedRow) -> str:
-    (noun, unit, unit_of_gap), digits = RANKED[row.measure], row.how.digits
+    noun, digits = row.how.name, row.how.decimals
+    unit = {"": "", "%": "%"}.get(row.how.unit, f" {row.how.unit}")
+    unit_of_gap = " points" if unit == "%" else unit
     values = {k: value for k, value in enumerate(row.told) if value is not None}
     first = row.order[0]
     best = [k for k in row.order if not row.differ(first, k)]
     worse = []
     for k in (k for k in row.order if k not in best):
-        error = row.how.factor * row.errors[first][k]
+        error = row.how.scale * row.errors[first][k]
         plus_minus = f" +- {max(error, 10.0**-digits):.{digits}f}" if error else ""
         worse.append(f"{names[k]} by {abs(values[k] - values[first]):.{digits}f}{plus_minus}")
     shown = joined([f"{names[k]} ({values[k]:.{digits}f}{unit})" for k in best])
-    told = f"By {noun} {shown} {'is best' if len(best) == 1 else 'are alike'}; {row.how.about}."
+    told = f"By {noun} {shown} {'is best' if len(best) == 1 else 'are alike'}; {row.how.better}."
     return f"{told} Worse: {joined(worse)}{unit_of_gap}." if worse else told
 
 
@@ -64,7 +54,7 @@ def disagreement(names: Sequence[str], rows: Sequence[ComparedRow]) -> str:
     asked = {
         "entropy": (row for row in rows if (row.group, row.measure) == ("rig", ENTROPY)),
         "expected AP in traffic": (r for r in rows if (r.group, r.name) == (TRAFFIC, "")),
-        "the widest blind sector": (row for row in rows if row.measure == SECTOR),
+        "the widest blind sector": (row for row in rows if row.measure == BLIND_SECTOR),
     }
     best = {}
     for called, found in asked.items():
@@ -120,7 +110,7 @@ def search_cost(before: Score, after: Score, start: KeyFigures, result: KeyFigur
 
 def _figure_losses(start: KeyFigures, result: KeyFigures) -> Iterator[str]:
     errors = result.errors_from(start)
-    for row in KEY_FIGURES.values():
+    for row in on_dashboard():
         first, last = row.value(start), row.value(result)
         if first is None or last is None or row.cost_of(last) <= row.cost_of(first):
             continue
@@ -132,7 +122,7 @@ def _figure_losses(start: KeyFigures, result: KeyFigures) -> Iterator[str]:
 def _score_losses(before: Score, after: Score) -> Iterator[str]:
     def is_worse(measure: str, by: float) -> bool:
         error = difference_error(before, after, ("rig", "", measure))
-        return by >= MEASURES[measure].least and by > SURE * error
+        return by >= FIGURES[measure].least and by > SURE * error
 
     if is_worse(COVERAGE, before.coverage - after.coverage):
         yield f"coverage ({percent(before.coverage, 1)} to {percent(after.coverage, 1)})"
@@ -153,7 +143,7 @@ def _zone_losses(before: Score, after: Score) -> Iterator[str]:
     worse = []
     for name, rise in rises.items():
         error = difference_error(before, after, ("zone", name, ENTROPY))
-        if rise >= MEASURES[ENTROPY].least and rise > SURE * error:
+        if rise >= FIGURES[ENTROPY].least and rise > SURE * error:
             worse.append(name)
     for name in sorted(worse, key=lambda name: -rises[name])[:ZONES_NAMED]:
         first, last = before.per_zone[name].entropy, after.per_zone[name].entropy

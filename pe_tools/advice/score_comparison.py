@@ -1,20 +1,29 @@
 """Compare scores of several rigs: differences, their standard errors, and which are significant."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import permutations
 from statistics import NormalDist
 from typing import Any
 
 from pe_core import catalog
-from pe_core.base.values import shown_share
 from pe_core.motion.drive_by import shown_margin
 from pe_core.scene.rig import SensorModel
 from pe_core.scoring.sampling import BLOCKS
 from pe_core.scoring.score import BY_DISTANCE, FigureKey, PartScore, Score, TrafficAp, paired_error
-from pe_core.scoring.sight import SECTOR_RADIUS_M, shown_end, shown_start
-from pe_core.search.key_figures import KeyFigures
+from pe_core.scoring.sight import SECTOR_RADIUS_M
+from pe_core.search import FIGURES, Figure, KeyFigures
+from pe_core.search.figures import (
+    AP,
+    AP_RINGS,
+    BLIND_GROUND,
+    BLIND_SECTOR,
+    COVERAGE,
+    ENTROPY,
+    REACH,
+    STORY_MARGIN,
+)
 
 CERTAINTY = 0.95
 
@@ -86,45 +95,7 @@ def _error(score: Score, figure: FigureKey) -> float:
     return 0.5 / math.sqrt(max(share * count, 1.0))  # maximum standard error of a share, at 0.5
 
 
-ENTROPY, COVERAGE, AP, REACH, BLIND = "entropy", "coverage", "ap", "reach", "blind"
-SECTOR, TRAFFIC, MARGIN = "sector", "in traffic", "margin"
-
-
-@dataclass(frozen=True, slots=True)
-class Measure:
-    """How a measure is told. `factor` times a value has so many `digits`; `shown` rounds the value
-    to the safe side. `least` is the smallest difference that counts."""
-
-    title: str
-    about: str
-    digits: int = 1
-    factor: float = 1.0
-    shown: Callable[[float], float] = float
-    least: float = 0.05
-
-    @property
-    def lower_is_better(self) -> bool:
-        """Whether less of it is better."""
-        return self.about == LOWER
-
-    @property
-    def heading(self) -> str:
-        """Title and meaning: "Blind ground [m2], lower is better"."""
-        return f"{self.title}, {self.about}"
-
-
-LOWER, HIGHER = "lower is better", "higher is better"
-MEASURES = {
-    MARGIN: Measure("Margin of stories [s]", "none: never confirmed"),
-    SECTOR: Measure("Widest blind sector [deg]", LOWER, 1, 1.0, shown_end, 1.0),
-    BLIND: Measure("Blind ground [m2]", LOWER, 1, 1.0, shown_end),
-    REACH: Measure("Reach ahead (AP 0.5) [m]", HIGHER, 1, 1.0, shown_start),
-    AP: Measure("Expected AP", HIGHER, 3, least=0.0005),
-    ENTROPY: Measure("Entropy [nats]", LOWER, 3, least=0.005),
-    COVERAGE: Measure("Coverage [%]", HIGHER, 1, 100.0, shown_share, least=0.0005),
-}
-"""By name, in the order of a table: what a designer asks for first. A sector's edges are known to
-half a degree each; 0.005 nats are 0.2 % of a detector's standard deviation."""
+TRAFFIC = "in traffic"
 NEVER = -math.inf  # Margin of a story that is never confirmed: there is no worse one
 OTHER_HARDWARE = (
     "The rigs differ in models or numbers of sensors. On simulated rigs of LiDARs entropy was not "
@@ -140,12 +111,11 @@ AHEAD = "front"  # Direction whose reach is compared
 @dataclass(frozen=True, slots=True)
 class ComparedRow:
     """One figure of several rigs: a row of a comparison table. `group`, `name`: "rig", "zone",
-    "class" or "in traffic", and the name of the zone or class. `measure`: entropy [nats], blind
-    ground [m2] and widest blind sector [deg]: lower is better. Coverage and expected AP, 0 to 1,
-    reach ahead [m] and margin [s]: higher is better. `values`: by score; None for a score without
-    this zone, class or story; `NEVER` for a story that is not confirmed. `errors`: (N, N) standard
-    errors of the differences of each two values; 0 where nothing is sampled. `factor`: number of
-    standard errors beyond which a difference is significant (`sure_factor`)."""
+    "class" or "in traffic", and the name of the zone or class. `measure`: A key of `FIGURES`.
+    `values`: by score; None for a score without this zone, class or story; `NEVER` for a story that
+    is not confirmed. `errors`: (N, N) standard errors of the differences of each two values; 0
+    where nothing is sampled. `factor`: number of standard errors beyond which a difference is
+    significant (`sure_factor`)."""
 
     group: str
     name: str
@@ -155,26 +125,24 @@ class ComparedRow:
     factor: float = 0.0
 
     @property
-    def how(self) -> Measure:
-        """How its measure is told."""
-        return MEASURES[self.measure]
+    def how(self) -> Figure:
+        """How its figure is told."""
+        return FIGURES[self.measure]
 
     @property
     def told(self) -> tuple[float | None, ...]:
         """The values as they are told, on the safe side, in units of the heading."""
-        how = self.how
-        told = (None if v is None else how.factor * how.shown(v) for v in self.values)
-        return tuple(None if v is None else round(v, how.digits) + 0.0 for v in told)  # no -0.0
+        return tuple(None if v is None else self.how.told(v) for v in self.values)
 
     def text(self, k: int) -> str:
         """Return a value as text; "-" where it is missing."""
         value = self.told[k]
-        return {None: "-", NEVER: "none"}.get(value, f"{value or 0.0:.{self.how.digits}f}")
+        return {None: "-", NEVER: "none"}.get(value, f"{value or 0.0:.{self.how.decimals}f}")
 
     def change_text(self, k: int) -> str:
         """Return a told value minus the first as text; empty for the first, or without a number."""
         first, own = (math.nan if v is None else v for v in (self.told[0], self.told[k]))
-        return f"{own - first:+.{self.how.digits}f}" if k and math.isfinite(own - first) else ""
+        return f"{own - first:+.{self.how.decimals}f}" if k and math.isfinite(own - first) else ""
 
     @property
     def differences(self) -> tuple[float | None, ...]:
@@ -191,8 +159,7 @@ class ComparedRow:
     @property
     def order(self) -> tuple[int, ...]:
         """Indices of the scores that have a value, the best first."""
-        sign = 1.0 if self.how.lower_is_better else -1.0
-        present = [(sign * v, k) for k, v in enumerate(self.values) if v is not None]
+        present = [(self.how.signed(v), k) for k, v in enumerate(self.values) if v is not None]
         return tuple(k for _, k in sorted(present))
 
     def sense(self, k: int) -> int:
@@ -201,7 +168,7 @@ class ComparedRow:
         less = self.differences[k]
         if less is None or abs(less) <= self.how.least:
             return 0
-        if (less < 0.0) != self.how.lower_is_better:
+        if (less < 0.0) == self.how.higher:
             return 1
         return -1 if self.differ(0, k) else 0
 
@@ -250,7 +217,7 @@ def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...
     none = ((0.0,) * len(columns),) * len(columns)
     for sectors in zip(*(figures.sectors for figures in columns), strict=True):
         tall = f"{sectors[0].height:g} m tall, at {SECTOR_RADIUS_M:g} m"
-        rows.append(ComparedRow("rig", tall, SECTOR, tuple(s.width for s in sectors), none))
+        rows.append(ComparedRow("rig", tall, BLIND_SECTOR, tuple(s.width for s in sectors), none))
     over_frames = tuple(f.over_frames for f in columns)
     if any(value is not None for value in over_frames):
         rows.append(ComparedRow("rig", "over frames", ENTROPY, over_frames, none))
@@ -258,9 +225,13 @@ def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...
         told = [shown_margin(own.margins.get(story)) for own in columns]
         never = [own.margins.get(story, 0.0) is None for own in columns]
         margins = (NEVER if lost else margin for margin, lost in zip(told, never, strict=True))
-        rows.append(ComparedRow("story", story, MARGIN, tuple(margins), none))
+        rows.append(ComparedRow("story", story, STORY_MARGIN, tuple(margins), none))
     height_text = f"{columns[0].height:g} m tall, within {columns[0].within:g} m"
-    rows.append(ComparedRow("rig", height_text, BLIND, tuple(f.blind_m2 for f in columns), none))
+    apart = {BLIND_GROUND: height_text}
+    detailed = {BLIND_SECTOR, REACH, *AP_RINGS}
+    for key in (key for key, row in FIGURES.items() if row.is_seen and key not in detailed):
+        values = tuple(f.values.get(key) for f in columns)
+        rows.append(ComparedRow("rig", apart.get(key, ""), key, values, none))
     for name in columns[0].reach:
         ahead = tuple(f.reach[name][0] if name in f.reach else None for f in columns)
         rows.append(ComparedRow("class", name, REACH, ahead, none))

@@ -14,10 +14,8 @@ from pe_core import catalog
 from pe_core.base.errors import InputError, one_of
 from pe_core.base.files import named_path, quoted, reason_of
 from pe_core.base.input_files import noting_inputs
-from pe_core.search import Schedule
-from pe_core.search.goals import OBJECTIVES as GOALS
+from pe_core.search import KEPT, ON_FRONT, Schedule
 from pe_core.search.goals import Front, Start
-from pe_core.search.key_figures import KEPT
 from pe_core.sensors import CURVE_MODELS, KINDS, curve_source, detectors, fitted_curves, kind_of
 from pe_core.sensors.lidar import RETURNS
 from pe_core.study import METHODS, OBJECTIVES, SCHEDULED_METHOD, Study, load_study
@@ -114,7 +112,7 @@ def add_search_options(parser: argparse.ArgumentParser) -> None:
     add("--fix", type=_names, default=(), metavar="NAME,...", help=about)
     about = "start from the placement of this study, too; any number"
     add("--start", action="append", default=[], metavar="STUDY", help=about)
-    about = f"a Pareto front of these: two or more of {', '.join(GOALS)}"
+    about = f"a Pareto front of these: two or more of {', '.join(ON_FRONT)}"
     add("--front", type=_names, metavar="NAME,...", help=about)
     about = f"{', '.join(KEPT)}: kept as this or as the start has it, too; none: nothing is kept"
     add("--keep", action="append", type=_kept, metavar="FIGURE[=VALUE]", help=about)

@@ -15,6 +15,7 @@ from pe_core.base.errors import InputError
 from pe_core.base.table_reader import finite
 from pe_core.base.values import error_text
 from pe_core.scene import Vehicle
+from pe_core.search import FIGURES
 from pe_core.study import Study
 
 from .. import advice
@@ -37,10 +38,10 @@ def comparison(names: Sequence[str], rows: Sequence[ComparedRow]) -> list[str]:
     refer to the first study."""
     heads = [name if len(name) <= WIDEST else f"...{name[3 - WIDEST :]}" for name in names]
     table, columns = [["", *heads]], range(len(heads))
-    for name, measure in advice.MEASURES.items():
+    for name, figure in FIGURES.items():
         own = [row for row in rows if row.measure == name]
         if own:
-            table.append([measure.heading, *[""] * len(heads)])
+            table.append([figure.heading, *[""] * len(heads)])
         for row in own:
             traffic = ", in traffic" * (row.group == advice.TRAFFIC)
             table.append([f"  {row.name or 'all'}{traffic}", *(_cell(row, k) for k in columns)])

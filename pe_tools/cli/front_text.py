@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from pe_core.search.goals import AP, ENTROPY, OBJECTIVES, PRICE
+from pe_core.search.figures import PRICE, figure_of
 from pe_core.study import mounts_table
 
 from .. import jobs
@@ -12,9 +12,8 @@ def front_summary(chosen: jobs.TradeOff) -> str:
     """Return the front as a table: the objectives of each design, and the pose of each sensor."""
     named = [name for name in chosen.objectives if all(name in d.figures for d in chosen.front)]
     named += [name for d in chosen.front[:1] for name in d.figures if name not in named]
-    units = {name: OBJECTIVES[name][1] for name in named}
-    units[PRICE] = chosen.study.selection.currency
-    heads = [f"{OBJECTIVES[n][0]} [{units[n]}]" if units[n] else OBJECTIVES[n][0] for n in named]
+    currency = chosen.study.selection.currency
+    heads = [figure_of(name, currency).title for name in named]
     rows = [[_figure(design, name) for name in named] for design in chosen.front]
     widths = [max(map(len, column)) for column in zip(heads, *rows, strict=True)]
 
@@ -49,7 +48,7 @@ def _figure(design: jobs.Design, name: str) -> str:
         return f"{value:,.10g}"
     if design.is_led_in:
         return "infeasible"
-    return f"{value:.3f}" if name in (AP, ENTROPY) else f"{value:,.4g}"
+    return figure_of(name).number(value)
 
 
 def _placed(design: jobs.Design, margin: str) -> Iterator[str]:

@@ -29,7 +29,7 @@ def add_where_options(parser: argparse.ArgumentParser) -> None:
     about = "a mount of the study: its surface, stand-off and orientation"
     where.add_argument("--mount", default="", metavar="NAME", help=about)
     add("--figure", choices=PLACE_FIGURES, default="entropy", metavar="|".join(PLACE_FIGURES))
-    counts = ", ".join(f"{row.key} {row.places:,}" for row in PLACE_FIGURES.values())
+    counts = ", ".join(f"{key} {row.places:,}" for key, row in PLACE_FIGURES.items())
     add("--places", type=count_up_to(20_000, 1), metavar="N", help=f"how many ({counts})")
     add("--workers", type=count_up_to(1024), metavar="N", help="processes (default: all)")
     add("--json", action="store_true", help="print JSON")
@@ -61,17 +61,19 @@ def where(study: Study, args: argparse.Namespace) -> Answer:
 
 def place_lines(found: PlaceMap) -> list[str]:
     """Return the best places as a table, with what is forbidden and how sure the figures are."""
-    row, name = found.row, found.row.label[:1].lower() + found.row.label[1:]
+    row, name = found.row, found.row.figure.name
     rows = [["position [m]", "yaw [deg]", name, "change"]]
     for place in found.best(BEST, APART_M):
         value = place.value or 0.0
         at = ", ".join(f"{v:.3f}" for v in place.pose.position)
-        figures = row.text(value), row.change(value - found.base)
+        figures = row.figure.text(value), row.change(value - found.base)
         rows.append([f"({at})", f"{place.pose.rotation_deg[2]:.0f}", *figures])
     free = sum(each.value is not None for each in found.places)
     head = f"{found.sensor.model.name} at {free:,} of {len(found.places):,} places"
-    lines = [f"{head}; without it {name} {row.text(found.base)}", *aligned(rows)]
+    lines = [f"{head}; without it {name} {row.figure.text(found.base)}", *aligned(rows)]
     lines += [f"{plural(n, 'place')} forbidden: {why}" for why, n in found.reasons().items()]
     if found.error:
-        lines.append(f"standard error of a change: {row.text(found.error)}, less at these places")
+        lines.append(
+            f"standard error of a change: {row.figure.text(found.error)}, less at these places"
+        )
     return lines

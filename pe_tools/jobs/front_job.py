@@ -25,7 +25,7 @@ from pe_core.search import (
     pareto_front,
 )
 from pe_core.search.build_figures import SUMS
-from pe_core.search.goals import AP, ENTROPY, PRICE
+from pe_core.search.figures import AP, ENTROPY, PRICE
 from pe_core.study.condition_table import is_by_ap
 from pe_core.study.file_names import SEARCH
 from pe_core.study.requirement_search import constraints_of, feasible_first, is_infeasible
@@ -116,7 +116,7 @@ class FrontJob(Job):
     workers : int, optional
         As of `Job`.
     objectives : sequence of str or callable, optional
-        Two or more, in place of the study's: names of `OBJECTIVES`, and functions that take a `Rig`
+        Two or more, in place of the study's: names of `FIGURES`, and functions that take a `Rig`
         and return a number; lower is better. Processes evaluate a function that can be pickled.
 
     Attributes

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
 from itertools import pairwise
 
 from pe_core.base.errors import InputError
@@ -12,19 +11,19 @@ from pe_core.scoring import RigEvaluator
 from pe_core.scoring.requirements import FARTHEST_M, Verdict
 from pe_core.scoring.score import Score
 from pe_core.search import objective_of
-from pe_core.search.build_figures import BUILD_FIGURES, SUMS, Placement
-from pe_core.search.goals import (
+from pe_core.search.build_figures import BUILD_FIGURES, SUMS, BuildFigure, Placement
+from pe_core.search.figures import (
     AP,
-    BLIND_GROUND,
     BLIND_ZONES,
     ENTROPY,
-    HIGHER_IS_BETTER,
+    FIGURES,
     MARGIN,
-    OBJECTIVES,
+    ON_FRONT,
     PRICE,
     WORST_LOSS,
+    RigView,
+    figure_of,
 )
-from pe_core.search.key_figures import blind_area
 from pe_core.search.tolerance import without_each
 from pe_core.study.condition_table import is_by_ap
 from pe_core.study.study import EXPECTED_AP, Study
@@ -43,9 +42,9 @@ def objectives_of(
     two or more, each once, functions by a name of their own, and one depends on the placement."""
     names = [getattr(e, "__name__", type(e).__name__) if callable(e) else str(e) for e in given]
     own = {name: each for name, each in zip(names, given, strict=True) if callable(each)}
-    free = {name for name in names if (name in OBJECTIVES) != (name in own)}
+    free = {name for name in names if (name in ON_FRONT) != (name in own)}
     if not free - set(SUMS) or len(free) < max(2, len(names)):
-        expected = f"two or more of {', '.join(OBJECTIVES)}, or functions; not sums alone"
+        expected = f"two or more of {', '.join(ON_FRONT)}, or functions; not sums alone"
         raise InputError("optimize", "front.objectives", expected, ", ".join(names))
     return tuple(names), own
 
@@ -92,15 +91,13 @@ class FrontFigures:
         self.names, self._study, self._evaluator = tuple(names), study, evaluator
         tolerance, seed = study.search.tolerance, study.search.seed
         self._objective = objective_of(evaluator, tolerance, seed)
-        self._sight = study.sight() if BLIND_GROUND in names else None
+        self._sight = study.sight()
         asks = {MARGIN, BLIND_ZONES} & set(names)
         self._checker = study.checker() if asks else None
         self._known: dict[tuple[object, ...], dict[str, float]] = {}
         self._of: dict[str, Callable[[Rig], float]] = {
             ENTROPY: self._objective.entropy,
             AP: self._ap,
-            BLIND_GROUND: self._blind_ground,
-            **{key: partial(self._built, key) for key in BUILD_FIGURES},
             WORST_LOSS: self._worst_loss,
             MARGIN: lambda rig: self._zones(rig)[0],
             BLIND_ZONES: lambda rig: self._zones(rig)[1],
@@ -115,7 +112,8 @@ class FrontFigures:
         """Return the objectives of a rig by name, each in its own unit."""
         key = tuple((s.name, s.model.name, s.pose.position, s.pose.rpy) for s in rig)
         if key not in self._known:
-            self._known[key] = {name: rounded(self._of[name](rig)) for name in self.names}
+            view = RigView(self._sight, rig)
+            self._known[key] = {name: rounded(self._value(name, view)) for name in self.names}
         return self._known[key]
 
     def costs(self, rig: Rig) -> list[float]:
@@ -131,10 +129,17 @@ class FrontFigures:
             figures[AP] = score.objects.ap
         return figures
 
-    def _built(self, key: str, rig: Rig) -> float:
-        placed = Placement.on(rig, self._study.vehicle)
-        BUILD_FIGURES[key].required(placed, f"front.objectives: {key}")
-        return BUILD_FIGURES[key].value(placed) or 0.0
+    def _value(self, name: str, view: RigView) -> float:
+        if name in self._of:
+            return self._of[name](view.rig)
+        row = FIGURES[name]
+        if isinstance(row, BuildFigure):
+            row.required(view.placement, f"front.objectives: {name}")
+        found = row.worst(row.values(view))
+        if found is None:
+            expected = f"a study with a known {row.name}"
+            raise InputError("optimize", f"front.objectives: {name}", expected, "unknown")
+        return found
 
     def _ap(self, rig: Rig) -> float:
         if self._in_traffic is not None:
@@ -142,10 +147,6 @@ class FrontFigures:
         found = self._evaluator.score(rig).objects
         assert found is not None
         return found.ap
-
-    def _blind_ground(self, rig: Rig) -> float:
-        assert self._sight is not None
-        return blind_area(self._sight, rig)
 
     def _worst_loss(self, rig: Rig) -> float:
         whole, *lost = self._evaluator.entropies([rig, *without_each(rig)])
@@ -168,7 +169,7 @@ def _margin(verdict: Verdict) -> float:
 
 def costs_of(figures: FrontValues, names: Sequence[str]) -> list[float]:
     """Return figures as values to minimise."""
-    return [-figures[n] if n in HIGHER_IS_BETTER else figures[n] for n in names]
+    return [figure_of(name).signed(figures[name]) for name in names]
 
 
 class ScalarValue:

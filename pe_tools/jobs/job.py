@@ -19,7 +19,14 @@ from pe_core.scoring.requirements import CheckStep, RequirementChecker, Verdict
 from pe_core.scoring.sampling import CENTERED, SEARCHED, Shift
 from pe_core.scoring.score import SURE, ObjectScore, Score, ScoreStopped
 from pe_core.search import EvaluatedRig, KeyFigures, Reading, Robustness, dashboard
-from pe_core.search.key_figures import ENTROPY, REQUIREMENTS
+from pe_core.search.figures import (
+    BLIND_GROUND,
+    BLIND_SECTOR,
+    ENTROPY,
+    FIGURES,
+    REQUIREMENTS,
+    TRAFFIC_AP,
+)
 from pe_core.study.condition_table import (
     ConditionTable,
     condition_table,
@@ -199,7 +206,7 @@ class Outcome(Tabular):
 
     @property
     def change_errors(self) -> dict[str, float]:
-        """Standard errors of what a search changed, by the names of `KEY_FIGURES`; figures that
+        """Standard errors of what a search changed, by the names of `FIGURES`; figures that
         have none are left out."""
         of_entropy = difference_error(self.before, self.after, ("rig", "", ENTROPY))
         errors = {ENTROPY: of_entropy}
@@ -234,11 +241,8 @@ class Outcome(Tabular):
 
 def _beside(figures: KeyFigures) -> dict[str, Any]:
     """Return the figures beside the entropy, as a table has them."""
-    return {
-        "AP in traffic": None if figures.traffic is None else figures.traffic.ap,
-        "blind sector [deg]": figures.sectors[0].width if figures.sectors else None,
-        "blind ground [m2]": figures.blind_m2,
-    }
+    rows = (FIGURES[key] for key in (TRAFFIC_AP, BLIND_SECTOR, BLIND_GROUND))
+    return {row.title: row.value(figures) for row in rows}
 
 
 T = TypeVar("T")

@@ -8,7 +8,7 @@ from typing import Any
 from pe_core.base.errors import InputError, shown
 from pe_core.scene.rig import Rig
 from pe_core.search import Objective, as_objective
-from pe_core.search.goals import OBJECTIVES
+from pe_core.search.figures import FIGURES
 from pe_core.study.requirement_search import INFEASIBLE
 from pe_core.study.study import ENTROPY, EXPECTED_AP, Study
 
@@ -16,7 +16,7 @@ from .searched_figure import SearchedFigure
 
 LINEAR_UP_TO = INFEASIBLE / 2.0
 """Up to this figure a search minimises the figure itself, beyond it a bounded function of it."""
-TAKEN = frozenset({*OBJECTIVES, EXPECTED_AP, "evaluation", "evaluations", "round", "placements"})
+TAKEN = frozenset({*FIGURES, EXPECTED_AP, "evaluation", "evaluations", "round", "placements"})
 """Names with another meaning in the files of a result."""
 
 

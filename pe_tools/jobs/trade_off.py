@@ -25,7 +25,7 @@ from pe_core.search import (
     pose_values,
     standoff_point,
 )
-from pe_core.search.goals import AP, ENTROPY, PRICE, label_of
+from pe_core.search.figures import AP, ENTROPY, PRICE, figure_of
 from pe_core.study.requirement_search import is_infeasible
 from pe_core.study.study import Study
 
@@ -215,7 +215,7 @@ class TradeOff(Tabular):
     @property
     def told(self) -> str:
         """What is on the front, and of how many designs."""
-        labels = ", ".join(label_of(name)[0] for name in self.objectives)
+        labels = ", ".join(figure_of(name).name for name in self.objectives)
         of_all = f"{len(self.front)} on the front of {labels}"
         if not self.study.selection.choices or self.study.search.goals.front.objectives:
             return of_all

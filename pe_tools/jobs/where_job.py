@@ -15,8 +15,9 @@ from pe_core.base.values import rounded
 from pe_core.scene.rig import Rig, Sensor
 from pe_core.scoring.sampling import CENTERED, SEARCHED, Shift
 from pe_core.scoring.score import Objective, standard_error
-from pe_core.scoring.sight import Sight, shown_end
-from pe_core.search import MountingPlaces, SurfaceMount, SurfacePlace, evaluate_all
+from pe_core.scoring.sight import Sight
+from pe_core.search import FIGURES, Figure, MountingPlaces, SurfaceMount, SurfacePlace, evaluate_all
+from pe_core.search.figures import BLIND_SECTOR, ENTROPY, REQUIREMENTS, TRAFFIC_AP
 from pe_core.study.condition_table import search_evaluator
 from pe_core.study.requirement_search import RequirementConstraint
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, EXPECTED_AP, Study
@@ -68,47 +69,34 @@ def _met(study: Study, _samples: int, _shift: Shift) -> Objective:
 
 @dataclass(frozen=True, slots=True)
 class PlaceFigure:
-    """A figure by which places are compared. `objective` returns what is minimised, of a study, a
-    number of voxels and their shift; the figure is `sign` times its value. `places` is how many are
-    scored in about 20 s. `exact` is whether it does not depend on a sample, `of_voxels` whether
-    that sample is one of voxels; `shown` rounds it to the safe side."""
+    """A row of `FIGURES` by which places are compared. `objective` returns what is minimised, of a
+    study, a number of voxels and their shift: the figure, or minus it where higher is better.
+    `places` is how many are scored in about 20 s. `exact` is whether it does not depend on a
+    sample, `of_voxels` whether that sample is one of voxels."""
 
-    key: str
-    label: str
-    unit: str
-    decimals: int
+    figure: Figure
     objective: Callable[[Study, int, Shift], Objective]
     places: int
-    sign: float = 1.0
     exact: bool = False
     of_voxels: bool = False
-    shown: Callable[[float], float] = float
 
-    def text(self, value: float) -> str:
-        """Return a value with its unit."""
-        return f"{self.shown(value):.{self.decimals}f} {self.unit}".strip()
+    @property
+    def sign(self) -> float:
+        """The figure is so many times the value that is minimised."""
+        return self.figure.signed(1.0)
 
     def change(self, by: float) -> str:
         """Return a difference with its sign and its unit."""
-        return f"{by:+.{self.decimals}f} {self.unit}".strip()
+        return f"{by:+.{self.figure.decimals}f} {self.figure.unit}".strip()
 
 
 PLACE_FIGURES = {
-    row.key: row
+    row.figure.key: row
     for row in (
-        PlaceFigure("entropy", "Entropy", "nats", 3, _by_entropy, places=2000, of_voxels=True),
-        PlaceFigure("ap", "Expected AP in traffic", "", 3, _by_ap, places=600, sign=-1.0),
-        PlaceFigure(
-            "blind",
-            "Widest blind sector",
-            "deg",
-            1,
-            _by_sector,
-            places=350,
-            exact=True,
-            shown=shown_end,
-        ),
-        PlaceFigure("verdicts", "Requirements met", "", 0, _met, places=700, sign=-1.0, exact=True),
+        PlaceFigure(FIGURES[ENTROPY], _by_entropy, places=2000, of_voxels=True),
+        PlaceFigure(FIGURES[TRAFFIC_AP], _by_ap, places=600),
+        PlaceFigure(FIGURES[BLIND_SECTOR], _by_sector, places=350, exact=True),
+        PlaceFigure(FIGURES[REQUIREMENTS], _met, places=700, exact=True),
     )
 }  # Figures of places, by name
 
@@ -156,10 +144,10 @@ class PlaceMap:
 
     def text(self, value: float) -> str:
         """Return the figure of a place, with its change and how sure that is."""
-        sure = f" ± {self.row.text(self.error)}" if self.error else ""
+        sure = f" ± {self.row.figure.text(self.error)}" if self.error else ""
         change = self.row.change(value - self.base)
         sample = f", on {SAMPLES:,} voxels" if self.row.of_voxels else ""
-        return f"{self.row.label} {self.row.text(value)} ({change}{sure}{sample})"
+        return f"{self.row.figure.label} {self.row.figure.text(value)} ({change}{sure}{sample})"
 
     def rows(self) -> list[dict[str, Any]]:
         """Return the places as flat tables."""

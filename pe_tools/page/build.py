@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import pe_core as pe
-from pe_core.search.goals import HIGHER_IS_BETTER, OBJECTIVES, label_of
+from pe_core.search import FIGURES, figure_of
 
 from .. import cli as app
 from .. import jobs
 from .document import PAGE, html_file, page_bytes, write_page
-from .markup import capitalized, render
+from .markup import render
 from .pictures.charts import four_digits, pareto_plot
 from .report_context import MAX_STUDIES, About, ReportContext
 
@@ -77,18 +77,14 @@ def front_page(data: Mapping[str, Any]) -> bytes:
     others = [design for design in designs if not design["on_front"]]
     figures = [design["figures"] for design in front]
     shared = set(figures[0]).intersection(*figures) if figures else set()
-    columns = [*names, *(name for name in OBJECTIVES if name in shared and name not in names)]
+    columns = [*names, *(name for name in FIGURES if name in shared and name not in names)]
     values = {name: [_figure(design, name) or 0.0 for design in front] for name in columns}
-    best = {name: (max if name in HIGHER_IS_BETTER else min)(values[name]) for name in columns}
-    labels = {}
-    for name in columns:
-        label, unit = label_of(name)
-        unit = unit or (str(data.get("currency") or "") if name == "price" else "")
-        better = "higher is better" if name in HIGHER_IS_BETTER else "lower is better"
-        labels[name] = f"{label} [{unit}], {better}" if unit else f"{label}, {better}"
+    rows = {name: figure_of(name, str(data.get("currency") or "")) for name in columns}
+    best = {name: row.best(values[name]) for name, row in rows.items()}
+    labels = {name: row.heading for name, row in rows.items()}
     with_requirements = any("requirements_met" in design for design in front)
-    heads = ["design", *(labels[name].split(",")[0] for name in columns)]
-    titles = [capitalized(label_of(name)[0]) for name in names]
+    heads = ["design", *(row.title for row in rows.values())]
+    titles = [figure_of(name).label for name in names]
     body = render(
         "front.html",
         labels=titles,
@@ -100,7 +96,7 @@ def front_page(data: Mapping[str, Any]) -> bytes:
                 [(_figure(d, x) or 0.0, _figure(d, y) or 0.0) for d in front],
                 [(_figure(d, x) or 0.0, _figure(d, y) or 0.0) for d in others],
                 (labels[x], labels[y]),
-                f"{label_of(x)[0]} against {label_of(y)[0]}{BELOW}",
+                f"{rows[x].label} against {rows[y].name}{BELOW}",
             )
             for x, y in combinations(names, 2)
         ],

@@ -9,8 +9,7 @@ from pe_core.base.errors import InputError
 from pe_core.base.files import csv_text, read_bytes
 from pe_core.base.input_files import not_noting_inputs
 from pe_core.base.table_reader import dump_json, finite, parse_json
-from pe_core.search.build_figures import BUILD_FIGURES
-from pe_core.search.key_figures import KEPT, KEY_FIGURES, NO_FIGURE, REQUIREMENTS, KeyFigures
+from pe_core.search import FIGURES, KEPT, NO_FIGURE, REQUIREMENTS, KeyFigures
 from pe_core.study import RESULT
 from pe_core.study.study import EXPECTED_AP
 from pe_core.version import __version__
@@ -139,9 +138,13 @@ def table_lines(rows: Sequence[SweepRow], kind: str) -> list[str]:
     highest = max((r.ap for r in rows if r.ap is not None), default=None)
     texts = len(heads) - 2 - (kind != "score")
     heads += ["start", "expected AP"] * (highest is not None)
-    known = [key for key in KEPT if any(_value(key, row.figures_after) is not None for row in rows)]
+    known = [
+        key
+        for key in KEPT
+        if any(FIGURES[key].value(row.figures_after) is not None for row in rows)
+    ]
     checked = any(row.met for row in rows)
-    heads += [KEY_FIGURES[key].name for key in known] + [REQUIREMENTS] * checked
+    heads += [FIGURES[key].name for key in known] + [REQUIREMENTS] * checked
     table = [heads]
     for row in rows:
         before = [_figure(row.before)] if kind != "score" else []
@@ -161,13 +164,9 @@ def _figure(value: float | None) -> str:
     return "-" if value is None else f"{value:.3f}"
 
 
-def _value(key: str, figures: KeyFigures | None) -> float | None:
-    return KEY_FIGURES[key].value(figures)
-
-
 def _cell(key: str, figures: KeyFigures | None) -> str:
     """Return a key figure with its unit, as the dashboard has it."""
-    row = KEY_FIGURES[key]
+    row = FIGURES[key]
     return row.text(row.value(figures), figures is not None and row.is_cut(figures))
 
 
@@ -176,10 +175,9 @@ def _keys(rows: Sequence[SweepRow]) -> list[str]:
 
 
 def _key_figures(figures: KeyFigures | None) -> dict[str, float | None]:
-    """Return the figures by the names of their columns; what can be built is the last."""
-    found = {key: _value(key, figures) for key in KEPT}
-    found[OVER_FRAMES] = None if figures is None else figures.over_frames
-    return found | {key: figures.built.get(key) if figures else None for key in BUILD_FIGURES}
+    """Return the figures by the names of their columns;"""
+    over = {OVER_FRAMES: None if figures is None else figures.over_frames}
+    return {key: row.value(figures) for key, row in FIGURES.items()} | over
 
 
 def _dict(row: SweepRow, kind: str) -> dict[str, Any]:

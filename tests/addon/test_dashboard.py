@@ -38,10 +38,10 @@ def test_its_values_are_those_of_the_score(car):
     texts = shown(car).texts("label")
     result = car.perception_entropy.result
     rows = result.data["dashboard"]
-    assert [row["figure"] for row in rows] == list(search.KEY_FIGURES)
+    assert {row["figure"] for row in rows} == {*search.KEPT, "requirements", "entropy"}
     for row in rows:
-        figure = search.KEY_FIGURES[row["figure"]]
-        if row["value"] is not None and figure.part:
+        figure = search.FIGURES[row["figure"]]
+        if row["value"] is not None and figure.is_seen:
             assert figure.text(row["value"]).replace("m2", "m²") in texts
     assert f"{result.entropy:.3f}" in texts
     data = json.loads(car.perception_entropy.result_json)
@@ -53,7 +53,7 @@ def test_its_values_are_those_of_the_score(car):
 def test_what_is_wanted_is_met_or_not_and_is_the_study_s(car):
     settings = car.perception_entropy
     bpy.ops.pe.score()
-    value = search.KEY_FIGURES["blind_ground"].value(
+    value = search.FIGURES["blind_ground"].value(
         search.KeyFigures.from_dict(settings.result.data["figures"]["after"])
     )
     assert "Wanted" in shown(car).texts("label")

@@ -26,7 +26,10 @@ def test_what_a_search_cost_is_stored_and_shown(car):
     told = [settings.result.figures[which] for which in ("before", "after")]
     assert told == [figures.to_dict() for figures in expected.figures]
     labels = " ".join(layouts.drawn(main.main, **vars(layouts.Window(car))).texts("label"))
-    up = [f"{math.ceil(10.0 * figures.blind_m2) / 10.0:.1f}" for figures in expected.figures]
+    up = [
+        f"{math.ceil(10.0 * figures.values['blind_ground']) / 10.0:.1f}"
+        for figures in expected.figures
+    ]
     assert f"Blind ground {up[1]} m²" in labels and (up[0] == up[1] or f"({up[0]})" in labels)
     assert expected.cost.split("(")[0].strip() in labels
     ends = [f"{each.entropy:.3f}" for each in (expected.before, expected.after)]

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from blender_addon import bridge, consistency, diagnostics, result_staleness
-from blender_addon.engine import advice, exchange, jobs, outputs, page, pe, text
+from blender_addon.engine import exchange, jobs, outputs, page, pe, search, text
 from blender_addon.operators import compare_variants
 from blender_addon.panels import main
 from tests.addon import layouts, scenes
@@ -151,7 +151,7 @@ def test_import_rigs_and_compare_them(car, tmp_path):
     assert shown == ["KITTI", "Unsaved"]
     whole = next(row for row in table if row.group == "rig" and row.measure == "entropy")
     assert whole.values[0] == study.evaluator().score(study.rig).entropy
-    order = [[*advice.MEASURES].index(each) for each in ("blind", "reach", "entropy")]
+    order = [[*search.FIGURES].index(each) for each in ("blind_ground", "reach", "entropy")]
     assert order == sorted(order), "what a designer asks for comes first"
     text, _, change, _ = compare_variants.cell_of(whole, 1)
     assert text == f"{whole.values[1]:.3f}" and change == f"({whole.differences[1]:+.3f})"

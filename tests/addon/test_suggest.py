@@ -43,7 +43,7 @@ def test_taking_an_added_sensor_gives_the_promised_figures(car):
     study = scenes.study()
     assert study.rig[new.name].pose == own.rig[own.moved[0]].pose
     assert study.evaluator(2048).entropy(study.rig) == own.after.entropy
-    assert study.key_figures().blind_m2 == own.after.blind_m2 < own.before.blind_m2
+    assert study.key_figures().values["blind_ground"] == own.after.blind_m2 < own.before.blind_m2
     assert car.name not in where_map.offers
     job = jobs.SuggestJob(study, spot=SPOT[:2])
     assert list(job) and job.found == {}

@@ -155,7 +155,7 @@ def test_they_are_those_of_sight(study):
     look = study.sight()
     found = advice.KeyFigures.of_rig(look, study.rig)
     reach, blind = look.reach(study.rig, "car"), look.blind(study.rig, 0.5)
-    assert 0.0 < found.blind_m2 == pytest.approx(blind.area, abs=1e-9) and (
+    assert 0.0 < found.values["blind_ground"] == pytest.approx(blind.area, abs=1e-9) and (
         found.height,
         found.within,
     ) == (0.5, 10.0)
@@ -169,7 +169,8 @@ def test_they_are_those_of_sight(study):
 def in_traffic(near):
     """Key figures of a rig with this AP near the vehicle."""
     rings = {"near": near, "far": (0.33, 0.002)}
-    return advice.KeyFigures(TrafficAp(0.4, 0.01, 8, rings), (), 1.0, 0.5, 10.0)
+    values = {"ap_near": near[0], "ap_far": 0.33, "traffic_ap": 0.4, "blind_ground": 1.0}
+    return advice.KeyFigures(TrafficAp(0.4, 0.01, 8, rings), (), 0.5, 10.0, values)
 
 
 def test_a_move_is_told_with_its_gain_and_its_error(study):
@@ -187,7 +188,11 @@ def test_a_move_is_told_with_its_gain_and_its_error(study):
 def test_key_figures_are_told_where_they_exist_and_to_where_the_space_ends():
     """There is no AP at a middle distance, before or after."""
     found = {"car": (19.9, False)}, {"car": (20.0, True), "cone": (30.0, True)}
-    told = [dataclasses.replace(in_traffic((0.4, 0.01)), reach=each) for each in found]
+    known = in_traffic((0.4, 0.01))
+    told = [
+        dataclasses.replace(known, reach=each, values={**known.values, "reach": each["car"][0]})
+        for each in found
+    ]
     parts = {"kind": "optimize", "figures": told, "before": score(), "after": score()}
     (line,) = figure_lines(SimpleNamespace(**parts, dashboard=dashboard(told[1], 3.0)))
     assert "reach 19 m -> 20 m and more, AP near 0.40 -> 0.40, AP far 0.33 -> 0.33" in line
@@ -289,7 +294,7 @@ def test_figures_that_prefer_different_rigs_are_told():
         rows = [
             advice.ComparedRow("rig", "", "entropy", (1.0, 2.0), none, 2.0),
             advice.ComparedRow(advice.TRAFFIC, "", "ap", (0.6, 0.5), none, 2.0),
-            advice.ComparedRow("rig", "0.5 m tall, at 20 m", "sector", widths, none),
+            advice.ComparedRow("rig", "0.5 m tall, at 20 m", "blind_sector", widths, none),
         ]
         return advice.disagreement(["one", "other"], rows)
 

@@ -27,7 +27,9 @@ def cans(*places, **more):
 
 
 def value(name, sensors, vehicle=None):
-    return BUILD_FIGURES[name].value(Placement.on(pe.Rig(sensors), vehicle or shapes.box_car()))
+    return BUILD_FIGURES[name].of_placement(
+        Placement.on(pe.Rig(sensors), vehicle or shapes.box_car())
+    )
 
 
 def corners(sensors):
@@ -114,7 +116,7 @@ def test_sums_add_up_and_what_is_not_known_is_named_and_never_zero():
     eye = shapes.camera(name="eye")
     placed = Placement.on(pe.Rig([*known, eye]), shapes.box_car())
     for name in ("mass", "power", "data_rate", "protrusion", "frontal_area"):
-        assert BUILD_FIGURES[name].value(placed) is None
+        assert BUILD_FIGURES[name].of_placement(placed) is None
         assert BUILD_FIGURES[name].lacking(placed) == ("eye",)
     assert BUILD_FIGURES["price"].lacking(placed) == ("can 0", "can 1", "eye")
     assert BUILD_FIGURES["overlap"].lacking(Placement.on(pe.Rig([eye]), None)) == (ALONE,)
@@ -218,12 +220,10 @@ def test_a_score_tells_what_can_be_built_and_of_whom_it_is_not_known(tmp_path, c
     told = capsys.readouterr().out.splitlines()
     data = json.loads((tmp_path / "out" / "result.json").read_text())["figures"]["after"]
     placed = Placement.on(study.rig, study.vehicle)
-    assert data["built"] == {
-        key: pytest.approx(figure)
-        for key, row in BUILD_FIGURES.items()
-        if (figure := row.value(placed)) is not None
+    assert {key: data["values"].get(key) for key in BUILD_FIGURES} == {
+        key: pytest.approx(row.of_placement(placed)) for key, row in BUILD_FIGURES.items()
     }
-    assert data["unknown"]["mass"] == ["eye"] and "mass" not in data["built"]
+    assert data["unknown"]["mass"] == ["eye"] and "mass" not in data["values"]
     lines = built_lines([pt.advice.KeyFigures.from_dict(data)])
     assert len(lines) == 2 and set(lines) <= set(told) and "eye" in lines[1]
 

@@ -11,7 +11,7 @@ import pe_core as pe
 from pe_core.base import dump_json
 from pe_core.base.table_reader import finite
 from pe_core.scoring.score import Scatter
-from pe_core.search.key_figures import KEY_FIGURES
+from pe_core.search import FIGURES
 from pe_tools import advice
 from pe_tools.advice.score_comparison import (
     BLOCKS,
@@ -105,7 +105,7 @@ def test_who_is_better_and_who_is_alike(entropies, own, more, best):
 
 MODEL = shapes.small_lidar(16, 180)
 PAIR = [pe.Rig([shapes.lidar_on_roof(MODEL, (x, 0.0, 2.0))]) for x in (0.0, 0.4)]
-FIGURES = [ENTROPY, COVERAGE, ("zone", "near", "entropy"), ("class", "car", "coverage")]
+COMPARED = [ENTROPY, COVERAGE, ("zone", "near", "entropy"), ("class", "car", "coverage")]
 
 
 def test_paired_errors_are_the_scatter_of_differences_on_other_samples():
@@ -114,16 +114,16 @@ def test_paired_errors_are_the_scatter_of_differences_on_other_samples():
     Half of it would be too low, twice too high; and the rigs' own errors are some times as large.
     """
     space, prior = shapes.small_space(), pe.Prior.road()
-    told, found, alone = ({figure: [] for figure in FIGURES} for _ in range(3))
+    told, found, alone = ({figure: [] for figure in COMPARED} for _ in range(3))
     for shift in np.random.default_rng(5).random((60, 3)):
         evaluator = pe.Evaluator(space, prior, samples=2048, shift=tuple(shift))
         scores = [evaluator.score(rig) for rig in PAIR]
         assert scores[0].scatter.sample == scores[1].scatter.sample
-        for figure in FIGURES:
+        for figure in COMPARED:
             told[figure].append(difference_errors(scores, figure)[0][1])
             found[figure].append(_value(scores[1], figure) - _value(scores[0], figure))
             alone[figure].append(scores[0].scatter.error(figure))
-    for figure in FIGURES:
+    for figure in COMPARED:
         ratio = math.sqrt(fmean(e * e for e in told[figure])) / stdev(found[figure])
         assert 0.8 < ratio < 2.0, (figure, ratio)
     assert fmean(told[ENTROPY]) < 0.7 * math.sqrt(2.0) * fmean(alone[ENTROPY])
@@ -166,9 +166,9 @@ def test_errors_of_objects_that_are_not_paired_are_their_own():
 
 def test_a_story_that_is_missed_by_little_shows_no_margin_of_zero():
     margins = {"late": -0.04, "in time": 0.96, "never": None}
-    figures = advice.KeyFigures(None, (), 0.0, 0.5, 10.0, margins=margins)
+    figures = advice.KeyFigures(None, (), 0.5, 10.0, margins=margins)
     rows = advice.compare_figures({"a": figures})
-    assert [r.values[0] for r in rows if r.measure == "margin"] == [-0.1, 0.9, NEVER]
+    assert [r.values[0] for r in rows if r.measure == "story_margin"] == [-0.1, 0.9, NEVER]
 
 
 @pytest.mark.parametrize(
@@ -183,10 +183,10 @@ def test_a_story_that_is_missed_by_little_shows_no_margin_of_zero():
 def test_a_story_that_is_never_confirmed_is_the_worst_there_is(margins, senses, cells):
     stories = [{} if own == "no such story" else {"child": own} for own in margins]
     by_rig = {
-        name: advice.KeyFigures(None, (), 0.0, 0.5, 10.0, margins=own)
+        name: advice.KeyFigures(None, (), 0.5, 10.0, margins=own)
         for name, own in zip("ab", stories, strict=True)
     }
-    (row,) = (r for r in advice.compare_figures(by_rig) if r.measure == "margin")
+    (row,) = (r for r in advice.compare_figures(by_rig) if r.measure == "story_margin")
     assert [row.sense(0), row.sense(1)] == senses
     (line,) = (line for line in comparison(["a", "b"], [row]) if line.startswith("  child"))
     assert line.split()[1:] == cells
@@ -203,12 +203,10 @@ def test_less_than_all_is_nowhere_told_as_all():
     assert "a (99.9%)" in advice.ranking(["a", "b"], rows)[1]
 
 
-@pytest.mark.parametrize(
-    ("measure", "key"), [("blind", "blind_ground"), ("sector", "blind_sector")]
-)
-def test_what_is_blind_reads_as_on_the_dashboard(measure, key):
+@pytest.mark.parametrize("measure", ["blind_ground", "blind_sector"])
+def test_what_is_blind_reads_as_on_the_dashboard(measure):
     """Rounded up: 40.31 m2 are 40.4 m2 in both places; differences are those of what is told."""
     row = advice.ComparedRow("rig", "", measure, (40.31, 12.0), ((0.0, 0.0),) * 2)
     (line,) = (line for line in comparison(["a", "b"], [row]) if line.startswith("  all"))
     assert line.split()[1:] == ["40.4", "12.0", "(-28.4)*"]
-    assert KEY_FIGURES[key].text(40.31).startswith("40.4 ")
+    assert FIGURES[measure].text(40.31).startswith("40.4 ")

@@ -1,6 +1,7 @@
 """The verbs explain and compare on the command line."""
 
 import json
+import math
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +12,7 @@ import pe_core as pe
 import pe_tools as pt
 from pe_core import catalog
 from pe_core.motion import stories
-from pe_core.search.key_figures import KEY_FIGURES
+from pe_core.search import FIGURES
 from pe_tools import advice
 from pe_tools.cli.verbs import main
 from tests.engine import shapes
@@ -113,11 +114,11 @@ def test_compare_tells_blind_ground_reach_and_ap_and_a_known_rig_beside(tmp_path
     figures = [advice.KeyFigures.of_rig(look, each) for each in (first.rig, rig)]
     assert lines[0].split() == ["car", "paper_car_camera60"]
     (ground,) = (line for line in lines if line.startswith("  0.5 m tall, within 10 m"))
-    row = KEY_FIGURES["blind_ground"]
-    assert all(row.text(own.blind_m2).split()[0] in ground for own in figures)
+    row = FIGURES["blind_ground"]
+    assert all(row.text(row.value(own)).split()[0] in ground for own in figures)
     assert ground.count("*") == 1, "less blind ground is better"
-    title = lines.index(advice.MEASURES["reach"].heading)
-    assert lines[title + 1].split()[:2] == ["car", f"{figures[0].reach['car'][0]:.1f}".rstrip("*")]
+    title = lines.index(FIGURES["reach"].heading)
+    assert lines[title + 1].split()[:2] == ["car", f"{math.floor(figures[0].reach['car'][0])}"]
     assert main([*call, "--json"]) == 0
     data = json.loads(capsys.readouterr().out)
     assert data["figures"] == {

@@ -20,9 +20,8 @@ from pe_core.scoring.requirements import (
     Zone,
 )
 from pe_core.scoring.sight import BLIND_TO_M, Sight
-from pe_core.search import Goals, Tolerance, Wanted
+from pe_core.search import FIGURES, Goals, RigView, Tolerance, Wanted
 from pe_core.search.dispatch import value_below
-from pe_core.search.key_figures import KEY_FIGURES, PARTS
 from pe_core.study.requirement_search import INFEASIBLE, constraints_of, feasible_first
 from pe_core.study.suggestion import BLIND_SPOT, SAMPLES, mended, suggestions, with_blind_spot
 from pe_tools import advice
@@ -246,19 +245,22 @@ def tilted(keep=(), method="portfolio", **wanted):
 def test_a_search_that_keeps_blind_ground_ends_with_no_more_of_it(method):
     """Without the key the same search pays its gain with blind ground, and says so."""
     free, kept = (finished(pt.OptimizeJob(tilted(keep, method), 1)) for keep in ((), BLIND))
-    before, after = (figures.blind_m2 for figures in free.figures)
+    before, after = (figures.values["blind_ground"] for figures in free.figures)
     assert after > before + 1.0
     assert "blind ground (" in free.cost and advice.costs_nothing(kept.cost) == (
         "nothing" in kept.cost
     )
-    start, result = (figures.blind_m2 for figures in kept.figures)
+    start, result = (figures.values["blind_ground"] for figures in kept.figures)
     assert start == before >= result
     assert "blind ground (" not in kept.cost and free.before == kept.before
     assert free.after.entropy < kept.after.entropy <= kept.before.entropy
     sight = kept.study.sight()
     assert sight.blind(kept.study.rig, BLIND_TO_M).area == pytest.approx(result)
     told = result_dict(kept)
-    assert [told["figures"][which]["blind_m2"] for which in ("before", "after")] == [start, result]
+    assert [told["figures"][which]["values"]["blind_ground"] for which in ("before", "after")] == [
+        start,
+        result,
+    ]
     assert told["cost"] == kept.cost
 
 
@@ -297,7 +299,6 @@ def test_after_a_violation_that_is_enough_no_further_cost_is_computed(monkeypatc
     assert len(asked) == 1
     shares = {"blind_ground": 1.0 - 1e-13, "blind_sector": 0.5}  # the former rounds to no violation
     sight = given.sight()
-    rows = {key: KEY_FIGURES[key] for key in shares}
-    costs = {key: row.costs(PARTS[row.part](sight, level)) for key, row in rows.items()}
+    costs = {key: FIGURES[key].costs(RigView(sight, level)) for key in shares}
     limit._limits = {key: tuple(share * c for c in costs[key]) for key, share in shares.items()}
     assert limit.violation(level) == 1.5 and limit.violation(level, 0.0) == 0.5

@@ -49,17 +49,17 @@ def test_points_are_on_the_surface_and_every_beginning_covers_it():
 
 
 def test_a_blind_sector_is_rounded_up_and_its_change_is_not():
-    row = where_job.PLACE_FIGURES["blind"]
-    assert [row.text(0.21), row.change(0.21)] == ["0.3 deg", "+0.2 deg"]
+    row = where_job.PLACE_FIGURES["blind_sector"]
+    assert [row.figure.text(0.21), row.change(0.21)] == ["0.3 deg", "+0.2 deg"]
 
 
-@pytest.mark.parametrize("figure", ["entropy", "ap", "blind"])
+@pytest.mark.parametrize("figure", ["entropy", "traffic_ap", "blind_sector"])
 def test_a_change_is_that_of_the_figure_with_the_sensor_there(study, figure):
     found = mapped(study, figure=figure, count=60)
     figure_of = {
         "entropy": study.evaluator(2048, shift=SEARCHED).entropy,
-        "ap": lambda rig: few_scenes(study).in_traffic(rig).ap,
-        "blind": lambda rig: max(s.width for s in study.sight().blind_sectors(rig)),
+        "traffic_ap": lambda rig: few_scenes(study).in_traffic(rig).ap,
+        "blind_sector": lambda rig: max(s.width for s in study.sight().blind_sectors(rig)),
     }[figure]
     worst = found.best(60)[-3:]
     assert len(worst) == 3
@@ -86,7 +86,7 @@ def test_requirements_are_counted_with_their_mounting_errors(study):
     loose = replace(study.search, tolerance=search.Tolerance(angle=np.radians(40.0)))
     held = replace(study, requirements=(wanted,), search=loose)
     assert held.verdicts()[0].met_whole and not held.verdicts()[0].met
-    assert mapped(held, figure="verdicts", count=1).base == 0.0
+    assert mapped(held, figure="requirements", count=1).base == 0.0
 
 
 def few_scenes(study):
@@ -148,7 +148,7 @@ def test_the_error_is_that_of_the_gains(study):
         rig = pe.Rig([*study.rig, replace(LIDAR, pose=place.pose)])
         off.append(place.value - found.base - (whole.entropy(rig) - base))
     assert np.sqrt(np.mean(np.square(off))) <= found.error
-    assert mapped(study, figure="blind", count=8).error == 0.0
+    assert mapped(study, figure="blind_sector", count=8).error == 0.0
 
 
 def test_the_command_writes_what_the_job_finds(study, tmp_path, capsys):

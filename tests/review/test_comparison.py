@@ -9,6 +9,7 @@ import pe_core as pe
 import pe_tools as pt
 from pe_core.catalog import load
 from pe_core.motion import stories
+from pe_core.search import FIGURES
 from pe_tools.page import ReportContext, keyed_contexts
 from pe_tools.page.markup import render
 from pe_tools.page.sections.comparison import comparison as comparison_section
@@ -73,7 +74,7 @@ def test_the_comparison_marks_the_engine_s_winner(scored, other, comparison):
     better = min((scored, other), key=lambda one: one.after.entropy)
     winner = (scored, other).index(better)
     assert rows[0].best.index(True) == winner
-    heading = comparison.index(pt.advice.MEASURES["entropy"].heading)
+    heading = comparison.index(FIGURES["entropy"].heading)
     first = re.search(r'class="wins whose-(\w)-ink">([^<]*)<', comparison[heading:])
     assert first.groups() == ("ab"[winner], f"{better.after.entropy:.3f}")
     assert comparison_section(keyed_contexts([scored, other]))["overall"] == rows[0]
@@ -90,7 +91,7 @@ def test_the_margins_of_stories_are_in_the_comparison(scored, other):
         ]
     )
     told = {c.key: c.study.key_figures(c.outcome.figures_after) for c in each}
-    (row,) = (r for r in pt.advice.compare_figures(told) if r.measure == "margin")
+    (row,) = (r for r in pt.advice.compare_figures(told) if r.measure == "story_margin")
     assert row in comparison_section(each)["rows"]
     assert ["Crossing child", row.text(0), row.text(1)] in [
         [text.partition(" (")[0].replace("−", "-").removesuffix(" best") for text in line]

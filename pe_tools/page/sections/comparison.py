@@ -10,6 +10,7 @@ from markupsafe import Markup
 import pe_core as pe
 from pe_core import catalog
 from pe_core.base.values import error_text
+from pe_core.search import FIGURES
 
 from ... import advice
 from ..markup import escaped, macros
@@ -48,7 +49,7 @@ def comparison(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:
     return {
         "names": [macros().bold_study(context) for context in contexts],
         "rows": rows,
-        "measures": advice.MEASURES,
+        "measures": FIGURES,
         "overall": next(row for row in rows if (row.group, row.measure) == ("rig", "entropy")),
         "lines": [Markup(line) for line in _summary_lines(contexts, rows)],
         **sensor_differences(contexts),

@@ -10,6 +10,8 @@ from markupsafe import Markup
 from pe_core import metric, scene
 from pe_core import sensors as kinds
 from pe_core.scoring.sight import SECTOR_RADIUS_M
+from pe_core.search import FIGURES, Figure, KeyFigures
+from pe_core.search.figures import AP_RINGS, BLIND_SECTOR
 from pe_core.study.condition_table import ConditionTable
 from pe_core.study.requirement_search import INFEASIBLE, is_infeasible
 
@@ -44,11 +46,19 @@ def overview(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:
         "blind": blind,
         "sides": SIDES,
         "sector_radius": SECTOR_RADIUS_M,
+        "seen_figures": _seen_figures(context.outcome.figures_after),
         "worst": max(scores.per_sensor, key=lambda name: scores.per_sensor[name].lost),
         "picture": labelled_picture(context, f"The vehicle with {joined(counts)}"),
         "unseen_nats": metric.H_BLIND,
         "best_nats": metric.H_BEST,
     }
+
+
+def _seen_figures(known: KeyFigures | None) -> list[Figure]:
+    """Return the figures of the rig's sight that are known and have no tile of their own."""
+    of_tiles = {BLIND_SECTOR, *AP_RINGS}
+    rows = (row for row in FIGURES.values() if row.is_seen and row.key not in of_tiles)
+    return [row for row in rows if row.value(known) is not None]
 
 
 def hidden_sensor_lines(context: ReportContext) -> list[str]:

@@ -1,0 +1,219 @@
+"""Figures: what a rig is decided by, a row a figure.
+
+Scores, the dashboard of the panel, the live read-out, comparisons, limits, fronts and pages follow
+from the rows of `FIGURES`.
+"""
+
+import math
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import replace
+from functools import cached_property, partial
+
+from ..base.values import Number, Whole, rounded, shown_share
+from ..scene.rig import Rig
+from ..scoring.score import TrafficAp
+from ..scoring.sight import Sight
+from ..scoring.sight.blind_ground import BLIND_TO_M, BlindSector, shown_end, shown_reach
+from .build_figures import BUILD_FIGURES, Placement
+from .figure import Figure
+
+REQUIREMENTS, ENTROPY, COVERAGE, AP = "requirements", "entropy", "coverage", "ap"
+BLIND_GROUND, BLIND_SECTOR, REACH = "blind_ground", "blind_sector", "reach"
+TRAFFIC_AP, PRICE = "traffic_ap", "price"
+WORST_LOSS, MARGIN, BLIND_ZONES = "worst_loss", "margin", "blind_zones"
+STORY_MARGIN = "story_margin"
+AP_RINGS = {"ap_near": "near", "ap_mid": "mid", "ap_far": "far", TRAFFIC_AP: ""}
+"""Figures that are expected AP in traffic, and their rings; empty: all distances."""
+UNSEEN = "where no sensor sees what is"
+IN_TRAFFIC = "Expected AP of objects in traffic"
+
+
+def blind_height(sight: Sight) -> float:
+    """Return the height for which blind ground is computed [m]: the space may begin above it."""
+    return max(BLIND_TO_M, sight.space.z[0])
+
+
+class RigView:
+    """A rig as figures look at it: what several figures share is computed once, when it is asked
+    for. `sight` is that of the rig's study."""
+
+    def __init__(self, sight: Sight, rig: Rig) -> None:
+        self.sight = sight
+        self.rig = rig
+
+    @cached_property
+    def traffic(self) -> TrafficAp | None:
+        """Expected AP in traffic; None where the prior's objects have no room."""
+        return self.sight.in_traffic(self.rig)
+
+    @cached_property
+    def sectors(self) -> tuple[BlindSector, ...]:
+        """The widest blind sector for bodies of each height."""
+        return self.sight.blind_sectors(self.rig)
+
+    @cached_property
+    def blind_m2(self) -> float:
+        """Ground within 10 m of the body where a child is invisible [m2], never too small. It is
+        the area of `Sight.blind` for a body of `BLIND_TO_M`, or of the lowest height of the space
+        if that is greater."""
+        return rounded(self.sight.blind_area(self.rig, blind_height(self.sight)))
+
+    @cached_property
+    def reach(self) -> dict[str, tuple[float, bool]]:
+        """By class how far ahead it is found [m], and whether that ends with the space. Empty where
+        objects are scored: that score has their reach."""
+        if self.sight.targets.are_objects:
+            return {}
+        names = self.sight.prior.class_names
+        return {name: self.sight.reach_ahead(self.rig, name) for name in names}
+
+    @cached_property
+    def placement(self) -> Placement:
+        """The rig on its vehicle, with its housings."""
+        return Placement.on(self.rig, self.sight.vehicle)
+
+
+def _ring(name: str) -> Callable[[RigView], Sequence[float]]:
+    def values(view: RigView) -> Sequence[float]:
+        found = view.traffic
+        if found is None or not name:
+            return [] if found is None else [found.ap]
+        return [found.rings[name][0]] if name in found.rings else []
+
+    return values
+
+
+_Ap = partial(
+    Figure, unit="", higher=True, cost=lambda ap: 1.0 - ap, rule=Number(0.0, cap=1.0), least=0.0005
+)
+_SIGHT = (
+    Figure(
+        BLIND_GROUND,
+        "Blind ground",
+        "m2",
+        f"Ground within 10 m {UNSEEN} 0.5 m tall",
+        decimals=1,
+        of=lambda view: (view.blind_m2,),
+        rule=Number(0.0, unit="m2"),
+        shown=shown_end,
+    ),
+    Figure(
+        BLIND_SECTOR,
+        "Blind sector",
+        "deg",
+        f"Sector at 20 m {UNSEEN} 0.5 to 1.5 m tall",
+        decimals=1,
+        of=lambda view: [sector.width for sector in view.sectors],
+        cost=math.ceil,  # closer ones are alike
+        rule=Whole(0, 360, unit="deg"),
+        shown=shown_end,
+        least=1.0,  # its edges are known to half a degree each
+    ),
+    Figure(
+        REACH,
+        "Reach",
+        "m",
+        "How far ahead each class is found (AP 0.5): the shortest",
+        decimals=0,
+        higher=True,
+        of=lambda view: [metres for metres, _ in view.reach.values()],
+        rule=Number(0.0, unit="m"),
+        shown=shown_reach,
+        is_cut=lambda figures: bool(figures.reach) and min(figures.reach.values())[1],
+    ),
+    _Ap("ap_near", "AP near", about=f"{IN_TRAFFIC} nearer than 10 m", of=_ring("near")),
+    _Ap("ap_mid", "AP middle", about=f"{IN_TRAFFIC}, 10 to 40 m", of=_ring("mid")),
+    _Ap("ap_far", "AP far", about=f"{IN_TRAFFIC} beyond 40 m", of=_ring("far")),
+    _Ap(
+        TRAFFIC_AP,
+        "AP in traffic",
+        about=f"{IN_TRAFFIC}, at all distances",
+        of=_ring(""),
+        decimals=3,
+    ),
+)
+_SCORE = (
+    Figure(
+        REQUIREMENTS,
+        "Requirements",
+        "met",
+        "Requirements that are met",
+        decimals=0,
+        higher=True,
+        on_front=False,
+    ),
+    Figure(
+        ENTROPY,
+        "Entropy",
+        "nats",
+        "Perception entropy",
+        decimals=3,
+        rule=Number(-99.0, cap=1e6),
+        least=0.005,  # 0.2 % of a detector's standard deviation
+    ),
+    _Ap(AP, "Expected AP", about="Expected AP of the scored objects", decimals=3, rule=None),
+    Figure(
+        COVERAGE,
+        "Coverage",
+        "%",
+        "Share of where objects are that is seen",
+        decimals=1,
+        higher=True,
+        shown=shown_share,
+        least=0.0005,
+        scale=100.0,
+        on_front=False,
+    ),
+    Figure(
+        STORY_MARGIN,
+        "Margin of stories",
+        "s",
+        "Time left when what moves is confirmed; none: never confirmed",
+        decimals=1,
+        higher=True,
+        on_front=False,
+    ),
+    Figure(WORST_LOSS, "Worst loss", "nats", "Rise of entropy without the best sensor", decimals=3),
+    Figure(MARGIN, "Worst margin", "m", "Smallest margin of all requirements", higher=True),
+    Figure(BLIND_ZONES, "Blind in zones", "m2", "Blind ground in the zones of requirements"),
+)
+FIGURES: dict[str, Figure] = {row.key: row for row in (*_SIGHT, *_SCORE)} | BUILD_FIGURES
+"""What a rig is decided by, by name."""
+
+
+def figure_of(name: str, currency: str = "") -> Figure:
+    """Return the row of a figure, of a price with its currency; of a function from Python, one with
+    its name."""
+    if name in FIGURES:
+        row = FIGURES[name]
+        return replace(row, unit=currency) if name == PRICE else row
+    label = name.replace("_", " ")
+    return Figure(name, label, "", label)
+
+
+def on_dashboard() -> list[Figure]:
+    """Return what every rig is decided by: what it sees, verdicts, and the entropy last."""
+    seen = [row for row in FIGURES.values() if row.is_seen]
+    return [*seen, FIGURES[REQUIREMENTS], FIGURES[ENTROPY]]
+
+
+class FigureNames(Collection[str]):
+    """The names of those rows of `FIGURES` that pass a test, in their order."""
+
+    def __init__(self, test: Callable[[Figure], bool]) -> None:
+        self._test = test
+
+    def __iter__(self) -> Iterator[str]:
+        return (key for key, row in FIGURES.items() if self._test(row))
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+    def __contains__(self, name: object) -> bool:
+        return any(name == key for key in self)
+
+
+KEPT = FigureNames(lambda row: row.is_seen)
+"""Figures that a search may keep."""
+ON_FRONT = FigureNames(lambda row: row.on_front)
+"""Figures that a search can trade off."""

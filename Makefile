@@ -6,17 +6,21 @@ ARGS ?=
 ON_ALL_PROCESSORS := --numprocesses auto --dist loadscope --no-loadscope-reorder
 
 .DEFAULT_GOAL := help
-.PHONY: demo test study-tests properties mutants bench lint extension release site examples screenshots clean help
+.PHONY: demo test test-all study-tests properties mutants bench lint extension release site examples screenshots clean help
 
 demo: .venv/run.stamp  ## better places for a LiDAR and a camera on a sedan: a page to open, the better .blend
 	@tools/demo.sh $(ARGS)
 
 # Tests start more than a hundred processes: each would compile the engine anew if none may keep it.
-test: export PYTHONDONTWRITEBYTECODE =
+test test-all: export PYTHONDONTWRITEBYTECODE =
 # Its threads wait busily for each other, and no test computes what they would make faster.
-test: export OPENBLAS_NUM_THREADS = 1
-test: .venv/dev.stamp  ## run all tests; ARGS="tests/engine -k prior" for some
+test test-all: export OPENBLAS_NUM_THREADS = 1
+test: .venv/dev.stamp  ## run the tests, seven minutes; ARGS="tests/engine -k prior" for some
 	@$(PYTHON_VENV) -m pytest $(ON_ALL_PROCESSORS) $(or $(ARGS),tests)
+
+test-all: export PE_THOROUGH = 1
+test-all: .venv/all.stamp  ## run all tests, with more seeds, pages and programs: a quarter of an hour
+	@$(PYTHON_VENV) -m pytest $(ON_ALL_PROCESSORS) -m "not trains_detectors" $(or $(ARGS),tests)
 
 study-tests: .venv/studies.stamp  ## train the studies' detectors on little data; installs TensorFlow
 	@$(PYTHON_VENV) -m pytest -m trains_detectors $(or $(ARGS),tests/studies)
@@ -24,10 +28,10 @@ study-tests: .venv/studies.stamp  ## train the studies' detectors on little data
 properties: .venv/dev.stamp  ## what must hold for any rig, on 1,000 random ones: four minutes
 	@PE_PROPERTY_RIGS=1000 $(PYTHON_VENV) -m pytest $(or $(ARGS),tests/engine/test_properties.py)
 
-mutants: .venv/dev.stamp  ## change the engine line by line: does a test fail? an hour
+mutants: .venv/all.stamp  ## change the engine line by line: does a test fail? an hour
 	@$(PYTHON_VENV) tools/mutants.py $(ARGS)
 
-bench: .venv/dev.stamp  ## measure speed
+bench: .venv/all.stamp  ## measure speed
 	@$(PYTHON_VENV) -m benchmarks $(ARGS)
 
 lint: .venv/dev.stamp  ## style, format, types, licences
@@ -58,14 +62,17 @@ screenshots: .venv/dev.stamp  ## make docs/images in a real window; ARGS="guide"
 	@$(PYTHON_VENV) tools/screenshots.py $(ARGS)
 
 # A stamp is made where nothing is missing. run.stamp: what a user needs. dev.stamp: what a developer
-# needs on top, in the same environment.
+# needs on top, in the same environment. all.stamp: what only test-all, mutants and bench need.
 .venv/run.stamp: pyproject.toml tools/make_venv.sh
 	@tools/make_venv.sh blender $@
 
 # Not after run.stamp, of which it has all: pip would build the project twice.
 .venv/dev.stamp: pyproject.toml tools/make_venv.sh
-	@tools/make_venv.sh blender,test,meshes,argoverse,docs,dev $@
+	@tools/make_venv.sh blender,test,meshes,dev $@
 	@[ ! -e $@ ] || touch .venv/run.stamp
+
+.venv/all.stamp: .venv/dev.stamp
+	@tools/make_venv.sh blender,argoverse,docs,thorough $@
 
 .venv/studies.stamp: .venv/dev.stamp
 	@tools/make_venv.sh blender,studies $@

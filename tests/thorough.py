@@ -1,25 +1,26 @@
-"""How many cases a test tries: a few where a developer waits, all of them where CI runs.
+"""How many cases a test tries: a few in `make test`, all of them in `make test-all`.
 
 A case that is left out by default differs from those that are kept by its number alone (a seed, one
-more combination of two parameters); whatever is a subject of its own is always tried.
+more combination of two parameters). What is a subject of its own and takes long, or needs a program
+that nothing else needs, has the mark `thorough`. docs/testing.md says which, and why.
 """
 
 import os
 from collections.abc import Iterable
 
-THOROUGH = os.environ.get("CI") == "true"
+THOROUGH = os.environ.get("PE_THOROUGH") == "1"
 
 
-def tries(by_default: int, in_ci: int) -> int:
+def tries(by_default: int, thorough: int) -> int:
     """Return how many random cases are tried."""
-    return in_ci if THOROUGH else by_default
+    return thorough if THOROUGH else by_default
 
 
 def pairs(first: Iterable, second: Iterable) -> list[tuple]:
-    """Return combinations of two parameters: by default each value once, in CI twice or more.
+    """Return combinations of two parameters: by default each value once, else twice or more.
 
-    The default is a diagonal: as many combinations as the longer parameter has values. In CI there
-    are two, the second a step beside the first.
+    The default is a diagonal: as many combinations as the longer parameter has values. Thorough
+    tests take two, the second a step beside the first.
     """
     rows, columns = list(first), list(second)
     if len(rows) < len(columns):

@@ -12,8 +12,9 @@ import numpy as np
 
 import pe_core as pe
 from tests.engine import shapes
+from tests.thorough import tries
 
-RIGS = int(os.environ.get("PE_PROPERTY_RIGS") or (60 if os.environ.get("CI") == "true" else 15))
+RIGS = int(os.environ.get("PE_PROPERTY_RIGS") or tries(15, 60))
 """How many rigs each property is tried on; `make properties` takes more."""
 
 INTERVALS = (0.1, 0.2, 0.25, 0.5)

@@ -111,6 +111,7 @@ def test_an_objective_is_sent_to_a_process_once(tmp_path, rigs, pool):
     assert len(set(objective.unpacked)) == len(objective.unpacked)
 
 
+@pytest.mark.thorough
 def test_workers_of_a_cluster_have_an_objective_by_a_plugin(tmp_path, evaluator, rigs):
     """Dask: no call brings the payload."""
     distributed = pytest.importorskip("distributed")

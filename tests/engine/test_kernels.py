@@ -116,7 +116,7 @@ def some_voxels(sensor, space, grid, rng, count):
 
 
 def cases():
-    """Each model at a quarter of the poses, each pose with a quarter of the models; in CI all."""
+    """Each model at a quarter of the poses, each pose with a quarter of the models."""
     for number, model in enumerate(MODELS):
         poses = list(POSES)[number % 4 :: tries(4, 2)]
         yield from ((model, pose) for pose in poses)

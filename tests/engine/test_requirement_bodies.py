@@ -26,7 +26,7 @@ from tests.thorough import tries
 def test_verdicts_are_those_of_the_definition():
     """Samples, bodies and headings, by `sees` and `body_met`; every lost sensor, too.
 
-    By default every third sample, in CI each one.
+    By default every third sample, else each one.
     """
     bodies = (BODIES["child"], BODIES["cyclist"], BODIES["pole_ring"])
     requirements = [

@@ -19,6 +19,7 @@ from tests.engine import shapes
 from tests.engine.processes import ROOT
 from tests.limits import HANG_S
 
+pytestmark = pytest.mark.thorough
 Client = pytest.importorskip("distributed").Client
 if sys.platform == "win32":
     pytest.skip("POSIX signals", allow_module_level=True)

@@ -12,6 +12,7 @@ from pe_tools.outputs import scene_files
 
 from .shapes import box_car, camera, lidar_on_roof, small_lidar
 
+pytestmark = pytest.mark.thorough
 RIG = pe.Rig(
     [
         lidar_on_roof(small_lidar(), rotation=(1.0, -2.0, 30.0), name="roof top"),

@@ -1,7 +1,4 @@
-"""The site of the documentation: built strictly, served, and walked through in a real browser.
-
-By default without docstrings, and some pages in the browser; in CI all of it.
-"""
+"""The site of the documentation: built strictly, served, and walked through in a real browser."""
 
 import functools
 import http.server
@@ -25,13 +22,13 @@ from pe_tools.cli.verbs import parser
 from tests.limits import HANG_S
 from tests.needed import unavailable
 from tests.review.browser import DESKTOP, PHONE, Heard, settle
-from tests.thorough import THOROUGH
 
+pytestmark = pytest.mark.thorough
 ROOT = Path(__file__).resolve().parents[2]
 SIDEWAYS = "() => document.documentElement.scrollWidth - window.innerWidth"
 SOME = ("index.html", "guide.html", "settings.html", "howto/requirements.html",
         "reference/catalogue/hesai.html", "reference/commands.html")  # fmt: skip
-"""Pages that are always opened in the browser."""
+"""Pages that are opened by a phone, and wide."""
 CLICKS = 3
 
 
@@ -60,13 +57,13 @@ class Page(HTMLParser):
         self.text += data
 
 
-def built(folder: Path, docstrings: bool) -> None:
+def built(folder: Path) -> None:
     """Build the site strictly into a folder."""
     options = ("--site-dir", str(folder))  # not --quiet: it silences what a strict build counts
     done = subprocess.run(
         [sys.executable, "-m", "mkdocs", "build", *options],
         cwd=ROOT,
-        env={**os.environ, "NO_MKDOCS_2_WARNING": "1", "PE_SITE_DOCSTRINGS": str(int(docstrings))},
+        env={**os.environ, "NO_MKDOCS_2_WARNING": "1"},
         capture_output=True,
         text=True,
         timeout=HANG_S,
@@ -81,7 +78,7 @@ def site(tmp_path_factory):
     if importlib.util.find_spec("mkdocs") is None:
         unavailable("there is no MkDocs: install the extra docs")
     folder = tmp_path_factory.mktemp("site")
-    built(folder, docstrings=THOROUGH)
+    built(folder)
     return folder
 
 
@@ -189,7 +186,7 @@ def fits(page):
 
 @pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
 def test_pages_open_without_complaints_and_fit_the_width(chromium, address, pages, size):
-    """With CI=true all pages as narrow as a phone, and some made wide again after that.
+    """All pages as narrow as a phone, and some made wide again after that.
 
     Of a folder of many, which one template made, every fifth.
     """
@@ -205,7 +202,7 @@ def test_pages_open_without_complaints_and_fit_the_width(chromium, address, page
     folders["."] = 0  # each of these is written by hand
     many = [name for name in sorted(pages) if folders[str(Path(name).parent)] > 20]
     every = sorted({*pages} - {*many} | {*many[::5]})
-    for name in every if THOROUGH and size == DESKTOP else SOME:
+    for name in every if size == DESKTOP else SOME:
         page.goto(f"{address}/{name}")
         for each in (PHONE[0], width) if name in SOME else (PHONE[0],):
             page.set_viewport_size({"width": each, "height": height})

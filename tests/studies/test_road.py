@@ -58,6 +58,7 @@ def write_calibration(folder):
     )
 
 
+@pytest.mark.thorough
 def test_a_log_is_read_without_the_vehicle_itself(tmp_path):
     rows = [
         (20, "b", "PEDESTRIAN", 7, 3.0, 4.0, 0.5),
@@ -118,6 +119,7 @@ def simulated(tmp_path_factory):
     return Log("simulated", objects, np.round(m).astype(int), np.arange(count)), rig
 
 
+@pytest.mark.thorough
 def test_the_fit_finds_the_values_of_simulated_points(simulated, monkeypatch):
     log, rig = simulated
     monkeypatch.setattr(models, "HALVES_M", np.array([30.0, 56.2, 100.0]))

@@ -53,7 +53,6 @@ from studies.detectors.second.law import (
 )
 from tests.studies.test_detectors import in_a_process
 from tests.studies.test_road import write_log
-from tests.thorough import THOROUGH
 
 FOLDER = Path(__file__).parents[2] / "docs/validity/own/second"
 DIGEST = "8c1ca3a05d1ff702"
@@ -85,7 +84,7 @@ def test_arms_have_equal_beams_at_equal_poses():
     assert len(main_runs(quick_second_plan())) == 4
 
 
-@pytest.mark.skipif(not THOROUGH, reason="half a minute of permutations: with CI=true")
+@pytest.mark.thorough
 def test_the_results_are_those_of_the_committed_runs():
     plan, saved = full_second_plan(), json.loads((FOLDER / "results.json").read_text("utf-8"))
     runs = {path.stem: json.loads(path.read_text("utf-8")) for path in FOLDER.glob("runs/*.json")}

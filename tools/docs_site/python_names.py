@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import os
 import re
 import types
 from collections.abc import Iterator
@@ -61,9 +60,7 @@ def public_names() -> Iterator[tuple[str, str]]:
 
 
 def entry(name: str, target: str) -> str:
-    """Return a name's part of its page: as mkdocstrings takes it, or a heading; and its example."""
-    if os.environ.get("PE_SITE_DOCSTRINGS") == "0":
-        return f"### {name}\n\n"
+    """Return a name's part of its page: as mkdocstrings takes it, and its example."""
     head = f"::: {target}\n    options:\n      heading: {name}\n      toc_label: {name}\n\n"
     return f"{head}{examples().get(name, '')}\n"
 

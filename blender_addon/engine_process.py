@@ -24,7 +24,7 @@ VIEW_TOPICS = LIVE_SCORE, OVERLAY
 """How topics begin whose results are drawn, and write nothing into Blender's data."""
 
 
-def _shared_types() -> dict[type, int]:
+def shared_types() -> dict[type, int]:
     """Return types of objects that are sent once, and how many of each the process keeps."""
     models = {kind.model: MAX_MODELS for kind in kinds.KINDS.values()}
     return {pe.Vehicle: 2, pe.Prior: 4, ViewRequest: 2, jobs.PlaceMap: 2, **models}
@@ -36,7 +36,7 @@ def _setup() -> engine_process.EngineCall:
 
 
 _PACKAGES = (__package__, f"{__package__}.overlay")
-_engine = engine_process.EngineProcess(_shared_types, _setup, _PACKAGES)
+_engine = engine_process.EngineProcess(shared_types, _setup, _PACKAGES)
 
 
 def ask(

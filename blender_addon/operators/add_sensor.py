@@ -158,7 +158,7 @@ _listed: list[tuple[str, str, str, int]] = []
 """What the popup lists: Blender reads the texts after the function that made them returned."""
 
 
-def _menu_items(operator: Any, _context: object) -> list[tuple[str, str, str, int]]:
+def menu_items(operator: Any, _context: object) -> list[tuple[str, str, str, int]]:
     """Return the catalogue's sensors of the operator's kind, as items of a Blender menu."""
     names = models(operator.kind or None)
     _listed[:] = [(n, n, tooltip_of(n), i) for i, n in enumerate(names)]
@@ -176,7 +176,7 @@ def _search(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> O
     bl_property="model",
     invoke=_search,
     kind=StringProperty(name="Kind", description="Kind of sensors to list; all when empty"),
-    model=EnumProperty(name="Model", description="Sensor of the catalogue", items=_menu_items),
+    model=EnumProperty(name="Model", description="Sensor of the catalogue", items=menu_items),
 )
 def search_sensor(_context: bpy.types.Context, model: str) -> OperatorResult:
     """Type a part of a sensor's name, such as QT128, and place it by pointing"""

@@ -154,7 +154,7 @@ def draw_text() -> None:
     eye = _eye(context)
     taken: list[viewport.PlateBox] = []
     if context.scene.perception_entropy.view.show_legend:
-        found = (_legend(scene, layer, name) for layer, name in visible)
+        found = (legend_of(scene, layer, name) for layer, name in visible)
         legends = list(dict.fromkeys(each for each in found if each is not None))
         if is_simple(context.scene):
             legends = [
@@ -175,11 +175,11 @@ def _names_of_both(scene: bpy.types.Scene) -> tuple[str, str]:
     return names.get(settings.view.ghost_key, ""), changed or "Present sensors"
 
 
-def _legend(scene: str, layer: str, name: str) -> graphics.ColorKey | None:
+def legend_of(scene: str, layer: str, name: str) -> graphics.ColorKey | None:
     """Return the legend of a shape, marked where it is a preview and does not say so itself."""
     item = shown_of(scene, layer)[name]
     found = item.shape.at(0.0).legend
-    if name == OTHER_RIG and found not in (None, _legend(scene, layer, WHOLE_RIG)):
+    if name == OTHER_RIG and found not in (None, legend_of(scene, layer, WHOLE_RIG)):
         variant = _names_of_both(bpy.data.scenes[scene])[0]
         found = replace(found, title=f"{found.title}, {variant}")
     if found is None or "preview" in found.title:

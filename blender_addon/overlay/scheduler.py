@@ -45,8 +45,8 @@ def is_preview(scene: str, layer: str, name: str, item: ShownLayer) -> bool:
 def schedule(*_: object) -> None:
     """Schedule an update; several calls become one update."""
     # Not without a window: a remaining timer makes Blender crash at its exit.
-    if not bpy.app.background and not bpy.app.timers.is_registered(_update_now):
-        bpy.app.timers.register(_update_now, first_interval=DELAY_S)
+    if not bpy.app.background and not bpy.app.timers.is_registered(update_now):
+        bpy.app.timers.register(update_now, first_interval=DELAY_S)
 
 
 def on_moving() -> None:
@@ -93,7 +93,7 @@ def clear(*_: object) -> None:
         each.clear()
 
 
-def _update_now() -> None:
+def update_now() -> None:
     update(_moving)
 
 
@@ -172,7 +172,7 @@ def register() -> None:
 
 def unregister() -> None:
     """Cancel what is due, and drop everything."""
-    for timer in (_update_now, _redraw_now):
+    for timer in (update_now, _redraw_now):
         if bpy.app.timers.is_registered(timer):
             bpy.app.timers.unregister(timer)
     clear()

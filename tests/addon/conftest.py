@@ -33,7 +33,7 @@ def sent(content):
     from blender_addon import engine_process
     from pe_tools.engine_process.messages import packed, unpacked
 
-    shared, kinds = {}, tuple(engine_process._shared_types())
+    shared, kinds = {}, tuple(engine_process.shared_types())
 
     def number_of(part):
         if not isinstance(part, kinds):

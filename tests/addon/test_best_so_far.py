@@ -1,5 +1,7 @@
 """What the 3D view shows of a search that runs: the best placement so far."""
 
+from types import SimpleNamespace
+
 import bpy
 import pytest
 
@@ -29,7 +31,9 @@ def values(rig):
 
 
 class Manager:
-    """A window manager that only counts."""
+    """A window manager without windows, that only counts."""
+
+    windows = ()
 
     def event_timer_add(self, *_args, **_more):
         return None
@@ -37,17 +41,20 @@ class Manager:
     def progress_begin(self, *_):
         pass
 
+    progress_update = progress_begin
+
 
 def lines_while_running(scene, job, monkeypatch):
     """Run a search, which the view shows at each step; return the lines of its progress."""
-    context = type("Context", (), {"scene": scene, "window_manager": Manager(), "window": None})
+    status = SimpleNamespace(status_text_set=lambda _: None)
+    context = SimpleNamespace(scene=scene, window_manager=Manager(), window=None, workspace=status)
     running = RunningJob(context, job, "outcome")
     running.seen = job
     monkeypatch.setattr("blender_addon.operators.running_job.BEST_EVERY_S", 0.0)
     lines = []
     for progress in job:
         running.progress = progress
-        running._show_search()
+        running.show(context)
         lines.append(running.text)
     return lines
 

@@ -17,6 +17,7 @@ from blender_addon import (
 )
 from blender_addon.engine import advice
 from blender_addon.live import readout, readout_text, session, state, told_figures
+from pe_core.sensors.kernels import DefinedSample
 from tests.addon import scenes
 
 SAMPLES = 4096
@@ -206,25 +207,16 @@ def test_the_figures_are_the_engine_s_and_of_before_while_it_moves(live, monkeyp
 
 
 def test_only_what_moved_is_measured_and_the_vehicle_is_not_read(live, monkeypatch):
-    measured = []
-    kernel = type(kernels(live).kernel_of(reading(live).rig["front"]))
-    monkeypatch.setattr(kernel, "measure", lambda *_: measured.append("camera"))
-    monkeypatch.setattr(bridge, "vehicle_from_collection", lambda *_: pytest.fail("read again"))
-    before = evaluator_of(live)
+    for of, name in (
+        (DefinedSample, "measure"),  # of cameras
+        (bridge, "vehicle_from_collection"),
+        (engine_calls, "make_evaluator"),
+    ):
+        monkeypatch.setattr(of, name, lambda *_, name=name: pytest.fail(f"{name} again"))
+    before = reading(live)
     drag(live.objects["roof"])
     rest()
-    assert not measured and evaluator_of(live) is before
-
-
-def evaluator_of(scene):
-    """The evaluator that is kept for a scene."""
-    ((_, evaluator),) = engine_calls._evaluators[scene.name]._kept
-    return evaluator
-
-
-def kernels(scene):
-    """What measures each kind, inside the evaluator that is kept."""
-    return evaluator_of(scene)._scorer._sensors._kernels
+    assert is_exact(live) and reading(live).summary != before.summary
 
 
 def test_a_vehicle_that_moves_is_read_once_it_rests(live, monkeypatch):
@@ -271,7 +263,6 @@ def test_the_extension_disabled_in_the_middle_of_a_drag(live):
     blender_addon.unregister()
     try:
         assert not state.states
-        assert not engine_calls._evaluators and not readout._handlers.shown
         assert session.follow_update not in bpy.app.handlers.depsgraph_update_post
         assert session.on_idle not in signals.idle.listeners
     finally:

@@ -50,7 +50,7 @@ def test_sensors_are_in_blender_s_menu_add_and_the_view_in_its_header(car):
         layout = layouts.Layout()
         menus.draw_add_menu(SimpleNamespace(layout=layout), SimpleNamespace(mode=mode))
         assert layout.texts("menu") == entries
-    items = add_sensor._menu_items(SimpleNamespace(kind="lidar"), bpy.context)
+    items = add_sensor.menu_items(SimpleNamespace(kind="lidar"), bpy.context)
     assert [each[0] for each in items] == catalog.names("lidar")
     (found,) = [each for each in items if "QT128" in each[1]]
     assert "range 50 m" in found[2], "figures are searched too"

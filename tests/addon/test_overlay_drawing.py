@@ -108,7 +108,7 @@ def test_shapes_are_uploaded_once(window, rig):
     rig.perception_entropy.view.show_ground = False
     scenes.drawn(rig)
     redraw()
-    assert len(draw_handler._batches) == 13
+    assert len(window.card.drawn) == 42 + 14 + 13
 
 
 def test_simple_has_its_words_on_legends_too(window, rig):

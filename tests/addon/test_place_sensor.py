@@ -108,9 +108,10 @@ def test_a_sensor_is_placed_on_both_sides_and_dragged_along_the_surface(bare):
     other = bpy.data.objects[first.perception_entropy.mirror_of]
     assert other.location.y == pytest.approx(-first.location.y)
     near, stance = spot_below(bare, 1.9, 0.04), surface_pose.Stance(0.1, magnet=True)
-    for moved, pulled in ((None, {1: 0.0}), (first, {})):  # a pair would meet on the centre line
+    for moved, y in ((None, 0.0), (first, near.point.y)):  # a pair would meet on the centre line
         held = placement.HeldSensor(bpy.context, pe.catalog.load("Pandar64"), stance, moved)
-        assert held._wanted(near) == pulled
+        held.put(near)
+        assert held.matrix.translation.y == pytest.approx(y, abs=1e-6)
     count = len(scenes.study().rig)
     again = place("Pandar64", sensor=first.name, location=(1.0, 0.9, 0.5), normal=(0.0, 1.0, 0.0))
     assert again == first and len(scenes.study().rig) == count == 2

@@ -219,7 +219,6 @@ def test_a_story_that_is_never_confirmed_is_drawn_as_the_worst(addon):
     for margins in ((0.2, NEVER), (NEVER, 0.2), (NEVER, NEVER)):
         row = advice.ComparedRow("story", "child", "margin", margins, ((0.0, 0.0),) * 2)
         cells[margins] = compare_variants.cell_of(row, 1)
-        compare_variants._draw_bars(Layout(), ["a", "b"], [row])
     assert list(cells.values()) == [
         ("none", False, "", 1),
         ("0.2", True, "", -1),
@@ -255,18 +254,16 @@ def test_bars_have_the_largest_difference_first_and_the_longest_is_full(ideas):
     pictures = [bridge.picture_of(row) for row in compare_variants.compared_variants(ideas)]
     assert all(base64.b64decode(each).startswith(b"\x89PNG") for each in pictures)
     assert pictures[0] != pictures[1], "the sensor stands elsewhere"
-    layout = Layout()
-    compare_variants._draw_bars(layout, names, rows)
-    texts = layout.texts("label")
-    assert texts[0] == "The largest difference first"
-    assert texts[1 + len(names)] == compare_variants.label_of(rows[0])
-    assert layout.texts("bar")[: len(names)] == [pytest.approx(rows[0].share(k)) for k in (0, 1)]
     ideas.perception_entropy.panels = "SIMPLE"
     window = {"names": ["entropy", "b"], "rows": table, "pictures": [], "said": ["entropy"]}
     layouts = {"RIG": Layout(), "PARTS": Layout()}
     for part, layout in layouts.items():
-        compare_variants._draw(SimpleNamespace(layout=layout, part=part, **window), bpy.context)
-    assert len(layouts["RIG"].texts("bar")) == 2 * len(rows) and not layouts["PARTS"].texts("bar")
+        shown = SimpleNamespace(layout=layout, part=part, **window)
+        compare_variants.show_comparison.draw(shown, bpy.context)
+    bars, texts = layouts["RIG"].texts("bar"), layouts["RIG"].texts("label")
+    assert compare_variants.label_of(rows[0]) in texts[: 2 + len(names)]
+    assert bars[: len(names)] == [pytest.approx(rows[0].share(k)) for k in (0, 1)]
+    assert len(bars) == 2 * len(rows) and not layouts["PARTS"].texts("bar")
     labels = layouts["PARTS"].texts("label")
     assert {"Score, lower is better", "entropy"} <= {*labels}, "names stay"
     assert "    Near" in labels and "score" in layouts["RIG"].texts("label")

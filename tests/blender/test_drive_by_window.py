@@ -61,14 +61,3 @@ def test_a_story_is_played_from_its_cache(stage, screenshots):
         lambda: stage.do(SHAPE, redraw=False)["old"] == [False], EFFECT_TIMEOUT_S, "a new cache"
     )
     assert "Traceback" not in stage.log.read_text()
-
-
-def test_it_is_legible_at_scale_2(stage, screenshots):
-    stage.do("bpy.context.preferences.view.ui_scale = 2.0")
-    stage.do(SHOW)
-    stage.wait_for(
-        lambda: stage.do(SHAPE, redraw=False)["frames"] == [145], EFFECT_TIMEOUT_S, "the cache"
-    )
-    stage.do("window.scene.frame_set(100)")
-    stage.screenshot(screenshots / "window_drive_by_large.png")
-    stage.do("bpy.context.preferences.view.ui_scale = 1.0")

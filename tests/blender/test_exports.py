@@ -4,6 +4,8 @@ import re
 import subprocess
 import sys
 
+import pytest
+
 from tests.blender.conftest import ROOT
 from tests.blender.runner import output_of
 from tests.limits import HANG_S
@@ -12,6 +14,7 @@ FORMATS = {"glb", "obj", "ply", "stl"}
 """Those that every Blender has."""
 
 
+@pytest.mark.thorough
 def test_exports_have_the_scene_s_entropy_to_six_digits(blender):
     command = [sys.executable, ROOT / "tools" / "exports" / "compare.py", blender.command]
     answer = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S)

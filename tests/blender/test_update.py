@@ -85,6 +85,7 @@ def report(blender, repositories, served, sedan, tmp_path_factory):
     return json.loads((folder / "report.json").read_text())
 
 
+@pytest.mark.thorough
 def test_an_update_brings_this_version_and_keeps_scene_preferences_and_score(report, extension_zip):
     before, after = report["before"], report["after"]
     version = release.agreed_version()

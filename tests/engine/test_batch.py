@@ -1,8 +1,9 @@
 """Dispatched candidates: the same result for all executors, whatever happens to workers."""
 
+import _multiprocessing
 import math
-import multiprocessing.synchronize
 import os
+import queue
 import signal
 import socket
 import subprocess
@@ -186,7 +187,7 @@ def test_without_semaphores_there_are_no_processes_and_one_line_says_so(monkeypa
     def refuse(*_, **__):
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(multiprocessing.synchronize._multiprocessing, "SemLock", refuse)
+    monkeypatch.setattr(_multiprocessing, "SemLock", refuse)
     assert processes.no_processes() == "semaphores in /dev/shm: permission denied"
     assert start_processes(2) is None
     with pytest.raises(pe.InputError, match=r"semaphores .* /dev/shm, found permission denied"):
@@ -277,18 +278,17 @@ def kill() -> Iterator[Callable[[], None]]:
 def test_a_handler_raises_after_the_submission_and_the_pool_still_ends(monkeypatch, kill):
     with Processes(1) as processes:
         assert processes.submit(int, "7").result() == 7
-        numbers, whole = processes._pool._work_ids, []
-        put = numbers.put
+        put, whole = queue.Queue.put, []
 
-        def put_meanwhile(number: int) -> None:
+        def put_meanwhile(numbers: queue.Queue, number: int) -> None:
             kill()
-            put(number)
+            put(numbers, number)
             whole.append(number)
 
-        monkeypatch.setattr(numbers, "put", put_meanwhile)
+        monkeypatch.setattr(queue.Queue, "put", put_meanwhile)
         with pytest.raises(Ended):
             processes.submit(int, "8")
-        monkeypatch.setattr(numbers, "put", put)
+        monkeypatch.setattr(queue.Queue, "put", put)
         answer = processes.submit(int, "9")
         assert whole, "the task is in the pool's queue before the handler raises"
         assert answer.result() == 9

@@ -73,16 +73,16 @@ def test_the_exit_status_says_whether_all_are_met(study, capsys):
 @pytest.mark.usefixtures("heeded_signals")
 def test_ctrl_c_keeps_the_verdicts_that_were_found(study, tmp_path, monkeypatch, capsys):
     study.write_text(STUDY + SMALL)
-    steps, ended = CheckJob._steps, threading.Event()
+    steps, ended = pe.Study.check_steps, threading.Event()
 
-    def interrupted(self):
-        for step in steps(self):
+    def interrupted(self, checker):
+        for step in steps(self, checker):
             yield step
             if step.verdict is not None:
                 os.kill(os.getpid(), signal.SIGINT)
                 ended.wait(10.0)
 
-    monkeypatch.setattr(CheckJob, "_steps", interrupted)
+    monkeypatch.setattr(pe.Study, "check_steps", interrupted)
     table = tmp_path / "verdicts.csv"
     try:
         assert main(["check", str(study), "--csv", str(table)]) == 130

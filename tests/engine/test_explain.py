@@ -167,7 +167,9 @@ def without_sight(text):
     return re.sub(r"\d+% by two or more", "by two or more", lines)
 
 
-@pytest.mark.parametrize("asked", [("--samples", "65536"), ("--at", "-8", "6")])
+@pytest.mark.parametrize(
+    "asked", [pytest.param(("--samples", "65536"), marks=pytest.mark.thorough), ("--at", "-8", "6")]
+)
 def test_the_page_s_examples_are_what_is_reported(asked, monkeypatch, capsys):
     monkeypatch.chdir(Path(pe.__file__).parent.parent)
     command = ["explain", "blend_assets/experiments/4_cameras.toml", *asked]

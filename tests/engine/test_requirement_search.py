@@ -163,10 +163,9 @@ def test_a_blind_place_is_mended_and_what_is_seen_needs_nothing():
     sight = start.sight()
 
     def is_blind(rig):
-        cells = sight._cells_round_body(BLIND_TO_M, 10.0)
-        blind = sight._blind_of(cells, rig, BLIND_TO_M)
-        at = [np.abs(w - v).argmin() for w, v in zip((cells.x, cells.y), place, strict=True)]
-        return bool(blind[at[0], at[1]])
+        away = [line - place for line in sight.blind(rig, BLIND_TO_M).outlines]
+        turned = sum(np.diff(np.unwrap(np.arctan2(y, x))).sum() for x, y in (a.T for a in away))
+        return round(turned / (2.0 * math.pi)) == 1
 
     assert is_blind(start.rig) and not any(is_blind(each.rig) for each in found)
     for each in found:

@@ -13,8 +13,8 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_tools.cli import sweep_verb
 from pe_tools.cli.verbs import main
+from pe_tools.sweep import sweep_table
 from tests.engine import shapes
 from tests.engine.processes import ROOT
 from tests.limits import HANG_S
@@ -136,15 +136,15 @@ def test_a_search_by_its_workers_takes_the_steps_of_one_process(study, cluster, 
 
 def at_first_result(monkeypatch, do):
     """Have something done when the first result has come; return the names of all that come."""
-    came, take = [], sweep_verb._SweepVerb._take
+    came, row_of = [], sweep_table.row_of
 
-    def watched(self, name, found):
+    def watched(run, *found):
         if not came:
             do()
-        came.append(name)
-        take(self, name, found)
+        came.append(run.name)
+        return row_of(run, *found)
 
-    monkeypatch.setattr(sweep_verb._SweepVerb, "_take", watched)
+    monkeypatch.setattr(sweep_table, "row_of", watched)
     return came
 
 

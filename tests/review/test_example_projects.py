@@ -14,6 +14,7 @@ import pytest
 
 import pe_core as pe
 from pe_tools.cli.verbs import main
+from tests.thorough import tries
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "examples"
@@ -33,7 +34,7 @@ def tool():
 EXAMPLES = tool()
 PROJECTS = sorted(path.parent.name for path in FOLDER.glob("*/decided.toml"))
 STUDIES = [path for name in PROJECTS for path in EXAMPLES.studies_of(name)]
-RECOMPUTED = [path for path in STUDIES if path.stem == "1_roof"]
+RECOMPUTED = [path for path in STUDIES if path.stem == "1_roof"][-tries(1, 4) :]
 """Studies whose figures, verdicts among them, are computed; `make examples` computes all."""
 
 

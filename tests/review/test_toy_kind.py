@@ -21,7 +21,7 @@ from tests.review.test_page import Elements
 HOUSING = scene.Housing("box", (0.02, 0.2, 0.02), (0.0, 0.0, 0.0))
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def bumper():
     """A study with a LiDAR, a camera and a toy ring, scored."""
     kinds.register(RING)

@@ -125,6 +125,7 @@ def test_figures_come_when_all_runs_are_there():
     assert "ranks better than that of one frame" in text and "nan" not in text
 
 
+@pytest.mark.thorough
 def test_one_frame_and_infinite_noise_are_the_papers_entropy():
     plan = quick_frames_plan()
     placement = frames_placements(plan)[0]

@@ -27,6 +27,7 @@ def no_plots(monkeypatch):
     monkeypatch.setattr(plots, "draw_all", lambda *_: None)
 
 
+@pytest.mark.thorough
 def test_the_orderings_are_the_papers_but_for_the_cameras_under_wide_priors(quick):
     found = Findings(quick.data)
     for key in ("1", "3 default", "3 front", "4"):
@@ -40,6 +41,7 @@ def test_the_orderings_are_the_papers_but_for_the_cameras_under_wide_priors(quic
         assert claim["holds"] == better
 
 
+@pytest.mark.thorough
 def test_the_camera_row_is_out_of_reach(quick):
     for row, printed in (("2_60deg", 2.0055), ("2_120deg", 2.0237)):
         for prior in PRIORS:
@@ -48,6 +50,7 @@ def test_the_camera_row_is_out_of_reach(quick):
             assert printed < value["least_all_round"] < value["least"] < ours
 
 
+@pytest.mark.thorough
 def test_the_run_is_complete_and_a_second_one_computes_nothing(quick, no_plots):
     values = {name: entry["value"] for name, entry in quick.data["results"].items()}
     assert plan(QUICK, values) == [] and quick.data["made"]["commit"]
@@ -58,6 +61,7 @@ def test_the_run_is_complete_and_a_second_one_computes_nothing(quick, no_plots):
     assert (quick.folder / "results.json").read_bytes() == before
 
 
+@pytest.mark.thorough
 def test_every_figure_of_the_page_is_in_the_results_and_every_picture_is_there(quick):
     """Numbers of four decimals are entropies: each is one of the results' or of the paper's."""
     text = (quick.folder / "README.md").read_text("utf-8")
@@ -70,12 +74,20 @@ def test_every_figure_of_the_page_is_in_the_results_and_every_picture_is_there(q
         assert (quick.folder / name).read_bytes().startswith(b"\x89PNG"), name
 
 
-def test_the_discussion_follows_from_the_committed_results_and_not_from_quick_ones(quick):
+SAID = "The figures are higher"
+"""Of the committed results, not of quick ones."""
+
+
+def test_the_discussion_follows_from_the_committed_results():
     stated = statements(Findings(COMMITTED))
     assert len(stated) > 20 and all(stated.values()), [k for k, v in stated.items() if not v]
+    assert SAID in page(Findings(COMMITTED))
+
+
+@pytest.mark.thorough
+def test_the_discussion_does_not_follow_from_quick_results(quick):
     assert not all(statements(Findings(quick.data)).values())
-    said = "The figures are higher"
-    assert said in page(Findings(COMMITTED)) and said not in page(Findings(quick.data))
+    assert SAID not in page(Findings(quick.data))
 
 
 def test_claims_turned_over_turn_their_verdicts_but_where_chance_may_have_decided():
@@ -98,6 +110,7 @@ def test_the_page_is_the_committed_one(tmp_path, no_plots):
     assert (tmp_path / "README.md").read_bytes() == (DOCS / "README.md").read_bytes()
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("heeded_signals")
 def test_what_is_done_is_kept_when_it_is_interrupted(quick, tmp_path):
     """A run that goes on with the pitch figure alone ends between two of its scores."""

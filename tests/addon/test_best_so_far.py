@@ -60,6 +60,7 @@ def lines_while_running(scene, job, monkeypatch):
 
 
 def test_a_running_search_tells_the_view_each_time_it_finds_better(car, monkeypatch):
+    car.perception_entropy.interval = 0.5
     job = jobs.OptimizeJob(scenes.study())
     lines = lines_while_running(car, job, monkeypatch)
     best_lines = [line for line in lines if line.startswith("Optimizing")]
@@ -70,6 +71,7 @@ def test_a_running_search_tells_the_view_each_time_it_finds_better(car, monkeypa
 def test_the_schedule_is_shown_and_written_for_the_method_that_has_it(car):
     """The candidates of one method stood beside every other, which did not use them."""
     window, settings = layouts.Window(car), car.perception_entropy
+    settings.interval = 0.5
     for name in search.METHODS:
         settings.method = name
         drawn = layouts.drawn(search_panels.search, **vars(window)).texts("prop")

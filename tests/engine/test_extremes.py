@@ -24,6 +24,7 @@ from pe_core.sensors.weather import Weather
 from pe_core.study.condition_table import condition_table
 from pe_tools.jobs import result_dict
 from tests.engine import shapes
+from tests.thorough import tries
 
 pytestmark = [pytest.mark.filterwarnings("error"), pytest.mark.usefixtures("no_key_figures")]
 
@@ -134,7 +135,7 @@ USES = {
 
 @pytest.mark.parametrize(
     ("cls", "change"),
-    [(cls, change) for cls in USES for change in changes(cls)],
+    [(cls, change) for cls in USES for change in changes(cls)][:: tries(5, 1)],
     ids=lambda value: getattr(value, "__name__", str(value)),
 )
 def test_a_setting_at_the_ends_of_its_numbers_has_an_answer_or_one_line(cls, change):
@@ -156,7 +157,7 @@ def numbers_of(model):
         for kind, model in MODELS.items()
         for name in numbers_of(model)
         for value in (0.0, *BESIDE, 1e-3, 1e5, 1e9, math.radians(178.0), math.radians(359.0))
-    ],
+    ][:: tries(5, 1)],
 )
 def test_a_number_of_a_sensor_at_its_ends_has_an_answer_or_one_line(kind, name, value):
     try:

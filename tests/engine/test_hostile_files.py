@@ -260,6 +260,7 @@ def outcomes_of(new_folder):
     return {(told := json.loads(line))["name"]: told for line in out.splitlines()}
 
 
+@pytest.mark.thorough
 @pytest.mark.skipif(sys.platform != "linux", reason="limits memory and asks for it as Linux does")
 def test_hostile_files_are_refused_in_one_line(tmp_path_factory):
     """What is not in the answers hung, or took the process with it; odd files are read."""

@@ -67,7 +67,7 @@ def test_a_study_with_areas_is_written_with_them_and_searches_the_same(folder, t
     search = pe.Search(
         mounting=space.mounting, samples=1024, schedule=pe.Schedule(2), method="random"
     )
-    study = pe.Study(rig, mounting.car(), search=search, samples=1024)
+    study = pe.Study(rig, mounting.car(), shapes.small_space(), search=search, samples=1024)
     there = pt.prepare_folder(tmp_path / "out")
     pt.export_study(study, there / "study.toml")
     again = pe.load_study(there / "study.toml")

@@ -253,7 +253,8 @@ def _child(request: dict) -> int:
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     recorder = Recorder(Path.cwd())
     plugins = [recorder] if request["reached"] else []
-    arguments = ["-x", "-q", "-p", "no:cacheprovider", *request["tests"]]
+    every = ("-m", "not trains_detectors")  # those of `make test-all` too
+    arguments = ["-x", "-q", "-p", "no:cacheprovider", *every, *request["tests"]]
     status = int(pytest.main(arguments, plugins=plugins))
     if request["reached"]:
         write_whole(Path(request["reached"]), json.dumps(recorder.tests))

@@ -7,10 +7,10 @@ import pe_core as pe
 from pe_core import sensors as kinds
 from pe_core.metric.entropy import entropy_of, precision_of
 from pe_core.metric.fusion import late_fusion
+from pe_core.scene.vehicle import VisibleMesh
 from pe_core.scoring.sight import Sight
 from pe_core.scoring.sight.ground_cells import gauss
 from pe_core.scoring.sight.visibility import SPREAD_M
-from pe_core.sensors.lidar.beams import LazyEnds
 from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused
 
@@ -115,13 +115,13 @@ def test_where_objects_are_met_places_without_any_do_not_count():
 
 def test_beams_are_cast_once_for_all_that_is_looked_at(monkeypatch):
     """Map, blind ground and reach measure voxels of their own, of beams that end where they end."""
-    cast, plain = [], LazyEnds._cast
-    monkeypatch.setattr(LazyEnds, "_cast", lambda s, new: cast.append(new) or plain(s, new))
+    cast, plain = [], VisibleMesh.first_hit
+    monkeypatch.setattr(VisibleMesh, "first_hit", lambda s, d: cast.append(d) or plain(s, d))
     own, rig = sight(shapes.box_car(2)), pe.Rig([lidar((0.3, 0.2, 1.6))])
     for ask in (own.ground, own.blind, lambda r: own.reach(r, "car"), own.expected_ap):
         ask(rig)
     beams = np.concatenate(cast)
-    assert len(beams) == len(np.unique(beams)) > 0
+    assert len(beams) == len(np.unique(beams, axis=0)) > 0
     cast.clear()
     moved = pe.Rig([lidar((0.3, 0.2, 1.7))])
     assert own.blind(moved).area == sight(shapes.box_car(2)).blind(moved).area and cast

@@ -1,8 +1,6 @@
 """The verb, and the page beside a search's results, as a user runs them."""
 
 import dataclasses
-import html
-import re
 import shlex
 import tomllib
 
@@ -14,6 +12,7 @@ from pe_tools.page import PAGE
 from pe_tools.page.markup import escaped
 from pe_tools.page.sections import SECTIONS
 from tests.review.conftest import small_study
+from tests.review.dom import parsed
 
 NAMED = "a <b> & c"
 """A file's name that a page must escape."""
@@ -72,7 +71,7 @@ def test_a_search_leaves_its_page(study, tmp_path, capsys):
     assert "Moves of the sensors" in text
     told = shlex.join(["pe", "optimize", str(study), "-o", str(out)])
     assert f"<pre>{escaped(told)}</pre>" in text
-    given = html.unescape(re.search(r'<pre id="study-a"[^>]*>(.*?)</pre>', text, re.S)[1])
+    given = parsed(text).one("pre", id="study-a").text
     assert tomllib.loads(given)["sensor"] == tomllib.loads(study.read_text("utf-8"))["sensor"]
     assert main(["score", str(study), "-o", str(out)]) == 0
     assert not (out / PAGE).exists(), "it told of the search"

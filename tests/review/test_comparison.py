@@ -1,7 +1,6 @@
 """The comparison of studies: differing sensors, the better rig, hidden sensors, prices."""
 
 import dataclasses
-import re
 
 import pytest
 
@@ -15,18 +14,16 @@ from pe_tools.page.markup import render
 from pe_tools.page.sections.comparison import comparison as comparison_section
 from pe_tools.page.sections.comparison import sensor_differences
 from tests.review.conftest import NAMES, html_of, small_study
+from tests.review.dom import parsed
 
 LIDAR, CAMERA = NAMES
 
 
-def cells(html):
-    """The texts of a table's rows."""
-    body = html.partition("<tbody>")[2].partition("</tbody>")[0]
-    texts = (
-        re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row, re.S)
-        for row in re.findall(r"<tr>(.*?)</tr>", body, re.S)
-    )
-    return [[re.sub(r"<[^>]*>", "", text).strip() for text in row] for row in texts]
+def cells(html, caption=""):
+    """The texts of the rows of the first table that has this in its caption."""
+    table = next(each for each in parsed(html).all("table") if caption in each.text)
+    rows = table.one("tbody").all("tr")
+    return [[cell.text.strip() for cell in row if cell.tag in ("th", "td")] for row in rows]
 
 
 def differences(contexts):
@@ -57,7 +54,7 @@ def test_a_row_a_sensor_with_what_differs():
     lidar, moved, eye, turned, other = cells(html)
     assert lidar[1:] == ["A C", "small LiDAR", "0.000", "0.000", "1.800", *["0.00"] * 3]
     assert moved[3] == "−1.500 (−1.500)" and moved[1] == "B"
-    assert eye[0] == "front &amp; left / 60°" and eye[-1] == "170.00"
+    assert eye[0] == "front & left / 60°" and eye[-1] == "170.00"
     assert turned[-1] == "−175.00 (+15.00)", "the short way round"
     assert other[1:3] == ["C", "Camera 120 deg"] and "<b>Camera 120 deg</b>" in html
     assert html.count("Price") == 0 and sensor_differences(each)["differing"] == [*NAMES]
@@ -74,9 +71,12 @@ def test_the_comparison_marks_the_engine_s_winner(scored, other, comparison):
     better = min((scored, other), key=lambda one: one.after.entropy)
     winner = (scored, other).index(better)
     assert rows[0].best.index(True) == winner
-    heading = comparison.index(FIGURES["entropy"].heading)
-    first = re.search(r'class="wins whose-(\w)-ink">([^<]*)<', comparison[heading:])
-    assert first.groups() == ("ab"[winner], f"{better.after.entropy:.3f}")
+    elements = list(parsed(comparison))
+    heading = FIGURES["entropy"].heading
+    begin = next(k for k, each in enumerate(elements) if each.parts[:1] == [heading])
+    first = next(each for each in elements[begin:] if "wins" in each.classes)
+    assert first.classes == ["wins", f"whose-{'ab'[winner]}-ink"]
+    assert first.text.startswith(f"{better.after.entropy:.3f}")
     assert comparison_section(keyed_contexts([scored, other]))["overall"] == rows[0]
 
 
@@ -95,5 +95,5 @@ def test_the_margins_of_stories_are_in_the_comparison(scored, other):
     assert row in comparison_section(each)["rows"]
     assert ["Crossing child", row.text(0), row.text(1)] in [
         [text.partition(" (")[0].replace("−", "-").removesuffix(" best") for text in line]
-        for line in cells(html_of(comparison_section, *each).partition("Margin of stories")[2])
+        for line in cells(html_of(comparison_section, *each), "Margin of stories")
     ]

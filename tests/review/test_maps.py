@@ -1,7 +1,6 @@
 """Plans and maps: ahead is to the right and left is up; colours have the meaning in the key."""
 
 import base64
-import re
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -20,6 +19,7 @@ from pe_tools.page.pictures.sight_plans import side_text
 from pe_tools.page.sections.visibility import visibility
 from tests.engine.test_masks import decoded
 from tests.review.conftest import html_of
+from tests.review.dom import parsed
 
 
 def seen(entropy, sensors=None):
@@ -33,7 +33,8 @@ def seen(entropy, sensors=None):
 
 def pixels_of(svg):
     """The picture inside a drawing."""
-    return decoded(base64.b64decode(re.search('base64,([^"]+)', svg)[1]))
+    image = parsed(svg).one("image").attributes
+    return decoded(base64.b64decode(image["href"].partition("base64,")[2]))
 
 
 def test_a_map_has_ahead_right_and_left_up():

@@ -3,9 +3,7 @@
 import base64
 import hashlib
 import json
-import re
 from datetime import date
-from html.parser import HTMLParser
 
 import pytest
 
@@ -13,50 +11,27 @@ import pe_core as pe
 from pe_tools.page import PAGE, About, page_bytes, write_page
 from pe_tools.page.markup import escaped, macros
 from pe_tools.page.sections import Section
-
-VOID = {"meta", "img", "br", "link", "input", "hr", "wbr", "path", "rect", "circle", "line"}
-
-
-class Elements(HTMLParser):
-    """Every element with its attributes, the ids, and what is left open."""
-
-    def __init__(self, text):
-        super().__init__()
-        self.found, self.open, self.ids = [], [], []
-        self.feed(text)
-
-    def handle_starttag(self, tag, attributes):
-        self.found.append((tag, dict(attributes)))
-        self.ids += [value for name, value in attributes if name == "id"]
-        if tag not in VOID:
-            self.open.append(tag)
-
-    def handle_startendtag(self, tag, attributes):
-        self.found.append((tag, dict(attributes)))
-        self.ids += [value for name, value in attributes if name == "id"]
-
-    def handle_endtag(self, tag):
-        if tag not in VOID:
-            assert self.open.pop() == tag, (tag, self.open[-4:])
-
+from tests.review.dom import parsed, policy_of, scripts
 
 PAGES = ["page", "searched_page", "page_of_two", "bare_page"]
 
 
 @pytest.mark.parametrize("which", PAGES)
 def test_elements_are_whole_described_and_ask_for_no_other_file(which, request):
-    page = Elements(request.getfixturevalue(which))
-    assert not page.open and len(page.ids) == len(set(page.ids))
-    links = [a["href"][1:] for tag, a in page.found if tag == "a" and "href" in a]
-    assert links and set(links) <= set(page.ids)
-    for tag, attributes in page.found:
+    page = parsed(request.getfixturevalue(which))
+    found = [(each.tag, each.attributes) for each in page]
+    ids = [attributes["id"] for _, attributes in found if "id" in attributes]
+    assert len(ids) == len(set(ids))
+    links = [a["href"][1:] for tag, a in found if tag == "a" and "href" in a]
+    assert links and set(links) <= set(ids)
+    for tag, attributes in found:
         for name in ("src", "href", "data", "srcset", "poster"):
             address = attributes.get(name) or "#"
             assert address.startswith(("data:", "#")), (tag, address[:80])
         assert not [name for name in attributes if name.startswith("on")], tag
         assert tag != "img" or attributes.get("alt")
         assert tag != "th" or attributes.get("scope") in ("col", "row", "rowgroup")
-    count = [tag for tag, _ in page.found].count
+    count = [tag for tag, _ in found].count
     assert count("table") == count("caption")
 
 
@@ -64,13 +39,16 @@ def test_elements_are_whole_described_and_ask_for_no_other_file(which, request):
 def test_the_policy_names_every_script_and_style_by_its_hash(which, request):
     """No style attribute is left, which a policy without 'unsafe-inline' would not let through."""
     text = request.getfixturevalue(which)
-    stated = re.search(r'Content-Security-Policy" content="([^"]*)"', text)[1]
+    page = parsed(text)
+    stated = policy_of(page)
     assert "unsafe" not in stated
     body = text.partition("</head>")[2].partition("<script")[0]
     assert " style=" not in body and body.count(" data-s=") > 9
-    for kind, content in re.findall(r"<(script|style)>(.*?)</\1>", text, re.S):
-        digest = base64.b64encode(hashlib.sha256(content.encode()).digest()).decode()
-        allowed = next(part for part in stated.split("; ") if part.startswith(f"{kind}-src"))
+    plain = [each for each in page if each.tag in ("script", "style") and not each.attributes]
+    assert len(plain) > 1
+    for each in plain:
+        digest = base64.b64encode(hashlib.sha256(each.text.encode()).digest()).decode()
+        allowed = next(part for part in stated.split("; ") if part.startswith(f"{each.tag}-src"))
         assert f"'sha256-{digest}'" in allowed
 
 
@@ -109,7 +87,7 @@ def test_scripts_and_styles_stand_once_and_data_by_study(scored, other, monkeypa
     monkeypatch.setattr("pe_tools.page.document.SECTIONS", (row,))
     text = page_bytes([scored, other]).decode()
     assert text.count("const a = '<\\/script>';") == text.count("@page { margin") == 1
-    found = dict(re.findall(r'id="data-try-(\w)">(.*?)</script>', text))
+    found = scripts(parsed(text), "data-try-")
     assert not any(set(data) & set("<>&\u2028") for data in found.values())
     for key, data in found.items():
         assert json.loads(data) == {"key": key, "name": name, "x": [1.5, None]}

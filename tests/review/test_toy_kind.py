@@ -16,7 +16,7 @@ from pe_tools.page.sections.visibility import sensor_details
 from tests.engine.processes import finished
 from tests.engine.toy_kind import RING, Ring
 from tests.review.conftest import html_of, small_study
-from tests.review.test_page import Elements
+from tests.review.dom import parsed
 
 HOUSING = scene.Housing("box", (0.02, 0.2, 0.02), (0.0, 0.0, 0.0))
 
@@ -34,9 +34,9 @@ def bumper():
 
 def test_a_page_shows_a_rig_with_the_kind(bumper):
     text = page_bytes([bumper]).decode()
-    elements = Elements(text)
-    assert not elements.open and len(elements.ids) == len(set(elements.ids))
-    assert "<td>Toy Ring</td>" in text and "<pre>range           4 m</pre>" in text
+    page = parsed(text)
+    assert "Toy Ring" in [cell.text for cell in page.all("td")]
+    assert "range           4 m" in [each.text for each in page.all("pre")]
     for sensor, score in bumper.after.per_sensor.items():
         assert score.coverage > 0.0, sensor
 

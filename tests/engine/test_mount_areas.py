@@ -130,5 +130,5 @@ def test_what_is_wrong_with_an_area_is_one_line(folder, name):
 def test_an_area_needs_a_vehicle():
     rig = pe.Rig([mounting.can(START)])
     where = pe.Mounting({"area": area_mount()}, {"roof": "area"})
-    with pytest.raises(pe.InputError, match="area: expected a vehicle that it is an area of"):
+    with pytest.raises(pe.InputError, match="area: expected"):
         pe.Study(rig, search=pe.Search(mounting=where)).coding()

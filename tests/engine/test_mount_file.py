@@ -152,7 +152,7 @@ def test_what_is_wrong_is_refused(folder):
 
 def test_a_surface_needs_a_vehicle():
     data = {"sensor": [ON], "optimize": {"mount": [AREA]}}
-    with pytest.raises(pe.InputError, match="expected a vehicle with such a part, found 'roof'"):
+    with pytest.raises(pe.InputError, match="found 'roof'"):
         study_from_dict(data)
 
 
@@ -160,7 +160,7 @@ def test_a_part_without_faces_is_no_surface():
     car = mounting.car()
     vehicle = pe.Vehicle(car.triangles, car.parts, (*car.part_names, "gone"))
     mount = {"roof": pe.SurfaceMount(["gone"])}
-    with pytest.raises(pe.InputError, match="parts: expected parts with faces, found none in gone"):
+    with pytest.raises(pe.InputError, match=r"parts: .* none in gone"):
         Parametrization(*mounting.space(mounting.can(), mount=mount, vehicle=vehicle))
 
 

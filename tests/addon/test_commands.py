@@ -24,6 +24,7 @@ def without_run(path: Path) -> dict:
 @pytest.fixture
 def blend(car, tmp_path) -> Path:
     scenes.add_sensor("front", model="Camera 60 deg")
+    car.perception_entropy.interval = 0.5  # key figures are of all voxels
     path = tmp_path / "car.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
     return path

@@ -221,7 +221,7 @@ def test_a_story_that_is_never_confirmed_is_drawn_as_the_worst(addon):
         cells[margins] = compare_variants.cell_of(row, 1)
     assert list(cells.values()) == [
         ("none", False, "", 1),
-        ("0.2", True, "", -1),
+        ("0.20", True, "", -1),
         ("none", False, "", 0),
     ]
 

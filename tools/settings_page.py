@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import sys
-from itertools import groupby
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -16,6 +15,7 @@ sys.path.insert(0, str(ROOT))
 
 from pe_core.study import (  # noqa: E402
     REQUIRED,
+    Declared,
     Name,
     Number,
     OneOf,
@@ -42,9 +42,12 @@ Numbers and switches of a study, by their table in the file: `max_height` below 
 def page() -> str:
     """Return the whole page: the settings of each table of the file below a heading."""
     lines = [HEAD]
-    for table, rows in groupby(setting_keys(), key=lambda row: row[0].rpartition(".")[0]):
+    tables: dict[str, list[Declared]] = {}
+    for row in setting_keys():
+        tables.setdefault(row.key.rpartition(".")[0], []).append(row)
+    for table, rows in tables.items():
         lines += ["", f"## [{table}]", ""] if table else [""]
-        lines += [item(key.rpartition(".")[2], setting) for key, setting in rows]
+        lines += [item(row.key.rpartition(".")[2], row.setting) for row in rows]
     return "\n".join(lines).replace("\n\n\n", "\n\n") + "\n"
 
 
@@ -87,7 +90,7 @@ def default_text(setting: Setting) -> str:
     """Return the default as a file has it; nothing for a setting that may be absent."""
     if setting.default is REQUIRED:
         return "required"
-    value = value_in_file(setting, setting.default)
+    value = value_in_file(setting.rule, setting.default)
     return "" if value is None else f"`{json.dumps(value)}`".replace("Infinity", "inf")
 
 

@@ -91,6 +91,7 @@ from .sensor_records import (
 )
 from .time import (
     body_place,
+    by_name_of,
     clear_stale_stories,
     confirmation_of,
     frame_rate,

@@ -116,7 +116,7 @@ def write_conditions(settings: PropertyGroup, conditions: pe.Conditions) -> None
 
 def write_state(row: PropertyGroup, state: geometry.State) -> None:
     """Write a state to a row."""
-    table = studies.state_table(state)
+    table = studies.write(state)
     row.name, row.weight = state.name, state.weight
     row.frame = -1 if state.frame is None else state.frame
     row.table = json.dumps({k: v for k, v in table.items() if k not in ("name", "weight", "frame")})
@@ -136,7 +136,7 @@ def _state_of(row: PropertyGroup) -> geometry.State:
         raise pe.InputError("scene", f"state {row.name!r}", "motions", "other text") from None
     frame = {} if row.frame < 0 else {"frame": row.frame}
     whole = {**table, "name": row.name, "weight": as_typed(row.weight), **frame}
-    return studies.state_from_dict(whole, "scene")
+    return studies.read(geometry.State, studies.Node(whole, "scene"))
 
 
 def _weather_of(row: PropertyGroup) -> pe.Weather:
@@ -157,7 +157,7 @@ def read_states(scene: Scene) -> list[str]:
         for row in rows:
             moves = _motions(row.name, drawn, _shown_at(scene, row.frame))
             state = geometry.State(row.name, moves)
-            table = json.dumps({k: v for k, v in studies.state_table(state).items() if k == "move"})
+            table = json.dumps({k: v for k, v in studies.write(state).items() if k == "move"})
             if table != row.table:
                 row.table = table
                 changed.append(row.name)

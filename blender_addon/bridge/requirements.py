@@ -13,7 +13,7 @@ from typing import Any
 
 from bpy.types import PropertyGroup
 
-from ..engine import pe, requirements, studies, text
+from ..engine import pe, requirements, studies
 
 REASON = "reason"  # Key of a stored text that is why there is no verdict
 TableData = dict[str, Any]
@@ -67,7 +67,7 @@ def after_of(row: PropertyGroup) -> str:
 
 def write_row(row: PropertyGroup, requirement: Requirement) -> None:
     """Write a requirement to a row."""
-    table = studies.requirement_file.requirement_table(requirement)
+    table = studies.write(requirement)
     row.name = table.pop("name")
     row.table = json.dumps(table)
     row.problem = ""
@@ -100,7 +100,7 @@ def _of_preset(requirement: Requirement, preset: str | None) -> Requirement:
     if preset is None:
         return requirement
     changed = replace(requirement, preset=preset)
-    table = studies.requirement_file.requirement_table(changed)
+    table = studies.write(changed)
     try:
         again = _read(table.pop("name"), table)
     except pe.InputError:
@@ -146,5 +146,5 @@ def stored_verdict(row: PropertyGroup) -> VerdictSummary | str | None:
 
 
 def _read(name: str, table: TableData) -> Requirement:
-    reader = text.Table({**table, "name": name}, "scene", f"requirement {name!r}")
-    return studies.requirement_file.read_requirement(reader)
+    node = studies.Node({**table, "name": name}, "scene", f"requirement {name!r}")
+    return studies.read(Requirement, node)

@@ -185,7 +185,7 @@ def settings_signature(settings: PropertyGroup) -> list[object]:
     """Return the settings of a score that were set, including invalid ones."""
     scored = (
         setting.panel.property
-        for _, setting in studies.setting_keys(of_scene=True)
+        for _, setting, *_ in studies.setting_keys(of_scene=True)
         if setting.scored and setting.panel is not None
     )
     names = [each for each in scored if each not in PLACED and settings.is_property_set(each)]

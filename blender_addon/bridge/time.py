@@ -8,19 +8,21 @@ from typing import Any
 from bpy.types import Object, PropertyGroup, Scene
 from mathutils import Vector
 
-from ..engine import motion, pe, studies
+from ..engine import motion, pe, studies, text
 from .scene_settings import values_of, write_values
+
+BY_NAME = ("noises", "rates")
 
 
 def time_of(settings: PropertyGroup) -> dict[str, Any]:
     """Return the fields of a study in time that a scene holds, by name. `InputError` when a value
     or a row is wrong, or names repeat."""
-    by_name = studies.by_name_of_text(settings.time_text, "scene")
+    by_name = by_name_of(settings)
     rows = [_table_of(row) for row in settings.stories if row.enabled]
     return {
         "frames": motion.Frames(**values_of(settings, motion.Frames), **by_name),
         "confirmation": confirmation_of(settings),
-        "stories": studies.stories_of_rows(rows, "scene"),
+        "stories": tuple(_read_story(row) for row in rows),
     }
 
 
@@ -31,7 +33,18 @@ def confirmation_of(settings: PropertyGroup) -> motion.Confirmation:
 
 def story_of(row: PropertyGroup) -> motion.Story:
     """Return the story of a row; `InputError` when a value is wrong."""
-    return studies.stories_of_rows([_table_of(row)], "scene")[0]
+    return _read_story(_table_of(row))
+
+
+def _read_story(table: Mapping[str, Any]) -> motion.Story:
+    return studies.read(motion.Story, studies.Node(table, "scene", "story"))
+
+
+def by_name_of(settings: PropertyGroup) -> dict[str, Any]:
+    """Return noises by class and rates by kind of sensor; `InputError` where the text is wrong."""
+    kept = text.parse_json("scene", settings.time_text, infinite=True) if settings.time_text else {}
+    frames = studies.read(motion.Frames, studies.Node(kept, "scene", "time"))
+    return {key: dict(getattr(frames, key)) for key in BY_NAME}
 
 
 def write_time(
@@ -43,7 +56,8 @@ def write_time(
     """Write them to a scene, in place of its own."""
     write_values(settings, frames)
     write_values(settings, confirmation)
-    settings.time_text = studies.by_name_text(frames)
+    by_name = {key: dict(own) for key in BY_NAME if (own := getattr(frames, key))}
+    settings.time_text = text.dump_json(by_name) if by_name else ""
     settings.stories.clear()
     for story in stories:
         write_story(settings.stories.add(), story)
@@ -53,7 +67,7 @@ def write_story(row: PropertyGroup, story: motion.Story) -> None:
     """Write a story to a row: its fields, and as JSON what these do not have."""
     row.name, row.result = story.name, ""
     write_values(row, story)
-    row.table = json.dumps(studies.story_table(story))
+    row.table = json.dumps(studies.write(story))
 
 
 def frame_rate(scene: Scene) -> float:

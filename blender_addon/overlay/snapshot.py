@@ -247,7 +247,7 @@ def _story(scene: bpy.types.Scene) -> dict[str, Any]:
         return {}
     try:
         found = bridge.story_of(settings.stories[settings.story_index])
-        rates = studies.by_name_of_text(settings.time_text, "scene")["rates"]
+        rates = bridge.by_name_of(settings)["rates"]
     except pe.InputError:
         return {}
     shown = {"story": found, "confirmation": bridge.confirmation_of(settings)}

@@ -30,7 +30,7 @@ def prior(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
 def targets(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
     """What is scored: voxels, or objects of the prior"""
     draw_declared(layout, settings, "metric")
-    draw_declared(layout, settings, "ap" if settings.targets == OBJECTS else "score")
+    draw_declared(layout, settings, "ap" if settings.targets == OBJECTS else "")
 
 
 @row_list("PE_UL_focus")

@@ -95,8 +95,8 @@ def tolerance(layout: UILayout, settings: PropertyGroup, _context: Context) -> N
     draw_properties(layout, settings, ("mounting_errors",))
     column = layout.column()
     column.active = settings.mounting_errors
-    draw_declared(column, settings, "optimize.tolerance")
-    draw_declared(layout, settings, "cases", ("worst",))
+    draw_declared(column, settings, "tolerance", ("failures", "worst"))
+    draw_properties(layout, settings, ("failures",))
     row = layout.row()
     row.active = settings.mounting_errors or settings.failures
     row.prop(settings, "worst")

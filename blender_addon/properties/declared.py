@@ -102,7 +102,7 @@ def scene_group() -> Any:
             each.panel.property: property_of(
                 each, **({"update": redraw} if key.startswith(DRAWN) else {})
             )
-            for key, each in studies.setting_keys(of_scene=True)
+            for key, each, *_ in studies.setting_keys(of_scene=True)
             if each.panel is not None
         },
     )
@@ -145,6 +145,6 @@ def _row_of(setting: studies.Setting) -> DeclaredRow:
 
 
 ROWS = {
-    row.name: row for _, each in studies.setting_keys() if each.panel for row in [_row_of(each)]
+    row.name: row for _, each, *_ in studies.setting_keys() if each.panel for row in [_row_of(each)]
 }
 """By property; those of several groups that have one name have one form."""

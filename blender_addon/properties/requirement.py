@@ -101,7 +101,7 @@ def _declared_view(section: str, setting: studies.Setting) -> dict[str, Any]:
         own = table.setdefault(section, {})
         own.pop(name, None)
         if name in ZERO_COUNTS or found != default:
-            own[name] = value if found is None else studies.value_in_file(setting, found)
+            own[name] = value if found is None else studies.value_in_file(setting.rule, found)
 
     is_menu = isinstance(setting.rule, studies.OneOf)
     return _choice(studies.menu_of(setting), get, put) if is_menu else _view(get, put)

@@ -3,20 +3,17 @@
 The declaration has the allowed values (`rule`), the meaning (`text`) and the field in Blender's
 panel (`panel`). Name, type and default are those of the dataclass field. Five things follow from
 the declaration: the check when the dataclass is made (`check_settings`), the key of the study file
-(`read_settings`), the property and its tooltip in Blender, loading a study into a scene, and the
+(`codec`), the property and its tooltip in Blender, loading a study into a scene, and the
 table of keys in docs/settings.md.
 """
 
 import functools
-import math
 from collections.abc import Collection, Iterable
 from dataclasses import MISSING, dataclass, field, fields
 from typing import Any, Protocol, TypeVar
 
 from .errors import InputError, shown
-from .table_reader import REQUIRED as NEEDED
-from .table_reader import Table
-from .values import A_NAME, ANY, Angle, Name, Number, choice, degrees_in_file, listed, pair, vector
+from .values import A_NAME, Angle, Name, Number, choice, degrees_in_file, listed, pair, vector
 
 T = TypeVar("T")
 _KEY = "setting"
@@ -228,69 +225,13 @@ def key_of(name: str) -> str:
     return name.replace("_rad", "_deg")
 
 
-def read_settings(
-    table: Table, cls: type, names: Iterable[str] = (), default: object = None
-) -> dict[str, Any]:
-    """Return the settings of a dataclass that a table has, defaults for the others.
-
-    An instance as `default` has the defaults in place of the declared ones.
-
-    `InputError` when a value breaks its rule; the line names the key in the file.
-    """
-    settings = settings_of(cls)
-    return {
-        name: _read(table, settings[name], getattr(default, name, settings[name].default))
-        for name in names or settings
-    }
+def value_in_file(rule: object, value: Any) -> Any:
+    """Return a value of a rule as a file holds it: angles in degrees, lists for tuples."""
+    if isinstance(value, list | tuple):
+        return [value_in_file(rule, each) for each in value]
+    return degrees_in_file(value) if value is not None and is_angle(rule) else value
 
 
-def read_declared(table: Table, cls: type[T], *others: Any, default: T | None = None) -> T:
-    """Return a dataclass of settings from its table, which has no further keys. `others` are fields
-    before them that are no settings. Errors name the table."""
-    values = read_settings(table, cls, default=default)
-    table.finish()
-    with table.naming():
-        return cls(*others, **values)
-
-
-def settings_table(instance: Any, names: Iterable[str] = ()) -> dict[str, Any]:
-    """Return the table that `read_settings` reads; None for what is absent."""
-    settings = settings_of(type(instance))
-    return {
-        key_of(name): value_in_file(settings[name], getattr(instance, name))
-        for name in names or settings
-    }
-
-
-def changed_settings(instance: Any, names: Iterable[str] = ()) -> dict[str, Any]:
-    """Return the table that `read_settings` reads, without what has its default."""
-    settings = settings_of(type(instance))
-    changed = [n for n in names or settings if getattr(instance, n) != settings[n].default]
-    return settings_table(instance, changed) if changed else {}
-
-
-def value_in_file(setting: Setting, value: Any) -> Any:
-    """Return a value as a file holds it: angles in degrees, lists for tuples."""
-    if isinstance(value, tuple):
-        return [value_in_file(setting, each) for each in value]
-    return degrees_in_file(value) if value is not None and _is_angle(setting) else value
-
-
-def _is_angle(setting: Setting) -> bool:
-    rule = setting.rule
-    return isinstance(rule.rule if isinstance(rule, Triple) else rule, Angle)
-
-
-def _read(table: Table, setting: Setting, default: Any) -> Any:
-    key = key_of(setting.name)
-    value = table.raw(key, NEEDED if default is REQUIRED else default)
-    if key not in table:
-        return value
-    source, field = table.source, table.field(key)
-    if not _is_angle(setting):
-        return setting.rule.checked(source, field, value)
-    items = listed(value, 3) if isinstance(setting.rule, Triple) else None
-    if items is None:
-        return setting.rule.checked(source, field, math.radians(ANY.checked(source, field, value)))
-    radians = [math.radians(ANY.checked(source, field, item)) for item in items]
-    return setting.rule.checked(source, field, radians)
+def is_angle(rule: object) -> bool:
+    """Whether values of a rule are angles, which are in degrees in files."""
+    return isinstance(rule.rule if isinstance(rule, Triple | Pair) else rule, Angle)

@@ -7,12 +7,15 @@ a study must have the same score in every Python, including Blender's.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
+from ..base.codec import Part
 from ..base.errors import InputError
+from ..base.setting import Triple
 from ..base.values import Angle, Number, degrees_in_file, numbers, vector
 
 FARTHEST_M = 1e4  # Maximum magnitude of a coordinate; kernels rely on it
@@ -23,6 +26,7 @@ ROTATION = Angle(-TURNS_DEG, TURNS_DEG)
 ROTATION_DEG = Number(-TURNS_DEG, TURNS_DEG, unit="degrees")
 PROPER_WITHIN = 1e-4
 """Maximum deviation of a matrix from a rotation: files and single precision round."""
+UPRIGHT = (0.0, 0.0, 0.0)
 LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 """Of a homogeneous matrix that moves columns."""
 
@@ -46,8 +50,10 @@ class Pose:
     not `math.radians` of any float changes by one unit in the last place.
     """
 
-    position: tuple[float, float, float]
-    rpy: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    position: Annotated[tuple[float, float, float], Part(rule=Triple(METRES))]
+    rpy: Annotated[tuple[float, float, float], Part(key="rotation", rule=Triple(ROTATION))] = (
+        UPRIGHT
+    )
 
     def __post_init__(self) -> None:
         position = vector("pose", "position", self.position, 3, METRES)

@@ -6,28 +6,30 @@ ground that does not move. A story begins with the first path, and ends at time 
 """
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.errors import InputError, one_of, shown
+from ..base.codec import Named, Node, Part, hook, read_fields, write_fields
+from ..base.errors import InputError, require_kind, shown
 from ..base.files import decode_text, read_bytes
-from ..base.setting import FLAG, Panel, check_settings, read_settings, setting
-from ..base.table_reader import Table, load_toml
-from ..base.values import A_NAME, Number, listed, vector
+from ..base.setting import Panel, check_settings, setting
+from ..base.table_reader import load_toml
+from ..base.values import A_NAME, Angle, Number, choice, listed, vector
 from ..scene.vehicle import Vehicle
-from ..scoring.requirements.bodies import BODIES, Body
+from ..scoring.requirements.bodies import Body
 from ..scoring.targets.scene_layout import CAR_SIZE_M
 
 KMH = 3.6
 SECOND = Number(-600.0, 600.0, unit="s", noun="time")
 METRE = Number(-1000.0, 1000.0, unit="m", noun="position")
 FILE = Path(__file__).with_name("stories.toml")
+HEADING = Angle(-3600.0, 3600.0)
 RATE_HZ = 10.0
 """Frames in a second: most LiDARs'. Sensors with a rate of their own have a `FrameClock`."""
 CHANCE = 0.9
@@ -43,11 +45,11 @@ class Actor:
     has to be confirmed; else it only occludes.
     """
 
-    name: str
+    name: Named
     body: Body
     path: tuple[tuple[float, ...], ...]
     watched: bool = True
-    heading: float = 0.0
+    heading: Annotated[float, Part(key="heading_deg", rule=HEADING)] = 0.0
     """While it stands [rad]."""
 
     def __post_init__(self) -> None:
@@ -84,7 +86,7 @@ class Story:
     """A scene in time: the vehicle's own speed, how it stops, and what moves. `InputError` when a
     number is out of its range, or there is no body to watch."""
 
-    name: str
+    name: Named
     title: str = ""
     source: str = ""
     preset: str = ""
@@ -112,7 +114,7 @@ class Story:
         "How long before the last moment it has to be confirmed [s]",
         Panel("before_s", "Earlier By (s)"),
     )
-    actors: tuple[Actor, ...] = field(default=())
+    actors: Annotated[tuple[Actor, ...], Part(key="body")] = ()
 
     def __post_init__(self) -> None:
         who = f"story {A_NAME.checked('story', 'name', self.name)!r}"
@@ -168,6 +170,17 @@ class Story:
         return np.array(where), np.array(headings)
 
 
+def checked_stories(stories: Sequence[Story]) -> tuple[Story, ...]:
+    """Return stories; raise `InputError` for two of one name, or what is none."""
+    names: set[str] = set()
+    for each in stories:
+        require_kind("study", "stories", each, Story)
+        if each.name in names:
+            raise InputError("study", "story", "each name once", f"{each.name!r} twice")
+        names.add(each.name)
+    return tuple(stories)
+
+
 def outline(vehicle: Vehicle | None) -> tuple[Floats, Floats]:
     """Return the lowest and highest corner (2,) of the vehicle as drawn, from above; of a car
     without a vehicle."""
@@ -178,45 +191,42 @@ def outline(vehicle: Vehicle | None) -> tuple[Floats, Floats]:
     return low[:2], high[:2]
 
 
-def read_story(table: Table, name: str) -> Story:
+@dataclass(frozen=True, slots=True)
+class StoryTable(Story):
+    """The keys of a story's table: a shipped one needs no name of its own."""
+
+    name: Named = ""
+
+
+def _read_story(node: Node) -> Story:
     """Return a story from its table; a `preset` is changed by the other keys."""
-    preset = table.text("preset", "")
-    base = None
-    if preset:
-        if preset not in stories():
-            raise table.error("preset", one_of(stories(), preset), shown(preset))
-        base = stories()[preset]
-    values = read_settings(table, Story, default=base)
-    texts: dict[str, Any] = {
-        key: table.text(key, getattr(base, key, "")) for key in ("title", "source")
-    }
-    if table.text("name", name) != name:
-        raise table.error("name", f"{name!r}, as the table", table.text("name"))
-    actors = tuple(_read_actor(row) for row in table.tables("body"))
-    table.finish()
-    with table.naming():
-        return Story(
-            name, **texts, preset=preset, **values, actors=actors or (base.actors if base else ())
-        )
+    preset, base = node.at("preset"), None
+    table = {**node.table, "name": node.table.get("name", preset.value)}
+    if table["name"] is None:
+        raise node.error("a name, or a preset", "none", "name")
+    if preset.value is not None:
+        base = stories()[choice(preset.source, preset.path, preset.value, stories())]
+    return read_fields(Story, node.of(table, node.path), base)
 
 
-def _read_actor(table: Table) -> Actor:
-    kind = table.text("body")
-    shape = BODIES.get(kind)
-    if shape is None:
-        size: Any = table.numbers("size", 3)
-        shape = Body(kind, size, class_name=table.text("class", "") or None)
-    watched = FLAG.checked(table.source, table.field("watched"), table.raw("watched", True))
-    name, heading = table.text("name", kind), math.radians(table.number("heading_deg", 0.0))
-    path = listed(table.raw("path")) or []
-    table.finish()
-    with table.naming():
-        return Actor(name, shape, tuple(path), watched, heading)
+def _write_story(story: Story) -> dict[str, Any]:
+    """Return the table of a story; of a shipped one its name alone, and what was changed."""
+    table = write_fields(story, stories().get(story.preset))
+    if story.preset in stories():
+        table = {"name": story.name, "preset": story.preset, **table}
+        table = table if story.name != story.preset else {**table, "name": None}
+    return {key: value for key, value in table.items() if value is not None}
 
 
 @cache
 def stories() -> Mapping[str, Story]:
     """Return the stories that are shipped, by name."""
-    table = Table(load_toml(FILE, "stories", decode_text(read_bytes(FILE))), FILE.name)
-    read = {name: read_story(table.table(name), name) for name in table.names}
-    return {name: replace(story, preset=name) for name, story in read.items()}
+    tables = load_toml(FILE, "stories", decode_text(read_bytes(FILE)))
+    found = {}
+    for name, table in tables.items():
+        node = Node({"name": name, **table}, FILE.name, name)
+        found[name] = replace(read_fields(Story, node), preset=name)
+    return found
+
+
+hook(Story, _read_story, _write_story, StoryTable)

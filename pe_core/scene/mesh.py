@@ -8,12 +8,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arrays import Floats
+from ..base.codec import Part
 from ..base.errors import MAX_FOUND_LENGTH, InputError
 from ..base.notebook import ShortRepr
 from ..base.values import Number, choice, vector
@@ -89,7 +90,7 @@ class MeshAxes:
     up: str | None = None
     forward: str | None = None
     scale: float = 1.0
-    rotation_deg: tuple[float, float, float] | None = None
+    rotation_deg: Annotated[tuple[float, float, float] | None, Part(key="rotation")] = None
 
     def __post_init__(self) -> None:
         for name in ("up", "forward"):

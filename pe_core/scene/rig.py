@@ -8,11 +8,12 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from ..base.arrays import Floats
+from ..base.codec import Named, Part
 from ..base.errors import InputError, require_kind, shown
 from ..base.notebook import ShortRepr, Tabular
 from ..base.values import A_NAME, A_TEXT, LENGTH, Number, choice, listed, vector
@@ -65,13 +66,13 @@ class Sensor(ShortRepr):
         Figures of its own, in place of the catalogue's.
     """
 
-    name: str
+    name: Named
     model: SensorModel
-    pose: Pose = field(default_factory=lambda: Pose((0.0, 0.0, 0.0)))
-    fusion: str | None = None
-    curve: ApCurve | None = None
+    pose: Annotated[Pose, Part(inline=True)] = field(default_factory=lambda: Pose((0.0, 0.0, 0.0)))
+    fusion: Annotated[str | None, Part(rule=A_NAME)] = None
+    curve: Annotated[ApCurve | None, Part(key="ap")] = None
     color: str | None = None
-    sheet: DataSheet = field(default_factory=DataSheet)
+    sheet: Annotated[DataSheet, Part(inline=True)] = field(default_factory=DataSheet)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", A_NAME.checked("sensor", "name", self.name))

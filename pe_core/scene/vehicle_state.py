@@ -7,11 +7,12 @@ move with it. All products are written out, so that a state has the same bits in
 import fnmatch
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from ..base.arrays import Floats
+from ..base.codec import Named, Part
 from ..base.errors import InputError, require_name
 from ..base.setting import NAMES, Panel, Triple, check_settings, required_setting, setting
 from ..base.values import A_NAME, WEIGHT, Angle, Number, Whole
@@ -87,8 +88,8 @@ class State:
     `InputError` when a value is out of its range.
     """
 
-    name: str
-    motions: Sequence[Motion] = ()
+    name: Named
+    motions: Annotated[Sequence[Motion], Part(key="move")] = ()
     weight: float = setting(1.0, WEIGHT, WEIGHED, Panel("weight", "Weight"), scored=True)
     heave: float = setting(0.0, Number(-1.0, 1.0, unit="m"), "How far the body is raised [m]")
     roll_rad: float = setting(0.0, Angle(-45.0, 45.0), "How far the body leans to the right")

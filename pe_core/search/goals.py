@@ -7,9 +7,10 @@ from the given placement alone, and minimises one value.
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any
 
 from ..base.arrays import ReadOnlyDict
+from ..base.codec import Named, Part
 from ..base.errors import InputError, require_kind, require_name, shown
 from ..base.setting import NAMES, Panel, Several, check_settings, setting
 from ..base.values import A_NAME, Number, Whole, listed
@@ -118,7 +119,7 @@ class Front:
 class Start:
     """Another placement that a search starts from: poses of all sensors that it moves, by name."""
 
-    name: str
+    name: Named
     poses: Mapping[str, Pose]
 
     def __post_init__(self) -> None:
@@ -172,7 +173,7 @@ class Goals:
     fixed: Sequence[str] = setting(
         (), NAMES, "Sensors that stay where they are, with those that follow them"
     )
-    starts: Sequence[Start] = ()
+    starts: Annotated[Sequence[Start], Part(key="start")] = ()
     front: Front = field(default_factory=Front)
     keep: Sequence[str] = setting(
         (), Several(KEPT), "Key figures that placements keep: as wanted, or as good as at the start"

@@ -3,11 +3,12 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from ..base.arrays import Floats, ReadOnlyDict
+from ..base.codec import Named, Part
 from ..base.errors import InputError, one_of, require_kind, shown
 from ..base.notebook import ShortRepr
 from ..base.setting import FLAG, OneOf, Pair, Panel, check_settings, setting
@@ -137,8 +138,8 @@ class SurfaceMount:
 class Slot:
     """A named pose on a rack."""
 
-    name: str
-    pose: Pose
+    name: Named
+    pose: Annotated[Pose, Part(inline=True)]
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", A_NAME.checked("slot", "name", self.name))
@@ -149,7 +150,7 @@ class Slot:
 class SlotMount:
     """A mount: a list of named poses, of which a sensor takes one. No two sensors share a slot."""
 
-    slots: Sequence[Slot]
+    slots: Annotated[Sequence[Slot], Part(key="slot")]
 
     def __post_init__(self) -> None:
         slots = listed(self.slots)
@@ -170,7 +171,7 @@ AnyMount = SurfaceMount | SlotMount
 class NoGo:
     """A box where no part of a sensor may be [m]; an axis without a range is unbounded."""
 
-    name: str
+    name: Named
     x: Range | None = setting(None, SIDES, "From and to along x")
     y: Range | None = setting(None, SIDES, "From and to along y")
     z: Range | None = setting(None, SIDES, "From and to along z")
@@ -268,11 +269,13 @@ class Mounting(ShortRepr):
         Sensors that move as one: the first leads, the others keep their pose relative to it.
     """
 
-    mounts: Mapping[str, AnyMount] = field(default_factory=dict)
-    on: Mapping[str, str] = field(default_factory=dict)
+    mounts: Annotated[Mapping[str, AnyMount], Part(key="mount", by_name=True)] = field(
+        default_factory=dict
+    )
+    on: Annotated[Mapping[str, str], Part(stored=False)] = field(default_factory=dict)
     pairs: Sequence[Sequence[str]] = ()
     groups: Sequence[Sequence[str]] = ()
-    constraints: Constraints = field(default_factory=Constraints)
+    constraints: Annotated[Constraints, Part(inline=True)] = field(default_factory=Constraints)
 
     def __post_init__(self) -> None:
         put, who = object.__setattr__, "optimize"

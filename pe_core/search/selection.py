@@ -8,14 +8,16 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from operator import le
-from typing import Any
+from typing import Annotated, Any
 
 from ..base.arrays import ReadOnlyDict
+from ..base.codec import Part
 from ..base.errors import InputError, one_of, require_name, shown
 from ..base.setting import Panel, check_settings, required_setting, same_setting, setting
 from ..base.values import A_NAME, Name, Whole, listed
 from ..scene.data_sheet import PRICE, DataSheet
 from ..scene.rig import Rig, Sensor, SensorModel
+from ..sensors import KINDS
 from .build_figures import BUILD_FIGURES, RELATIVE, SUMS, Placement, sheet_of
 from .mounts import NO_MOUNT, Mounting
 
@@ -85,7 +87,7 @@ class Choice:
         Whether the sensors may be left out.
     """
 
-    options: Sequence[Option]
+    options: Annotated[Sequence[Option], Part(key="option")]
     sensors: Sequence[str] = ()
     mount: str | None = None
     optional: bool = False
@@ -117,7 +119,7 @@ class Selection:
     that are not chosen; a kind that is not named has no limit.
     """
 
-    choices: Sequence[Choice] = ()
+    choices: Annotated[Sequence[Choice], Part(key="choice")] = ()
     max_price: float | None = setting(
         None,
         PRICE,
@@ -150,6 +152,10 @@ class Selection:
         check_settings(self, who)
         if not isinstance(self.max_of_kind, Mapping):
             raise InputError(who, "max_of_kind", "numbers by kind", shown(self.max_of_kind))
+        for kind in self.max_of_kind:
+            if kind not in KINDS:
+                expected = one_of(KINDS, kind)
+                raise InputError(who, f"max_of_kind.{kind}", expected, "an unknown key")
         counts = {
             A_NAME.checked(who, "max_of_kind", kind): COUNT.checked(who, f"max_of_kind.{kind}", n)
             for kind, n in self.max_of_kind.items()

@@ -33,8 +33,6 @@ from ..scoring.score import Objective, RigEvaluator, standard_error
 from .domains import AXES, pose_from_values
 
 DRAWS = 8  # Draws by default
-ERRORS, CASES = ("position", "angle", "draws"), ("failures", "worst")
-"""Settings of the table [optimize.tolerance], and those of [optimize]."""
 COMBINATIONS = 4
 """In how many ways the sensors' draws are combined; only one is used when sensors fail, too."""
 SEARCHED, FRESH = 0, 1
@@ -80,12 +78,13 @@ class Tolerance:
     )
 
     def __post_init__(self) -> None:
-        check_settings(self, "optimize", "tolerance.", ERRORS)
+        check_settings(self, "optimize", "tolerance.")
         if self.draws % 2:
             raise InputError("optimize", "tolerance.draws", "an even number", self.draws)
-        check_settings(self, "optimize", names=CASES)
         if self.worst and not self.is_on:
-            raise InputError("optimize", "worst", "a tolerance, or failures = true", "neither")
+            raise InputError(
+                "optimize", "tolerance.worst", "a tolerance, or failures = true", "neither"
+            )
 
     @property
     def mounts_off(self) -> bool:
@@ -100,7 +99,9 @@ class Tolerance:
     def checked(self, rig: Rig) -> "Tolerance":
         """Return itself; raise `InputError` if the only sensor of a rig would have to fail."""
         if self.failures and len(rig) < 2:
-            raise InputError("optimize", "failures", "a rig of at least two sensors", "one")
+            raise InputError(
+                "optimize", "tolerance.failures", "a rig of at least two sensors", "one"
+            )
         return self
 
     def cases(self, rig: Rig, seed: int = 0) -> list[Rig]:

@@ -11,13 +11,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from ..base.arrays import ReadOnlyDict
+from ..base.codec import Node, Part, read, read_value
 from ..base.errors import InputError, shown
 from ..base.files import decode_text, read_bytes
-from ..base.setting import OneOf, Panel, changed_settings, check_settings, setting
-from ..base.table_reader import Table, load_toml
+from ..base.setting import OneOf, Panel, check_settings, setting, settings_of
+from ..base.table_reader import load_toml
 from ..base.values import A_NAME, choice
 from ..metric.entropy import ApCurve
 from ..metric.frames import Frames
@@ -52,21 +53,16 @@ SOURCE = "perception model"
 @cache
 def scan_curves() -> ClassCurves:
     """Return the curves from scans, by kind and class, of the file that is part of the engine."""
-    kinds = Table(load_toml(FILE, "curves", decode_text(read_bytes(FILE))), FILE.name)
-    kinds = kinds.table("curves")
-    curves = {}
-    for kind in kinds.names:
-        own = kinds.table(kind)
-        rows = {name: own.table(name) for name in own.names}
-        curves[kind] = {n: ApCurve(row.number("a"), row.number("b")) for n, row in rows.items()}
-    return curves
+    tables = load_toml(FILE, "curves", decode_text(read_bytes(FILE)))
+    found: ClassCurves = read_value(ClassCurves, Node(tables["curves"], FILE.name, "curves"))
+    return found
 
 
 @dataclass(frozen=True, slots=True)
 class DetectorCurve:
     """A curve of a published detector: root of the mean square error of AP, span of m."""
 
-    curve: ApCurve
+    curve: Annotated[ApCurve, Part(inline=True)]
     rmse: float
     m: tuple[float, float]
 
@@ -78,27 +74,15 @@ class Detector:
     label: str
     source: str
     trust: str
-    rows: Mapping[str, Mapping[str, DetectorCurve]]
+    rows: Annotated[Mapping[str, Mapping[str, DetectorCurve]], Part(inline=True)]
 
 
 @cache
 def detectors() -> Mapping[str, Detector]:
     """Return the published detectors of the file that is part of the engine, by model."""
-    table = Table(load_toml(DETECTORS_FILE, "curves", decode_text(read_bytes(DETECTORS_FILE))), "")
-    found = {}
-    for model in table.names:
-        own = table.table(model)
-        label, source, trust = (own.text(key) for key in ("label", "source", "trust"))
-        kinds = {kind: own.table(kind) for kind in KINDS if kind in own}
-        rows = {k: {n: _row(t.table(n)) for n in t.names} for k, t in kinds.items()}
-        found[model] = Detector(label, source, trust, rows)
-    return found
-
-
-def _row(table: Table) -> DetectorCurve:
-    low, high = table.numbers("m", 2)
-    curve = ApCurve(table.number("a"), table.number("b"))
-    return DetectorCurve(curve, table.number("rmse"), (low, high))
+    tables = load_toml(DETECTORS_FILE, "curves", decode_text(read_bytes(DETECTORS_FILE)))
+    node = Node(tables, DETECTORS_FILE.name)
+    return {model: read(Detector, node.at(model)) for model in tables}
 
 
 def curve_source(model: str) -> str:
@@ -183,7 +167,7 @@ class PerceptionModel:
         given = self.objects.get(kind, {}).get(name)
         curve = given or fitted.get(name) or own_curves.get(name)
         if curve is None:
-            field = f"[ap.{kind}.objects.{name}]"
+            field = f"[ap.objects.{kind}.{name}]"
             expected = f"a and b of {name!r} as an object (pe fit finds them)"
             raise InputError(SOURCE, field, expected, "none")
         return curve
@@ -207,7 +191,9 @@ class PerceptionModel:
     def __repr__(self) -> str:
         curves = "".join(f", {kind}={curve!r}" for kind, curve in self.other_curves.items())
         objects = f", objects={dict(self.objects)!r}" if self.objects else ""
-        more = "".join(f", {name}={value!r}" for name, value in changed_settings(self).items())
+        own = {name: getattr(self, name) for name in settings_of(PerceptionModel)}
+        changed = {n: v for n, v in own.items() if v != settings_of(PerceptionModel)[n].default}
+        more = "".join(f", {name}={value!r}" for name, value in changed.items())
         return f"PerceptionModel(blind={self.blind!r}{curves}{objects}{more})"
 
 
@@ -229,5 +215,5 @@ def _checked_objects(objects: ClassCurves) -> ClassCurves:
         for name, curve in curves.items():
             A_NAME.checked(SOURCE, f"objects of {kind}", name)
             if not isinstance(curve, ApCurve):
-                raise InputError(SOURCE, f"{kind}.objects.{name}", "an ApCurve", shown(curve))
+                raise InputError(SOURCE, f"objects.{kind}.{name}", "an ApCurve", shown(curve))
     return ReadOnlyDict({kind: curves for kind, curves in objects.items() if curves})

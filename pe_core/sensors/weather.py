@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
+from ..base.codec import Named
 from ..base.errors import InputError, shown
 from ..base.setting import FLAG, Panel, check_settings, setting
 from ..base.values import A_NAME, WEIGHT, Number
@@ -57,7 +58,7 @@ class Weather:
     `InputError` when a value is out of its range, or two of rain, snow and fog are given.
     """
 
-    name: str
+    name: Named
     weight: float = setting(1.0, WEIGHT, WEIGHED, Panel("weight", "Weight"), scored=True)
     rain_mm_h: float = setting(
         0.0, RAIN, "Rate of rain", Panel("rain_mm_h", "Rain mm/h"), scored=True

@@ -1,5 +1,6 @@
 """Studies: everything a run needs, and their files."""
 
+from ..base.codec import Declared, Node, read, write
 from ..base.setting import (
     REQUIRED,
     OneOf,
@@ -18,7 +19,7 @@ from ..base.values import Angle, Name, Number, Whole
 from ..search import METHODS, SCHEDULED_METHOD, Robustness
 from . import requirement_file, requirement_search
 from .condition_table import ConditionScore, ConditionTable, condition_table
-from .conditions import Conditions, StateInWeather, state_from_dict, state_table
+from .conditions import Conditions, StateInWeather
 from .file_names import AREAS, MESH, OPTIMIZED, RESULT, REVIEW_PAGE, SCHEMA, SEARCH, STUDY
 from .mounting_file import mounts_table
 from .study import OBJECTIVES, Search, Study
@@ -34,7 +35,7 @@ from .study_file import (
     setting_keys,
     settings_of_part,
     study_from_dict,
+    study_schema,
     study_to_dict,
 )
 from .suggestion import Suggestion
-from .time_file import by_name_of_text, by_name_text, stories_of_rows, story_table

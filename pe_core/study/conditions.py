@@ -13,12 +13,9 @@ from functools import partial
 from typing import Any, TypeVar
 
 from ..base.errors import InputError, require_kind, require_name, shown
-from ..base.setting import changed_settings, read_declared, read_settings
-from ..base.table_reader import Table
-from ..base.values import A_NAME
 from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
-from ..scene.vehicle_state import Motion, State
+from ..scene.vehicle_state import State
 from ..scoring.requirements import CheckStep, Requirement, RequirementChecker, Verdict
 from ..search import Tolerance, mounted_off
 from ..sensors.weather import Weather, checked_weights
@@ -27,8 +24,6 @@ T = TypeVar("T", State, Weather)
 MAX_CONDITIONS = 200
 AS_DRAWN, CLEAR = "as drawn", "clear"
 """Names of the state and of the weather of a study that has none."""
-OF_STATE, BODY = ("weight", "frame"), ("heave", "roll_rad", "pitch_rad", "about", "unsprung")
-"""Settings of the tables [[state]] and [state.body]."""
 EVERY = "*"  # Stands for all states, or all weathers, of a study
 
 
@@ -138,51 +133,6 @@ def _named(kind: str, name: str | None, items: Sequence[T]) -> T | None:
         raise InputError("study", kind, f"[[{kind}]] in the study", shown(name))
     require_name("study", kind, name, [each.name for each in items])
     return next(each for each in items if each.name == name)
-
-
-def read_conditions(table: Table) -> Conditions:
-    """Return the conditions of a study's table; `InputError` with the file and the key."""
-    states = [_read_state(each) for each in table.tables("state")]
-    weathers = [
-        read_declared(each, Weather, each.text("name", rule=A_NAME))
-        for each in table.tables("weather")
-    ]
-    try:
-        return Conditions(states, weathers)
-    except InputError as error:
-        raise error.within(table.source) from None
-
-
-def condition_tables(conditions: Conditions) -> dict[str, Any]:
-    """Return the tables that `read_conditions` reads; None for what is absent."""
-    return {
-        "weather": [{"name": each.name, **changed_settings(each)} for each in conditions.weathers]
-        or None,
-        "state": [state_table(each) for each in conditions.states] or None,
-    }
-
-
-def state_from_dict(data: Any, source: str = "state") -> State:
-    """Return a state of the plain data of its table."""
-    return _read_state(Table(data, source))
-
-
-def _read_state(table: Table) -> State:
-    name, body = table.text("name", rule=A_NAME), table.table("body")
-    values = read_settings(table, State, OF_STATE) | read_settings(body, State, BODY)
-    body.finish()
-    motions = [read_declared(each, Motion) for each in table.tables("move")]
-    table.finish()
-    with table.naming():
-        return State(name, motions, **values)
-
-
-def state_table(state: State) -> dict[str, Any]:
-    """Return the table of a state, without what has its default."""
-    body = changed_settings(state, BODY)
-    moves = [changed_settings(motion) for motion in state.motions]
-    own = {"name": state.name, **changed_settings(state, OF_STATE)}
-    return own | ({"body": body} if body else {}) | ({"move": moves} if moves else {})
 
 
 class ConditionedChecker(RequirementChecker):

@@ -1,60 +1,18 @@
-"""Mounts, pairs, groups and constraints of a search: their tables in the study file.
+"""Mounts of a study: areas of the body, which are in a mesh file beside it, and their tables."""
 
-An area of the body is in a mesh file beside the study.
-
-Housings and models of the catalogue are looked up for them.
-"""
-
-from collections.abc import Mapping
-from dataclasses import replace
-from pathlib import Path
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
 
 import numpy as np
 
 from .. import catalog
+from ..base.codec import Node, Part, hook, read
 from ..base.errors import InputError, one_of, shown
 from ..base.plugins import shipped
-from ..base.setting import read_declared, read_settings, settings_table
-from ..base.table_reader import Table
-from ..base.values import A_NAME, A_PATH
-from ..geometry.poses import Pose
+from ..base.values import A_PATH
 from ..scene.mesh import AS_SAID, Mesh
 from ..scene.rig import Rig, SensorModel
-from ..search import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
-
-
-def read_mounting(table: Table, on: Mapping[str, str], folder: Path) -> Mounting:
-    """Return mounts, pairs, groups and constraints of `[optimize]`. `on` has the name of the mount
-    of each sensor that is on one. Files of areas are named relative to `folder`, where the study
-    is."""
-    mounts = [_read_mount(each, folder) for each in table.tables("mount")]
-    names = [name for name, _ in mounts]
-    for name in names:
-        if names.count(name) > 1:
-            raise table.error("mount", "each name once", f"{name!r} twice")
-    pairs, groups = (_read_ties(table, key) for key in ("pair", "group"))
-    values, areas = read_settings(table, Constraints), table.tables("no_go")
-    no_go = [read_declared(each, NoGo, each.text("name", rule=A_NAME)) for each in areas]
-    try:
-        limits = Constraints(**values, no_go=no_go)
-        return Mounting(dict(mounts), on, pairs, groups, limits)
-    except InputError as error:
-        if error.source.startswith("sensor "):
-            raise
-        raise table.error(error.field, error.expected, error.found) from None
-
-
-def mounting_tables(mounting: Mounting) -> dict[str, Any]:
-    """Return the tables of `[optimize]` that `read_mounting` reads."""
-    limits = mounting.constraints
-    return {
-        **settings_table(limits),
-        "no_go": [{"name": area.name} | settings_table(area) for area in limits.no_go] or None,
-        "mount": [_mount_table(*mount) for mount in mounting.mounts.items()] or None,
-        "pair": [{"sensors": list(names)} for names in mounting.pairs] or None,
-        "group": [{"sensors": list(names)} for names in mounting.groups] or None,
-    }
+from ..search import MountArea, Mounting, SurfaceMount
 
 
 def areas_mesh(mounting: Mounting) -> Mesh | None:
@@ -81,74 +39,32 @@ def with_areas_in(mounting: Mounting, file: str) -> Mounting:
     return replace(mounting, mounts=mounts)
 
 
-def _read_mount(table: Table, folder: Path) -> tuple[str, AnyMount]:
-    name = table.text("name", rule=A_NAME)
-    slots = [_read_slot(each) for each in table.tables("slot")]
-    if ("parts" in table or "area" in table) == bool(slots):
-        found = "both" if slots else "neither"
-        expected = "parts of the vehicle or an area, or a list of slots"
-        raise table.error("parts, area, slot", expected, found)
-    if slots:
-        with table.naming():
-            mount: AnyMount = SlotMount(slots)
-    else:
-        file = table.text("area", None, rule=A_PATH)
-        parts = table.texts("parts", ()) if file else table.texts("parts")
-        area = None if file is None else _read_area(table, folder, file, parts)
-        own = read_settings(table, SurfaceMount) | ({} if area is None else {"area": area})
-        with table.naming():
-            mount = SurfaceMount(() if area else parts, **own)
-    table.finish()
-    return name, mount
+@dataclass(frozen=True, slots=True)
+class AreaFile:
+    """The table of an area: a mesh file, and the parts of it that are the area; all by default."""
+
+    file: Annotated[str, Part(rule=A_PATH)]
+    parts: tuple[str, ...] = ()
 
 
-def _read_area(table: Table, folder: Path, file: str, parts: tuple[str, ...]) -> MountArea:
-    """Return the faces of a mesh file, of some of its parts or of all."""
-    mesh = shipped("reader.mesh")(folder / file, AS_SAID)  # a patch's shape tells nothing
-    for part in parts:
-        if part not in mesh.part_names:
-            expected = one_of(mesh.part_names, part)
-            raise table.error("parts", f"{expected} in {file}", shown(part))
-    wanted = [mesh.part_names.index(part) for part in parts or mesh.part_names]
-    triangles = mesh.triangles[np.isin(mesh.parts, wanted)]
-    with table.naming():
-        return MountArea(triangles, file, parts)
+def _read_area(node: Node) -> MountArea:
+    own = read(AreaFile, node)
+    mesh = shipped("reader.mesh")(node.folder / own.file, AS_SAID)  # a patch's shape tells nothing
+    for name in own.parts:
+        if name not in mesh.part_names:
+            expected = f"{one_of(mesh.part_names, name)} in {own.file}"
+            raise node.error(expected, shown(name), "parts")
+    wanted = [mesh.part_names.index(name) for name in own.parts or mesh.part_names]
+    with node.naming():
+        return MountArea(mesh.triangles[np.isin(mesh.parts, wanted)], own.file, own.parts)
 
 
-def _read_slot(table: Table) -> Slot:
-    name = table.text("name", rule=A_NAME)
-    position = table.numbers("position", 3)
-    rotation = table.numbers("rotation", 3, (0.0, 0.0, 0.0))
-    table.finish()
-    with table.naming():
-        return Slot(name, Pose.from_degrees(position, rotation))
+def _write_area(area: MountArea) -> dict[str, Any]:
+    table = {"file": area.file, "parts": list(area.parts)}
+    return {key: value for key, value in table.items() if value}
 
 
-def _read_ties(table: Table, key: str) -> list[tuple[str, ...]]:
-    ties = []
-    for each in table.tables(key):
-        ties.append(each.texts("sensors"))
-        each.finish()
-    return ties
-
-
-def _mount_table(name: str, mount: AnyMount) -> dict[str, Any]:
-    if isinstance(mount, SlotMount):
-        slots = [
-            {
-                "name": slot.name,
-                "position": list(slot.pose.position),
-                "rotation": list(slot.pose.rotation_deg),
-            }
-            for slot in mount.slots
-        ]
-        return {"name": name, "slot": slots}
-    area = mount.area
-    if area is None:
-        faces: dict[str, Any] = {"parts": list(mount.parts)}
-    else:
-        faces = {"area": area.file, "parts": list(area.parts) or None}
-    return {"name": name, **faces, **settings_table(mount)}
+hook(MountArea, _read_area, _write_area, AreaFile)
 
 
 def check_pairs(rig: Rig, mounting: Mounting) -> None:

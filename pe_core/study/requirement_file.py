@@ -6,27 +6,30 @@ A preset is a requirement of a regulation, a test or a maker, with its source. A
 
 import math
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
 from types import MappingProxyType
-from typing import Any
+from typing import Annotated, Any
 
+from ..base.codec import Node, Part, hook, read_fields, write_fields
 from ..base.errors import shown
-from ..base.setting import changed_settings, read_declared, settings_of
-from ..base.table_reader import Table
-from ..base.values import A_NAME, as_in_file, choice, degrees_in_file, listed
+from ..base.values import as_in_file, choice, degrees_in_file, listed
 from ..scoring import requirements as room
-from ..scoring.requirements import BODIES, Body, Criterion, Requirement, Under, Zone
+from ..scoring.requirements import BODIES, Body, Requirement
 
 CONFIDENCE = {"A": "the text of the standard or maker was read", "B": "a secondary source"}
 SHAPES = ("x", "y", "polygon", "ring", "path", "spots")
 TABLES = ("zone", "criterion", "under")
-CUSTOM = "own"
-MAX_REQUIREMENTS = 200
-OF_FIRST = ("of", *(key for key in settings_of(Criterion) if key != "of"))
-"""The order of keys is part of a study's fingerprint."""
+
+
+@dataclass(frozen=True)
+class RequirementTable(Requirement):
+    """The keys of a requirement's table: one body needs no list; all have the headings [deg]."""
+
+    bodies: Annotated[tuple[Body, ...] | Body, Part(key="body")] = ()  # type: ignore[assignment]
+    headings: tuple[float, ...] | None = None
 
 
 @dataclass(frozen=True)
@@ -56,7 +59,12 @@ class Preset:
         """Return the requirement, perhaps under another name, with some keys of its zone replaced.
         `InputError` when a key is wrong."""
         table = {"preset": self.id, "name": name or self.id, **({"zone": zone} if zone else {})}
-        return read_requirement(Table(table, f"preset {self.id}"))
+        return read_requirement(Node(table, self.node.source))
+
+    @property
+    def node(self) -> Node:
+        """The plain table of the requirement, to be read."""
+        return Node({"preset": self.id, **self.table}, f"preset {self.id}")
 
 
 @cache
@@ -76,34 +84,14 @@ def preset(identifier: str, source: str = "presets", field: str = "preset") -> P
     return presets()[choice(source, field, identifier, presets())]
 
 
-def read_requirements(table: Table) -> tuple[Requirement, ...]:
-    """Return the requirements of a study's table. `InputError` with one line that says what is
-    wrong."""
-    tables = table.tables("requirement")
-    if len(tables) > MAX_REQUIREMENTS:
-        expected = f"at most {MAX_REQUIREMENTS} requirements"
-        raise table.error("requirement", expected, len(tables))
-    found = [read_requirement(each) for each in tables]
-    names = [each.name for each in found]
-    for number, name in enumerate(names):
-        if name in names[:number]:
-            field = f"requirement[{number}].name"
-            raise table.error(field, "each name once", f"{name!r} twice")
-    return tuple(found)
-
-
-def read_requirement(table: Table) -> Requirement:
-    """Return one requirement from its table; `InputError` as `read_requirements`."""
-    identifier = table.text("preset", None, rule=A_NAME)
-    if identifier is None:
-        return _read(table, None)
-    base = preset(identifier, table.source, table.field("preset"))
-    merged = Table(_merged(base.table, table.data), table.source, table.path)
-    merged.raw("preset")
-    return replace(
-        _read(merged, identifier),
-        original=_read(Table(_merged(base.table, {}), f"preset {base.id}"), base.id),
-    )
+def read_requirement(node: Node) -> Requirement:
+    """Return a requirement from its table; `InputError` with the path of the key that is wrong."""
+    identifier = node.at("preset")
+    if identifier.value is None:
+        return _read(node)
+    base = preset(identifier.value, identifier.source, identifier.path)
+    changed = _read(node.of(_merged(base.table, node.table), node.path))
+    return replace(changed, original=replace(_read(base.node), preset=base.id))
 
 
 def requirement_table(requirement: Requirement) -> dict[str, Any]:
@@ -139,51 +127,21 @@ def _merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
     return {k: v for k, v in merged.items() if v != {} or k in own}
 
 
-def _read(table: Table, identifier: str | None) -> Requirement:
-    table.raw("preset", None)
-    name = table.text("name", rule=A_NAME)
-    zone = read_declared(table.table("zone"), Zone)
-    criterion = read_declared(table.table("criterion"), Criterion)
-    under = read_declared(table.table("under"), Under)
-    headings = table.raw("headings", None)
-    bodies = tuple(_with_headings(b, headings, table) for b in _read_bodies(table))
-    source, check = table.text("source", ""), table.text("check", "")
-    table.finish()
-    with table.naming():
-        return Requirement(name, zone, bodies, criterion, under, identifier, source, check)
+def _read(node: Node) -> Requirement:
+    """Return a requirement from a table with all of its keys."""
+    headings, bodies = node.at("headings"), node.at("body", [])
+    table = {key: value for key, value in node.table.items() if key != "headings"}
+    if isinstance(bodies.value, str | Mapping):
+        table["body"] = [bodies.value]
+    made = read_fields(Requirement, node.of(table, node.path))
+    turned = [_with_headings(body, headings) for body in made.bodies]
+    return replace(made, bodies=tuple(turned))
 
 
-def _read_bodies(table: Table) -> list[Body]:
-    value = table.raw("body", ())
-    items = [value] if isinstance(value, str | Mapping) else listed(value)
-    if items is None:
-        raise table.error("body", "a name, a table, or a list of them", shown(value))
-    return [_read_body(each, table) for each in items]
-
-
-def _read_body(value: Any, table: Table) -> Body:
-    if isinstance(value, str):
-        return BODIES[choice(table.source, table.field("body"), value, BODIES)]
-    own = Table(value, table.source, table.field("body"))
-    name = own.text("name", CUSTOM, rule=A_NAME)
-    if own.names == ["name"]:
-        return _read_body(name, table)
-    is_round = "diameter" in own
-    if is_round:
-        diameter = own.number("diameter")
-        size: tuple[float, ...] = (diameter, diameter, own.number("height"))
-    else:
-        size = own.numbers("size", 3)
-    low, class_name = own.number("low", 0.0), own.text("class", None, rule=A_NAME)
-    own.finish()
-    with own.naming():
-        return Body(name, (size[0], size[1], size[2]), low, is_round, class_name=class_name)
-
-
-def _with_headings(body: Body, headings: Any, table: Table) -> Body:
-    if headings is None:
+def _with_headings(body: Body, headings: Node) -> Body:
+    if headings.value is None:
         return body
-    items = listed(headings, 72)
+    items = listed(headings.value, 72)
     good = (
         items
         and len(items) <= 72
@@ -193,41 +151,14 @@ def _with_headings(body: Body, headings: Any, table: Table) -> Body:
         )
     )
     if not good:
-        raise table.error("headings", "1 to 72 angles within +-360 degrees", shown(headings))
+        raise headings.error("1 to 72 angles within +-360 degrees", shown(headings.value))
     return replace(body, headings=tuple(as_in_file(math.radians(v)) for v in items or ()))
 
 
 def full_table(requirement: Requirement) -> dict[str, Any]:
     """Return all of a requirement as plain data, without what has its default."""
-    table: dict[str, Any] = {
-        "name": requirement.name,
-        "preset": requirement.preset,
-        "check": requirement.check or None,
-        "source": requirement.source or None,
-        "body": _bodies_value(requirement.bodies) or None,
-        "headings": _headings(requirement),
-        "zone": changed_settings(requirement.zone),
-        "criterion": changed_settings(requirement.criterion, OF_FIRST),
-        "under": changed_settings(requirement.under),
-    }
-    return {k: v for k, v in table.items() if v is not None and v != {}}
-
-
-def _bodies_value(bodies: Sequence[Body]) -> list[Any]:
-    """Return bodies by name; as tables where one of them is none of `BODIES`."""
-    values = [_body_table(body) for body in bodies]
-    return [v["name"] for v in values] if all(len(v) == 1 for v in values) else values
-
-
-def _body_table(body: Body) -> dict[str, Any]:
-    known = BODIES.get(body.name)
-    if known is not None and replace(body, headings=known.headings) == known:
-        return {"name": body.name}
-    sizes: dict[str, Any] = {"size": list(body.size)}
-    if body.is_round:
-        sizes = {"diameter": body.size[0], "height": body.size[2]}
-    more = {"low": body.low or None, "class": body.class_name}
-    return {"name": body.name, **sizes} | {k: v for k, v in more.items() if v is not None}
+    table = {**write_fields(requirement), "headings": _headings(requirement)}
+    return {key: value for key, value in table.items() if value is not None and value != {}}
 
 
 def _headings(requirement: Requirement) -> list[float] | None:
@@ -237,3 +168,6 @@ def _headings(requirement: Requirement) -> list[float] | None:
         if body.headings != own:
             return [degrees_in_file(h) for h in body.headings]
     return None
+
+
+hook(Requirement, read_requirement, requirement_table, RequirementTable)

@@ -7,16 +7,17 @@ is why they agree to the bit.
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Annotated, Any
 
 from ..base.arrays import ReadOnlyDict
+from ..base.codec import Part
 from ..base.errors import InputError, require_kind, shown
 from ..base.notebook import ShortRepr, Tabular
 from ..base.setting import OneOf, Panel, check_settings, setting
 from ..base.values import A_NAME, A_PATH, Whole
 from ..geometry.grids import PerceptionSpace
 from ..metric.frames import Frames
-from ..motion import Confirmation, DriveBy, Story, drive_by
+from ..motion import Confirmation, DriveBy, Story, checked_stories, drive_by
 from ..prior import HIGHWAY_CLASSES, ROAD_CLASSES
 from ..prior.prior import Prior
 from ..scene.mesh import MeshAxes, require_vehicle_size
@@ -113,8 +114,10 @@ class Search(ShortRepr):
         What is improved: the study's entropy, or the expected AP of objects in traffic.
     """
 
-    free: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    limits: Mapping[str, Mapping[str, tuple[float, float]]] = field(default_factory=dict)
+    free: Annotated[Mapping[str, tuple[str, ...]], Part(stored=False)] = field(default_factory=dict)
+    limits: Annotated[Mapping[str, Mapping[str, tuple[float, float]]], Part(stored=False)] = field(
+        default_factory=dict
+    )
     seed: int = setting(0, SEED, "The same seed finds the same placement", Panel("seed", "Seed"))
     samples: int = setting(
         DEFAULT_SEARCH_SAMPLES,
@@ -122,8 +125,8 @@ class Search(ShortRepr):
         "Voxels on which a candidate is evaluated; 0: all, 64 million",
         Panel("search_samples", "Search Voxels", beside="All"),
     )
-    schedule: Schedule = field(default_factory=Schedule)
-    mounting: Mounting = field(default_factory=Mounting)
+    schedule: Annotated[Schedule, Part(inline=True)] = field(default_factory=Schedule)
+    mounting: Annotated[Mounting, Part(inline=True)] = field(default_factory=Mounting)
     method: str = ""
     evaluations: int = setting(
         0,
@@ -138,7 +141,7 @@ class Search(ShortRepr):
         "Placements that meet all requirements come first",
         Panel("keep_requirements", "Keep in Searches"),
     )
-    goals: Goals = field(default_factory=Goals)
+    goals: Annotated[Goals, Part(inline=True)] = field(default_factory=Goals)
     conditions: str | None = setting(
         None,
         OneOf(("mean", "worst")),
@@ -250,6 +253,7 @@ class Study(Tabular):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "requirements", checked_requirements(self.requirements))
+        object.__setattr__(self, "stories", checked_stories(self.stories))
         for name, kind in FIELDS.items():
             value = getattr(self, name)
             if value is not None or name not in OPTIONAL:
@@ -483,7 +487,7 @@ FIELDS: dict[str, type] = {"rig": Rig, "space": PerceptionSpace, "prior": Prior,
 FIELDS |= {"model": PerceptionModel, "axes": MeshAxes, "selection": Selection}
 FIELDS |= {"targets": TargetRule, "vehicle": Vehicle, "reference": Reference}
 FIELDS |= {"conditions": Conditions}
-FIELDS |= {"frames": Frames, "confirmation": Confirmation, "stories": tuple}
+FIELDS |= {"frames": Frames, "confirmation": Confirmation}
 OPTIONAL = ("vehicle", "reference")
 
 

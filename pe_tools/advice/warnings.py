@@ -66,7 +66,7 @@ def curve_warnings(study: Study) -> tuple[Advice, ...]:
     """Return warnings where AP is not the paper's: range terms of curves."""
     found, model = [], study.model
     ranged = [f"[ap.{kind}]" for kind, curve in model.curves.items() if curve.c]
-    ranged += [f"[ap.{k}.objects.{n}]" for k, own in model.objects.items() for n in own if own[n].c]
+    ranged += [f"[ap.objects.{k}.{n}]" for k, own in model.objects.items() for n in own if own[n].c]
     ranged += [f"that of {s.name!r}" for s in study.rig if s.curve and s.curve.c]
     if ranged:
         found.append(Advice(None, "range_term", {"curves": ranged}))

@@ -2,17 +2,17 @@
 
 import argparse
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
 from pe_core.base.files import decode_text, read_bytes
-from pe_core.base.table_reader import Table, load_toml
+from pe_core.base.table_reader import load_toml
 from pe_core.base.values import choice
 from pe_core.motion import DriveBy, SeenBody, Story, stories
 from pe_core.scoring.sight import shown_end, shown_start
-from pe_core.study import Study, load_study
-from pe_core.study.time_file import read_stories
+from pe_core.study import Node, Study, load_study, read
 
 from ..wording import aligned
 from .run_job import output_file, print_vehicle, save_text
@@ -20,6 +20,13 @@ from .terminal import DONE, NOT_MET, Answer
 
 ALL = "all"
 TOML = ".toml"
+
+
+@dataclass(frozen=True)
+class StoryFile:
+    """A file of stories."""
+
+    story: tuple[Story, ...]
 
 
 def add_drive_by_options(parser: argparse.ArgumentParser) -> None:
@@ -66,9 +73,8 @@ def chosen_stories(study: Study, names: Sequence[str]) -> list[Story]:
         if name == ALL:
             chosen |= stories()
         elif name.endswith(TOML):
-            table = Table(load_toml(name, "stories", decode_text(read_bytes(Path(name)))), name)
-            chosen |= {story.name: story for story in read_stories(table.tables("story"))}
-            table.finish()
+            tables = load_toml(name, "stories", decode_text(read_bytes(Path(name))))
+            chosen |= {story.name: story for story in read(StoryFile, Node(tables, name)).story}
         else:
             chosen[name] = known[choice("drive-by", "--story", name, tuple(known))]
     if not chosen:

@@ -92,7 +92,7 @@ def study_snippet(fit: CurveFit, kind: str, name: str | None = None) -> str:
     """Return TOML for a study: ``[ap.lidar]``, or the curve of whole objects of a class `name`."""
     plain = name is None or (name.isascii() and name.isidentifier())
     key = name if plain else json.dumps(name, ensure_ascii=False)
-    where = f"ap.{kind}" if name is None else f"ap.{kind}.objects.{key}"
+    where = f"ap.{kind}" if name is None else f"ap.objects.{kind}.{key}"
     used, total = int(fit.used.sum()), len(fit.why)
     return (
         f"# AP = a ln m + b, fitted to {used} of {total} points of {Path(fit.table.source).name}\n"

@@ -10,7 +10,6 @@ import pe_core as pe
 import pe_tools as pt
 from blender_addon import bridge
 from blender_addon.engine import studies
-from pe_core.study.study_file import SECTIONS
 from tests.addon import scenes
 
 CORNERS = scenes.ASSETS / "examples" / "four_corners" / "study.toml"
@@ -51,15 +50,15 @@ ROWS = {
     "weather": "weathers",
     "state": "states",
     "prior.focus": "focus",
-    "ap.KIND": "curves",
+    "ap.NAME": "curves",
     "optimize.mount": "mounts",
 }
 """Lists of a scene with the settings of a table."""
 IN_SCENE = [
-    (section, setting)
-    for section in SECTIONS
-    for setting in section.settings
-    if setting.panel is not None and (section.table in ROWS or not section.rows)
+    (row.key.rpartition(".")[0], row)
+    for row in studies.setting_keys()
+    if row.setting.panel is not None
+    if row.key.rpartition(".")[0] in ROWS or not row.rows
 ]
 
 
@@ -89,13 +88,14 @@ def other_value(setting):
 
 def test_each_declared_setting_is_held_by_the_scene_as_it_was(scene):
     settings = scene.perception_entropy
-    for section, setting in IN_SCENE:
-        group = getattr(settings, ROWS[section.table]).add() if section.rows else settings
+    for table, row in IN_SCENE:
+        group = getattr(settings, ROWS[table]).add() if row.rows else settings
+        setting = row.setting
         name, value = setting.panel.property, other_value(setting)
         value = setting.rule.checked("test", setting.name, value)
         setattr(group, name, bridge.property_value(setting, value))
         found = bridge.value_of_property(setting, getattr(group, name))
-        assert found == value or found == pytest.approx(value, rel=1e-7), (section.table, name)
+        assert found == value or found == pytest.approx(value, rel=1e-7), (table, name)
         assert setting.rule.checked("test", setting.name, found) == found
         if setting.is_optional:
             setattr(group, name, bridge.property_value(setting, None))

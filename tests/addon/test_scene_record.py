@@ -70,7 +70,7 @@ def variant_study(scene, row):
 
 def set_what_is_by_default(settings):
     """Give declared numbers and switches that are not set above another value than the default."""
-    for _, setting in studies.setting_keys(of_scene=True):
+    for _, setting, *_ in studies.setting_keys(of_scene=True):
         name = None if setting.panel is None else setting.panel.property
         if name is not None and not settings.is_property_set(name):
             value = max(getattr(settings, name), 0) if name.startswith("wanted_") else None

@@ -265,10 +265,12 @@ def test_an_interrupted_front_goes_on_to_the_same_bits(tmp_path, capsys):
 
 CHOICES = Path(__file__).parents[2] / "blend_assets" / "choices"
 LIDARS = [{"model": "Pandar64", "price": 9}, {"model": "HDL-64E", "price": 5}]
-ROOF = {"sensor": "roof", "option": LIDARS}
+ROOF = {"sensors": ["roof"], "option": LIDARS}
 
 
-def data(**more):
+def data(choice=(), **more):
+    if choice:
+        more["selection"] = {**more.get("selection", {}), "choice": list(choice)}
     sensors = [
         {"name": "roof", "model": "Pandar64", "position": [0, 0, 2]},
         {"name": "eye", "model": "Camera 60 deg", "position": [1, 0, 2]},
@@ -277,7 +279,7 @@ def data(**more):
 
 
 def option(model, price):
-    return {"sensor": "roof", "option": [{"model": model, "price": price}]}
+    return {"sensors": ["roof"], "option": [{"model": model, "price": price}]}
 
 
 def test_what_is_read_is_written_again():
@@ -295,37 +297,36 @@ def test_what_is_read_is_written_again():
     limits = {"max_price": 30, "max_sensors": 2, "max_of_kind": {"lidar": 2}, "currency": "EUR"}
     sensor = {"name": "held", "model": "Pandar40", "position": [0, 0, 1]}
     first = pe.study_from_dict(
-        {"sensor": [*data()["sensor"], sensor], "choice": [choice], "selection": limits}
+        {"sensor": [*data()["sensor"], sensor], "selection": {**limits, "choice": [choice]}}
     )
     written = pe.study_to_dict(first)
     again = pe.study_from_dict(written)
     assert pe.study_to_dict(again) == written
     assert again.selection.max_of_kind == {"lidar": 2}
     assert [o.price for o in again.selection.choices[0].options] == [9.0, 5.0, 0.1]
-    assert "choice" not in pe.study_to_dict(pe.study_from_dict(data()))
+    assert "selection" not in pe.study_to_dict(pe.study_from_dict(data()))
 
 
 REFUSED = [
-    ("choice[0].option", {"choice": [{"sensor": "roof"}]}),
+    ("selection.choice[0].option", {"choice": [{"sensors": ["roof"]}]}),
     (
-        "choice[0].option[0].price",
-        {"choice": [{"sensor": "roof", "option": [{"model": "Pandar64"}]}]},
+        "selection.choice[0].option[0].price",
+        {"choice": [{"sensors": ["roof"], "option": [{"model": "Pandar64"}]}]},
     ),
-    ("choice[0].option[0].price", {"choice": [option("Pandar64", -1)]}),
-    ("choice[0].option[0].model", {"choice": [option("Pandar65", 1)]}),
+    ("selection.choice[0].option[0].price", {"choice": [option("Pandar64", -1)]}),
+    ("selection.choice[0].option[0].model", {"choice": [option("Pandar65", 1)]}),
     (
         "choice[0]: option",
         {"choice": [option("Pandar64", 1)], "selection": {"max_of_kind": {"lidar": 0}}},
     ),
-    ("choice[0]: sensor", {"choice": [{**ROOF, "sensor": "foot"}]}),
+    ("choice[0]: sensor", {"choice": [{**ROOF, "sensors": ["foot"]}]}),
     ("choice[0]: mount", {"choice": [{"mount": "rack", "option": LIDARS}]}),
-    ("choice[0].sensor, mount", {"choice": [{"option": LIDARS}]}),
-    ("choice[0].sensor, mount", {"choice": [{**ROOF, "mount": "rack"}]}),
-    ("choice[0].sensor, sensors", {"choice": [{**ROOF, "sensors": ["eye"]}]}),
+    ("selection.choice[0].sensor, mount", {"choice": [{"option": LIDARS}]}),
+    ("selection.choice[0].sensor, mount", {"choice": [{**ROOF, "mount": "rack"}]}),
     ("choice[1]: sensor", {"choice": [ROOF, ROOF]}),
-    ("choice[0].option", {"choice": [{**ROOF, "option": LIDARS * 2}]}),
-    ("choice[0].optional", {"choice": [{**ROOF, "optional": 1}]}),
-    ("choice[0].pice", {"choice": [{**ROOF, "pice": 1}]}),
+    ("selection.choice[0].option", {"choice": [{**ROOF, "option": LIDARS * 2}]}),
+    ("selection.choice[0].optional", {"choice": [{**ROOF, "optional": 1}]}),
+    ("selection.choice[0].pice", {"choice": [{**ROOF, "pice": 1}]}),
     ("selection.max_of_kind.sonar", {"selection": {"max_of_kind": {"sonar": 1}}}),
     ("selection.max_price", {"selection": {"max_price": float("nan")}}),
     ("selection: max_price", {"choice": [ROOF], "selection": {"max_price": 4}}),
@@ -344,11 +345,11 @@ def test_limits_that_leave_nothing_together_are_named_together():
     with pytest.raises(
         pe.InputError, match="selection: max_price and max_of_kind: expected limits"
     ):
-        pe.study_from_dict(data(choice=[{"sensor": "roof", "option": either}], selection=limits))
+        pe.study_from_dict(data(choice=[{"sensors": ["roof"], "option": either}], selection=limits))
 
 
 def test_what_leads_a_group_stays():
-    group = {"group": [{"sensors": ["roof", "eye"]}]}
+    group = {"groups": [["roof", "eye"]]}
     with pytest.raises(pe.InputError, match="optional: expected false for the leading sensor"):
         pe.study_from_dict(data(choice=[{**ROOF, "optional": True}], optimize=group))
 
@@ -356,10 +357,14 @@ def test_what_leads_a_group_stays():
 def test_the_second_of_a_pair_goes_with_the_first():
     left = {"name": "left", "model": "Pandar64", "position": [0, 1, 2]}
     right = {"name": "right", "model": "Pandar64", "position": [0, -1, 2]}
-    rest = {"sensor": [left, right], "optimize": {"pair": [{"sensors": ["left", "right"]}]}}
+    rest = {"sensor": [left, right], "optimize": {"pairs": [["left", "right"]]}}
     with pytest.raises(pe.InputError, match="the first of the pair, 'left'"):
-        pe.study_from_dict({**rest, "choice": [{"sensor": "right", "option": LIDARS}]})
-    study = pe.study_from_dict({**rest, "choice": [{"sensor": "left", "option": LIDARS}]})
+        pe.study_from_dict(
+            {**rest, "selection": {"choice": [{"sensors": ["right"], "option": LIDARS}]}}
+        )
+    study = pe.study_from_dict(
+        {**rest, "selection": {"choice": [{"sensors": ["left"], "option": LIDARS}]}}
+    )
     assert [study.designs().price(picks) for picks in study.designs()] == [10.0, 18.0]
 
 

@@ -39,7 +39,7 @@ position = [1.0, 0.0, 1.4]
 
 
 RANGED = f"""{STUDY}
-[ap.camera.objects.car]
+[ap.objects.camera.car]
 a = 0.055
 b = 0.6
 c = 0.12
@@ -86,7 +86,7 @@ def test_a_curve_of_the_study_wins_over_the_model():
 
 def test_a_study_file_has_the_model_only_where_it_is_another(path):
     study = pe.load_study(path)
-    assert study.model.model == "paper" and "model" not in study_to_dict(study)["ap"]
+    assert study.model.model == "paper" and "model" not in study_to_dict(study).get("ap", {})
     own = replace(study, model=pe.PerceptionModel("literal", model="scans", lidar=OWN))
     data = study_to_dict(own)
     assert data["ap"]["model"] == "scans"
@@ -208,8 +208,8 @@ def test_objects_have_the_range_term(path):
 
 
 def test_a_file_has_a_range_term_only_where_it_is_set_and_it_is_told(path, tmp_path, capsys):
-    plain = study_to_dict(pe.load_study(path))["ap"]
-    assert "c" not in plain["camera"]
+    plain = study_to_dict(pe.load_study(path)).get("ap", {})
+    assert "c" not in plain.get("camera", {})
     path.write_text(RANGED, "utf-8")
     study = pe.load_study(path)
     assert study.model.object_curve("camera", "car") == FADING
@@ -222,4 +222,4 @@ def test_a_file_has_a_range_term_only_where_it_is_set_and_it_is_told(path, tmp_p
     assert "'front'" in advice.curve_note([voxels])
     assert study_from_dict(study_to_dict(voxels), folder=tmp_path).rig["front"].curve == FADING
     assert main(["compare", str(path), str(path)]) == 0
-    assert capsys.readouterr().out.count("ap.camera.objects.car") == 1
+    assert capsys.readouterr().out.count("ap.objects.camera.car") == 1

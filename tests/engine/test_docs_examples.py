@@ -79,8 +79,8 @@ TYPED = ["README.md", *(HOW_TO if THOROUGH else [])]
 """Pages whose commands a newcomer types from the first to the last."""
 SMALL = "samples = 1024\n\n[space]\nx = [-14, 14]\ny = [-12, 12]\nz = [0, 2]\ninterval = 0.5\n\n"
 CHOICE = """
-[[choice]]
-sensor = "roof"
+[[selection.choice]]
+sensors = ["roof"]
 option = [
     { model = "Velodyne VLP-16 Puck", price = 100 },
     { model = "Hesai Pandar64", price = 600 },

@@ -391,7 +391,7 @@ def test_a_study_holds_it():
 def test_curves_of_objects_are_by_kind_and_class():
     model = pe.PerceptionModel(objects={"lidar": {"tram": BETTER}})
     assert model.object_curve("lidar", "tram") == BETTER
-    with pytest.raises(pe.InputError, match=r"\[ap.lidar.objects.bus\]: expected a and b of 'bus'"):
+    with pytest.raises(pe.InputError, match=r"\[ap.objects.lidar.bus\]: expected a and b of 'bus'"):
         model.object_curve("lidar", "bus")
-    with pytest.raises(pe.InputError, match=r"lidar.objects.tram: expected an ApCurve, found 5"):
+    with pytest.raises(pe.InputError, match=r"objects.lidar.tram: expected an ApCurve, found 5"):
         pe.PerceptionModel(objects={"lidar": {"tram": 5}})

@@ -53,7 +53,7 @@ def test_a_sensor_stays_on_the_area_though_the_part_goes_on():
 
 def test_the_faces_of_a_file_s_part_are_those_of_the_area(folder):
     study = study_from_dict(
-        data({"area": "areas.npz", "parts": ["front half"]}), "study.toml", folder
+        data({"area": {"file": "areas.npz", "parts": ["front half"]}}), "study.toml", folder
     )
     area = study.search.mounting.mounts["area"].area
     assert area == pe.MountArea(painted(), "areas.npz", ["front half"])
@@ -94,22 +94,25 @@ def test_a_study_whose_areas_are_in_no_file_is_not_saved_alone(tmp_path):
 
 
 BAD = {
-    "a file that is not there": ({"area": "none.npz"}, "study.toml: none.npz: no such file"),
-    "a part that is none": (
-        {"area": "areas.npz", "parts": ["upper"]},
-        "optimize.mount[0].parts: expected one of front half, lower in areas.npz, found 'upper'",
+    "a file that is not there": (
+        {"area": {"file": "none.npz"}},
+        "study.toml: none.npz: no such file",
     ),
-    "no name": ({"area": ""}, "optimize.mount[0].area: expected the name of a file"),
+    "a part that is none": (
+        {"area": {"file": "areas.npz", "parts": ["upper"]}},
+        "area.parts: expected one of front half, lower in areas.npz, found 'upper'",
+    ),
+    "no name": ({"area": {"file": ""}}, "optimize.mount[0].area.file: expected the name of a file"),
     "an area and slots": (
-        {"area": "areas.npz", "slot": [{"name": "a", "position": [0, 0, 2]}]},
-        "optimize.mount[0].parts, area, slot: expected parts of the vehicle or an area, or a list",
+        {"area": {"file": "areas.npz"}, "slot": [{"name": "a", "position": [0, 0, 2]}]},
+        "optimize.mount[0].slot: expected one of area",
     ),
     "faces that are none": (
-        {"area": "flat.npz"},
+        {"area": {"file": "flat.npz"}},
         "mount 'area': area: expected faces, found none in the area",
     ),
     "what is no mesh": (
-        {"area": "text.npz"},
+        {"area": {"file": "text.npz"}},
         "text.npz: file: expected a complete NumPy .npz archive",
     ),
 }

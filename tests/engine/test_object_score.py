@@ -234,7 +234,7 @@ TRAM = pe.ObjectClass("tram", (15.0, 2.5, 3.6), 0.3, 50.0, 5.0, 2.0, 0.5)
 
 def test_a_class_without_a_curve_is_reported_unless_it_weighs_nothing():
     with_tram = pe.Prior("road", (*ROAD.classes, TRAM), density={"tram": 1})
-    told = r"\[ap\.lidar\.objects\.tram\]: expected a and b of 'tram' as an object"
+    told = r"\[ap\.objects\.lidar\.tram\]: expected a and b of 'tram' as an object"
     with pytest.raises(pe.InputError, match=told):
         scorer(with_tram).score(rig())
     unweighed = replace(with_tram, focus=(pe.Focus(0.0, classes=["tram"]),))
@@ -254,7 +254,7 @@ def test_a_sensor_s_own_curve_is_of_voxels():
 
 def test_a_study_s_keys_make_its_evaluator():
     metric = {"targets": "objects", "traffic": True, "scenes": 8}
-    curves = {"lidar": {"objects": {"car": {"a": 0.3, "b": -0.5}}}}
+    curves = {"objects": {"lidar": {"car": {"a": 0.3, "b": -0.5}}}}
     density = {"density": {"car": 2}, "classes": ["car"]}
     data = {"sensor": [SENSOR], "metric": metric, "ap": curves, "prior": density}
     study = study_from_dict(data)

@@ -15,6 +15,7 @@ STORY = """
 name = "crossing"
 speed_kmh = 30.0
 [[story.body]]
+name = "child"
 body = "child"
 path = [[-6.0, 0.0, -10.0], [0.0, 0.0, 0.0]]
 """

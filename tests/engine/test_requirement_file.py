@@ -10,7 +10,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.base.table_reader import Table, dumps
+from pe_core.base.table_reader import dumps
 from pe_core.base.values import as_in_file
 from pe_core.scoring.requirements import (
     BODIES,
@@ -21,7 +21,8 @@ from pe_core.scoring.requirements import (
     Zone,
     checkable,
 )
-from pe_core.study.requirement_file import presets, read_requirement, requirement_table
+from pe_core.study import Node, read, write
+from pe_core.study.requirement_file import presets
 from pe_core.study.study_file import study_from_dict, study_to_dict
 from tests.engine import shapes
 from tests.engine.requirement_scene import AHEAD, check, rig, van
@@ -37,9 +38,9 @@ def test_presets_have_sources_and_come_back_from_a_file_the_same():
         requirement = each.requirement()
         for name in (key, "another name"):
             changed = replace(requirement, name=name, under=Under(one_lost=name != key))
-            again = read_requirement(Table(requirement_table(changed), "file"))
+            again = read(Requirement, Node(write(changed), "file"))
             if again != changed:
-                found.append(f"{key}: {requirement_table(changed)}")
+                found.append(f"{key}: {write(changed)}")
     assert not found and len(presets()) > 20
 
 
@@ -134,7 +135,7 @@ def test_a_preset_whose_keys_are_changed_is_said_to_be_changed():
 
     def after(**keys):
         table = {"name": "mine", "preset": "r158_camera", **keys}
-        return read_requirement(Table(table, "file")).after
+        return read(Requirement, Node(table, "file")).after
 
     assert after() == after(zone={"eyes": 1.0, "near_side": "left"}) == "UN R158"
     assert after(check="our rule", body="child") == "our rule"
@@ -171,10 +172,10 @@ def test_a_requirement_of_ones_own_comes_back_from_a_file_the_same():
     )
     study = pe.Study(rig(), van(), requirements=(own, replace(own, name="two", zone=AHEAD)))
     odd = replace(BODIES["child"], headings=(as_in_file(math.radians(33.3)), as_in_file(-1.234567)))
-    table = requirement_table(Requirement("odd", AHEAD, (odd,)))
-    assert read_requirement(Table(table, "file")).bodies == (odd,)
+    table = write(Requirement("odd", AHEAD, (odd,)))
+    assert read(Requirement, Node(table, "file")).bodies == (odd,)
     data = study_to_dict(study)
-    assert [read_requirement(Table(each, "f")) for each in data["requirement"]] == list(
+    assert [read(Requirement, Node(each, "f")) for each in data["requirement"]] == list(
         study.requirements
     )
     assert dumps(data).count("[[requirement]]") == 2

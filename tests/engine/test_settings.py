@@ -7,10 +7,9 @@ from pathlib import Path
 
 from pe_core.base.setting import REQUIRED, settings_of
 from pe_core.study import setting_keys
-from pe_core.study.study_file import SECTIONS
 
 ROOT = Path(__file__).resolve().parents[2]
-SETTINGS = dict(setting_keys())
+SETTINGS = {row.key: row.setting for row in setting_keys()}
 
 
 def settings_page():
@@ -33,20 +32,20 @@ def test_a_default_is_one_that_its_rule_allows():
 
 
 def test_properties_and_keys_are_unique_and_texts_are_sentences():
-    of_scene = [s.panel.property for _, s in setting_keys(of_scene=True) if s.panel is not None]
+    of_scene = [r.setting.panel.property for r in setting_keys(of_scene=True) if r.setting.panel]
     assert len(of_scene) == len(set(of_scene)) and len(SETTINGS) == len(list(setting_keys()))
     for setting in SETTINGS.values():
         assert setting.text[0].isupper() and not setting.text.endswith(".")
 
 
 def test_every_declared_setting_is_a_key_of_the_study_file():
-    """A setting of a dataclass that no section lists would be declared for nothing."""
-    classes = {
-        cls
-        for name, module in sys.modules.items()
-        if name.startswith("pe_core.")
+    """A setting of a dataclass that no document holds would be declared for nothing."""
+    declared = {
+        (name, setting.text)
+        for file, module in sys.modules.items()
+        if file.startswith("pe_core.")
         for cls in vars(module).values()
-        if isinstance(cls, type) and is_dataclass(cls) and settings_of(cls)
+        if isinstance(cls, type) and is_dataclass(cls)
+        for name, setting in settings_of(cls).items()
     }
-    assert {section.cls for section in SECTIONS} == classes
-    assert sum(len(settings_of(cls)) for cls in classes) == len(SETTINGS)
+    assert {(each.name, each.text) for each in SETTINGS.values()} == declared

@@ -8,13 +8,20 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.base.table_reader import Table
 from pe_core.scoring.sampling import CENTERED
 from pe_core.scoring.sight.blind_ground import body_rectangle
 from pe_core.search import Tolerance
-from pe_core.study import Conditions, condition_table, study_from_dict, study_to_dict
+from pe_core.study import (
+    Conditions,
+    Node,
+    condition_table,
+    read,
+    study_from_dict,
+    study_to_dict,
+    write,
+)
 from pe_core.study.condition_table import study_objective
-from pe_core.study.conditions import read_conditions, state_table, worst_verdict
+from pe_core.study.conditions import worst_verdict
 from pe_tools.jobs import design_study
 from pe_tools.page.markup import render
 from pe_tools.page.sections.score import table_values
@@ -96,12 +103,14 @@ def test_states_and_weathers_stay_the_same_in_a_study_file():
     conditions = Conditions([OPEN, body, pe.State("driving")], weathers)
     study = pe.Study(rig(), car(), conditions=conditions)
     data = study_to_dict(study)
-    assert read_conditions(Table(data, "study")) == conditions
+    states = [read(pe.State, Node(each, "study")) for each in data["state"]]
+    again = [read(pe.Weather, Node(each, "study")) for each in data["weather"]]
+    assert Conditions(states, again) == conditions
     assert data["state"][0]["move"][0]["rotation"] == [0.0, 0.0, 70.0]
     with pytest.raises(pe.InputError, match=r"state\[0\]\.move\[0\]\.rotation"):
         state = {"name": "a", "move": [{"parts": ["x"], "rotation": [1]}]}
         study_from_dict({**data, "vehicle": {}, "state": [state]})
-    assert state_table(OPEN)["move"][0]["about"] == list(HINGE)
+    assert write(OPEN)["move"][0]["about"] == list(HINGE)
 
 
 def test_the_table_has_the_figures_of_each_condition_scored_alone():

@@ -165,7 +165,9 @@ def read(sensors=TWO, **optimize):
 
 
 def test_a_study_says_tolerance_and_failures():
-    study = read(tolerance={"position": 0.02, "angle": 0.5, "draws": 6}, failures=True, worst=True)
+    study = read(
+        tolerance={"position": 0.02, "angle": 0.5, "draws": 6, "failures": True, "worst": True}
+    )
     assert study.search.tolerance == pe.Tolerance(0.02, math.radians(0.5), 6, True, True)
     again = study_from_dict(study_to_dict(study))
     assert again.search == study.search
@@ -174,4 +176,4 @@ def test_a_study_says_tolerance_and_failures():
 def test_failures_need_a_second_sensor():
     expected = "failures: expected a rig of at least two sensors, found one"
     with pytest.raises(pe.InputError, match=expected):
-        read([SENSOR], failures=True)
+        read([SENSOR], tolerance={"failures": True})

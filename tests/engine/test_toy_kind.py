@@ -27,6 +27,7 @@ interval = 0.5
 
 [ap.toyring]
 a = 0.2
+b = 0.4
 
 [[sensor]]
 name = "bumper"
@@ -118,7 +119,11 @@ def test_the_command_scores_searches_and_leaves_results(ring_kind, tmp_path, cap
     assert result == json.loads((tmp_path / "out" / "result.json").read_text())
     bumper = result["after"]["per_sensor"]["bumper"]
     assert math.isfinite(bumper["entropy"]) and bumper["beams"] == bumper["occluded"] == 0
-    assert result["inputs"]["study"]["sensor"][0]["model"] == {"kind": "toyring", "range_m": 4.0}
+    assert result["inputs"]["study"]["sensor"][0]["model"] == {
+        "name": "bumper",
+        "kind": "toyring",
+        "range_m": 4.0,
+    }
     moved = {p["placements"]["bumper"]["position"][0] for p in result["history"]}
     assert len(moved) > 1, "the search never moved the ring"
 

@@ -146,7 +146,7 @@ def test_the_search_has_every_key_verb_and_sensor(site):
     documents = json.loads((site / "search" / "search_index.json").read_text("utf-8"))["docs"]
     text = "\n".join(f"{entry['title']}\n{entry['text']}" for entry in documents)
     tables = {entry["title"]: entry["text"] for entry in documents}
-    for key, _ in setting_keys():
+    for key, *_ in setting_keys():
         table, _, name = key.rpartition(".")
         assert name in (tables[f"[{table}]"] if table else text), key
     verbs = next(a for a in parser()._actions if a.dest == "==SUPPRESS==" or a.choices)

@@ -7,15 +7,18 @@ side.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from types import MappingProxyType
+from typing import Annotated, Any
 
 import numpy as np
 
 from ...base.arrays import Flags, Floats, Ints
+from ...base.codec import Named, Node, Part, hook, read, write
 from ...base.errors import InputError, shown
-from ...base.values import A_NAME, Angle, Number
+from ...base.setting import Triple
+from ...base.values import A_NAME, Angle, Number, choice
 from ...prior.classes import ROAD_CLASSES
 
 LENGTH = Number(1e-3, 100.0, unit="m", noun="length")
@@ -269,3 +272,50 @@ BODIES: Mapping[str, Body] = MappingProxyType(
     }
 )
 """Bodies by name; sizes are those of the boxes that count, or of the cylinder."""
+
+
+@dataclass(frozen=True, slots=True)
+class OwnBody:
+    """The table of a body that is none of `BODIES`: its size, or its diameter and height."""
+
+    name: Named = "own"
+    size: Annotated[tuple[float, float, float] | None, Part(rule=Triple(LENGTH))] = None
+    diameter: Annotated[float | None, Part(rule=LENGTH)] = None
+    height: Annotated[float | None, Part(rule=LENGTH)] = None
+    low: Annotated[float, Part(rule=LOW)] = 0.0
+    class_name: Annotated[str | None, Part(key="class", rule=A_NAME)] = None
+
+    def __post_init__(self) -> None:
+        is_round = self.diameter is not None and self.height is not None
+        if (self.size is None) != is_round:
+            expected = "a size, or a diameter and a height"
+            raise InputError("body", "size", expected, "both" if is_round else "neither")
+
+    @property
+    def body(self) -> Body:
+        """The body."""
+        is_round = self.diameter is not None
+        size = self.size or (self.diameter, self.diameter, self.height)
+        return Body(self.name, size, self.low, is_round, class_name=self.class_name)  # type: ignore[arg-type]
+
+
+def _read_body(node: Node) -> Body:
+    """Return one of `BODIES` by its name, or an own body from its table."""
+    if isinstance(node.value, Mapping) and set(node.value) != {"name"}:
+        own = read(OwnBody, node)
+        with node.naming():
+            return own.body
+    name = node.value["name"] if isinstance(node.value, Mapping) else node.value
+    return BODIES[choice(node.source, node.path, name, BODIES)]
+
+
+def _write_body(body: Body) -> Any:
+    known = BODIES.get(body.name)
+    if known is not None and replace(body, headings=known.headings) == known:
+        return body.name
+    width, _, height = body.size
+    sizes: Any = {"diameter": width, "height": height} if body.is_round else {"size": body.size}
+    return write(OwnBody(body.name, low=body.low, class_name=body.class_name, **sizes))
+
+
+hook(Body, _read_body, _write_body, {})

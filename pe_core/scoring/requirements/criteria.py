@@ -3,7 +3,9 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Annotated
 
+from ...base.codec import Named, Part
 from ...base.errors import InputError, require_kind, shown
 from ...base.notebook import ShortRepr
 from ...base.setting import FLAG, NAMES, Panel, check_settings, setting, settings_of
@@ -14,6 +16,7 @@ from .bodies import Body
 from .zones import Zone
 
 COUNT = Whole(1, 1000)
+MAX_REQUIREMENTS = 200
 POSITIVE_SHARE = Number(0.0, 1.0, above=True)
 AREA = Number(0.0, 1e6, unit="m2", noun="area")
 OF_BODIES = (*("sensors", "kinds", "points", "pixels", "share", "ap"), "zone_share")
@@ -164,15 +167,17 @@ class Requirement(ShortRepr):
     `original`: The preset as it is shipped; it tells whether this requirement is changed.
     """
 
-    name: str
+    name: Named
     zone: Zone
-    bodies: tuple[Body, ...] = ()
+    bodies: Annotated[tuple[Body, ...], Part(key="body")] = ()
     criterion: Criterion = field(default_factory=Criterion)
     under: Under = field(default_factory=Under)
     preset: str | None = None
     source: str = ""
     check: str = ""
-    original: "Requirement | None" = field(default=None, compare=False, repr=False)
+    original: Annotated["Requirement | None", Part(stored=False)] = field(
+        default=None, compare=False, repr=False
+    )
 
     def __post_init__(self) -> None:
         put = object.__setattr__
@@ -218,6 +223,9 @@ class Requirement(ShortRepr):
 def checked_requirements(requirements: Sequence[Requirement]) -> tuple[Requirement, ...]:
     """Return requirements; raise `InputError` for two of one name, or what is none."""
     names: set[str] = set()
+    if len(requirements) > MAX_REQUIREMENTS:
+        expected = f"at most {MAX_REQUIREMENTS} requirements"
+        raise InputError("study", "requirement", expected, len(requirements))
     for each in requirements:
         if not isinstance(each, Requirement):
             raise InputError("study", "requirements", "requirements", shown(each))

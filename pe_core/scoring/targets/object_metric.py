@@ -72,7 +72,7 @@ class FusedObjects:
         """Raise `InputError` for a sensor with a curve of its own, or a class without one."""
         for sensor in rig:
             if sensor.curve is not None:
-                expected = f"none: objects have curves by class, [ap.{sensor.kind}.objects.CLASS]"
+                expected = f"none: objects have curves by class, [ap.objects.{sensor.kind}.CLASS]"
                 raise InputError(f"sensor {sensor.name!r}", "ap", expected, "a curve of voxels")
             for name in self._rows:
                 self._model.object_curve(sensor.kind, name)

@@ -1,5 +1,5 @@
 """Several studies side by side: which rig is better where, how the sensors differ, what they cost.
-Prices come from the study's choices (``[[choice]]``); the catalogue has none."""
+Prices come from the study's choices (``[[selection.choice]]``); the catalogue has none."""
 
 import math
 from collections.abc import Iterator, Sequence

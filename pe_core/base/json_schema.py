@@ -1,0 +1,125 @@
+"""The JSON schema of a tree of dataclasses, by the declarations that the codec reads."""
+
+import json
+import math
+import types
+import typing
+from collections.abc import Mapping
+from dataclasses import is_dataclass
+from typing import Any
+
+from .codec import BY_TYPE, DocumentField, Schema, classes_in, fields_of, hook_of
+from .setting import REQUIRED, OneOf, Pair, Setting, Several, Texts, Toggle, Triple, value_in_file
+from .values import Angle, Name, Number, Whole
+
+
+def schema_of(cls: type) -> Schema:
+    """Return the JSON schema of the plain data of a class."""
+    properties, required, is_open = _properties(cls)
+    found: Schema = {"type": "object", "properties": properties}
+    found |= {} if is_open else {"additionalProperties": False}
+    return found | ({"required": required} if required else {})
+
+
+def schema_of_setting(setting: Setting) -> Schema:
+    """Return the schema of a setting: what it is, its values, its default."""
+    unit = " [deg]" if isinstance(setting.rule, Angle) else ""
+    own = {"description": f"{setting.text}{unit}", **_schema_of_rule(setting.rule)}
+    if setting.default is REQUIRED or setting.default is None:
+        return own
+    default = json.dumps(value_in_file(setting.rule, setting.default))
+    return own if "Infinity" in default else own | {"default": json.loads(default)}
+
+
+def _properties(cls: type) -> tuple[dict[str, Schema], list[str], bool]:
+    """Return the schema of each key of a class, the required keys, and whether there are others."""
+    properties, required, is_open = dict[str, Schema](), list[str](), False
+    for each in fields_of(cls):
+        if each.part.inline and is_dataclass(each.hint):
+            inner, needed, more = _properties(typing.cast(type, each.hint))
+            properties |= inner
+            required += needed
+            is_open = is_open or more
+        elif each.part.inline:
+            is_open = True
+        else:
+            properties[each.key] = _schema_of_field(each)
+            required += [each.key] if _is_required(each) else []
+    return properties, required, is_open
+
+
+def _is_required(each: DocumentField) -> bool:
+    """Whether a table without the key is wrong: one without a table of a class is read as empty."""
+    is_table = is_dataclass(each.hint) and hook_of(each.hint) is None
+    return each.default is REQUIRED and not is_table
+
+
+def _schema_of_field(each: DocumentField) -> Schema:
+    if each.setting is not None:
+        return schema_of_setting(each.setting)
+    if each.rule is not None:
+        return _schema_of_rule(each.rule)
+    if not each.part.by_name:
+        return _schema_of_hint(each.hint)
+    inner = [_schema_of_hint(cls) for cls, _ in classes_in(each.hint)]
+    for own in inner:
+        own["properties"] = {"name": {"type": "string"}, **own["properties"]}
+    return {"type": "array", "items": inner[0] if len(inner) == 1 else {"anyOf": inner}}
+
+
+def _schema_of_hint(hint: Any) -> Schema:
+    own = hook_of(hint)
+    if own is not None:
+        return schema_of(own.form) if isinstance(own.form, type) else own.form
+    if hint in BY_TYPE:
+        return _schema_of_rule(BY_TYPE[hint])
+    if is_dataclass(hint):
+        return schema_of(typing.cast(type, hint))
+    origin, inner = typing.get_origin(hint), typing.get_args(hint)
+    if origin in (types.UnionType, typing.Union):
+        some = [_schema_of_hint(each) for each in inner if each is not type(None)]
+        return some[0] if len(some) == 1 else {"anyOf": some}
+    if issubclass(origin, Mapping):
+        return {"type": "object", "additionalProperties": _schema_of_hint(inner[1])}
+    if len(inner) == 1 or inner[-1] is Ellipsis:
+        return {"type": "array", "items": _schema_of_hint(inner[0])}
+    return _list_of(len(inner), _schema_of_hint(inner[0]))
+
+
+def _schema_of_rule(rule: object) -> Schema:
+    """Return the schema of the values that a rule allows, as a document has them."""
+    match rule:
+        case Toggle():
+            return {"type": "boolean"}
+        case OneOf():
+            return {"enum": list(rule.among)}
+        case Several():
+            return {"type": "array", "items": {"enum": list(rule.among)}, "uniqueItems": True}
+        case Texts():
+            return {"type": "array", "items": {"type": "string"}}
+        case Name():
+            return {"type": "string"}
+        case Pair():
+            return _list_of(2, _schema_of_rule(rule.rule))
+        case Triple():
+            return _list_of(3, _schema_of_rule(rule.rule))
+        case Number() | Whole():
+            kind = "integer" if isinstance(rule, Whole) else "number"
+            return {"type": kind, **_range(rule)}
+    return {}  # places of a zone: numbers, or texts such as "rear + 1"
+
+
+def _list_of(count: int, item: Schema) -> Schema:
+    return {"type": "array", "items": item, "minItems": count, "maxItems": count}
+
+
+def _range(rule: Number | Whole) -> Schema:
+    ends = (
+        ("minimum", rule.minimum, "exclusiveMinimum", getattr(rule, "above", False)),
+        ("maximum", rule.maximum, "exclusiveMaximum", getattr(rule, "below", False)),
+    )
+    return {
+        open_key if is_open else key: end
+        for key, end, open_key, is_open in ends
+        if end is not None and math.isfinite(end)
+    }

@@ -1,0 +1,241 @@
+"""The study file as a tree of dataclasses: each field is a key (`base.codec` reads and writes it).
+
+A `Document` differs from a `Study` where the file does: the axes that a sensor may change, its
+bounds and its mount stand in the sensor's table, and the vehicle is a mesh file with its settings.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any
+
+from ..base.codec import Node, Part
+from ..base.plugins import shipped
+from ..base.setting import Pair, Several, key_of, same_setting, settings_of
+from ..base.values import A_NAME, A_PATH
+from ..geometry.grids import PerceptionSpace
+from ..geometry.poses import METRES, ROTATION
+from ..metric.frames import Frames
+from ..motion import Confirmation, Story
+from ..prior.prior import Prior
+from ..scene.mesh import MeshAxes, require_vehicle_size
+from ..scene.rig import Rig, Sensor
+from ..scene.vehicle import Vehicle
+from ..scene.vehicle_description import Reference
+from ..scene.vehicle_state import State
+from ..scoring.requirements import Requirement
+from ..scoring.targets import TargetRule
+from ..search import AXES, PAPER_FREE, SCHEDULED_METHOD, Schedule, Selection
+from ..sensors import PerceptionModel
+from ..sensors.weather import Weather
+from .conditions import Conditions
+from .scoring_file import Fusion, ModelFile
+from .study import Search, Study
+
+Range = tuple[float, float]
+FREE = Several(AXES)
+ALONG = Pair(METRES, same=True)
+ABOUT = Pair(ROTATION, same=True)
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Bounds of a sensor's axes, in place of the default ones [m or rad]."""
+
+    x: Annotated[Range | None, Part(rule=ALONG)] = None
+    y: Annotated[Range | None, Part(rule=ALONG)] = None
+    z: Annotated[Range | None, Part(rule=ALONG)] = None
+    roll: Annotated[Range | None, Part(rule=ABOUT)] = None
+    pitch: Annotated[Range | None, Part(rule=ABOUT)] = None
+    yaw: Annotated[Range | None, Part(rule=ABOUT)] = None
+
+    @property
+    def by_axis(self) -> dict[str, Range]:
+        """The bounds that are given, by axis."""
+        own = {axis: getattr(self, axis) for axis in AXES}
+        return {axis: bounds for axis, bounds in own.items() if bounds is not None}
+
+
+@dataclass(frozen=True)
+class SensorTable:
+    """A table [[sensor]]: the sensor, the axes a search may change, their bounds, its mount."""
+
+    sensor: Annotated[Sensor, Part(inline=True)]
+    free: Annotated[tuple[str, ...] | None, Part(rule=FREE)] = None
+    bounds: Bounds = field(default_factory=Bounds)
+    mount: Annotated[str | None, Part(rule=A_NAME)] = None
+
+
+@dataclass(frozen=True)
+class VehicleTable:
+    """The table [vehicle]: the file of its mesh, how that is to be taken, and its settings."""
+
+    mesh: Annotated[str | None, Part(rule=A_PATH)] = None
+    glass: tuple[str, ...] = ()
+    covers: Mapping[str, float] = field(default_factory=dict)
+    clearance: float = same_setting(Vehicle, "clearance")
+    axes: Annotated[MeshAxes, Part(inline=True)] = field(default_factory=MeshAxes)
+
+    def read(self, node: Node) -> dict[str, Any]:
+        """Return the fields of a study with the vehicle, whose mesh is read."""
+        if self.mesh is None and node.table:
+            raise node.error("the file of the vehicle's mesh", "nothing", "mesh")
+        if self.mesh is None:
+            return {}
+        mesh = shipped("reader.mesh")(node.folder / self.mesh, self.axes)
+        require_vehicle_size(self.mesh, mesh)
+        with node.naming():
+            vehicle = Vehicle(
+                triangles=mesh.triangles,
+                parts=mesh.parts,
+                part_names=mesh.part_names,
+                glass=self.glass,
+                clearance=self.clearance,
+                covers=self.covers,
+            )
+        about = {"faces": mesh.axes, "mesh_notes": mesh.notes}
+        return {"vehicle": vehicle, "mesh": self.mesh, "axes": self.axes, **about}
+
+    @classmethod
+    def of(cls, study: Study) -> "VehicleTable":
+        """Return the table of a study's vehicle."""
+        vehicle = study.vehicle
+        if vehicle is None:
+            return cls()
+        return cls(
+            mesh=study.mesh,
+            glass=tuple(vehicle.glass),
+            covers=vehicle.covers,
+            clearance=vehicle.clearance,
+            axes=study.axes,
+        )
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """The table [measurement]."""
+
+    returns: str = same_setting(Study, "returns")
+
+
+@dataclass(frozen=True)
+class Timing:
+    """The table [time]: frames of the entropy over frames, and how tracks are confirmed."""
+
+    frames: Annotated[Frames, Part(inline=True)] = field(default_factory=Frames)
+    confirmation: Annotated[Confirmation, Part(inline=True)] = field(default_factory=Confirmation)
+
+
+@dataclass(frozen=True)
+class Optimize:
+    """The table [optimize]: the search; `free` are the axes of sensors that name none."""
+
+    free: Annotated[tuple[str, ...], Part(rule=FREE)] = PAPER_FREE
+    search: Annotated[Search, Part(inline=True)] = field(default_factory=Search)
+
+
+@dataclass(frozen=True)
+class Document:
+    """A study file."""
+
+    samples: int = same_setting(Study, "samples")
+    space: PerceptionSpace = field(default_factory=PerceptionSpace)
+    prior: Prior = field(default_factory=Prior.road)
+    metric: TargetRule = field(default_factory=TargetRule)
+    measurement: Measurement = field(default_factory=Measurement)
+    ap: ModelFile = field(default_factory=ModelFile)
+    fusion: Fusion = field(default_factory=Fusion)
+    vehicle: VehicleTable = field(default_factory=VehicleTable)
+    reference: Reference | None = None
+    sensor: tuple[SensorTable, ...] = ()
+    requirement: tuple[Requirement, ...] = ()
+    weather: tuple[Weather, ...] = ()
+    state: tuple[State, ...] = ()
+    time: Timing = field(default_factory=Timing)
+    story: tuple[Story, ...] = ()
+    optimize: Optimize = field(default_factory=Optimize)
+    selection: Selection = field(default_factory=Selection)
+
+    @classmethod
+    def of(cls, study: Study) -> "Document":
+        """Return the document of a study."""
+        return cls(
+            samples=study.samples,
+            space=study.space,
+            prior=study.prior,
+            metric=study.targets,
+            measurement=Measurement(study.returns),
+            ap=ModelFile.of(study.model),
+            fusion=Fusion(study.model.blind),
+            vehicle=VehicleTable.of(study),
+            reference=study.reference,
+            sensor=tuple(_sensor_table(sensor, study.search) for sensor in study.rig),
+            requirement=study.requirements,
+            weather=tuple(study.conditions.weathers),
+            state=tuple(study.conditions.states),
+            time=Timing(study.frames, study.confirmation),
+            story=study.stories,
+            optimize=Optimize(search=study.search),
+            selection=study.selection,
+        )
+
+    def study(self, node: Node) -> Study:
+        """Return the study of the document that was read from a node."""
+        self._check(node)
+        curves: Any = self.ap.curves
+        model = PerceptionModel(
+            self.fusion.blind, objects=self.ap.objects, model=self.ap.model, **curves
+        )
+        return Study(
+            rig=Rig([row.sensor for row in self.sensor]),
+            **self.vehicle.read(node.at("vehicle", {})),
+            space=self.space,
+            prior=self.prior,
+            model=model,
+            search=self._search(node),
+            samples=self.samples,
+            reference=self.reference,
+            selection=self.selection,
+            targets=self.metric,
+            requirements=self.requirement,
+            conditions=Conditions(self.state, self.weather),
+            returns=self.measurement.returns,
+            frames=self.time.frames,
+            confirmation=self.time.confirmation,
+            stories=self.story,
+        )
+
+    def _search(self, node: Node) -> Search:
+        """Return the search with what the tables of sensors say of it."""
+        search, rows = self.optimize.search, self.sensor
+        usual = self.optimize.free
+        free = {row.sensor.name: usual if row.free is None else row.free for row in rows}
+        limits = {row.sensor.name: row.bounds.by_axis for row in rows}
+        on = {row.sensor.name: row.mount for row in rows if row.mount is not None}
+        for number, row in enumerate(rows):
+            if row.mount is not None and row.mount not in search.mounting.mounts:
+                names = search.mounting.mounts
+                with node.of(None, f"sensor[{number}]").naming():
+                    replace(search.mounting, mounts=names, on={row.sensor.name: row.mount})
+        return replace(search, free=free, limits=limits, mounting=replace(search.mounting, on=on))
+
+    def _check(self, node: Node) -> None:
+        """Raise `InputError` for what no class of the document can see."""
+        if not self.sensor:
+            raise node.error("at least one [[sensor]]", "none", "sensor")
+        search = self.optimize.search
+        if search.method != SCHEDULED_METHOD and not self.selection.choices:
+            for name in settings_of(Schedule):
+                if getattr(search.schedule, name) != getattr(Schedule(), name):
+                    expected = f'method = "{SCHEDULED_METHOD}", the only method with this key'
+                    found = f'method = "{search.method}"'
+                    raise node.error(expected, found, f"optimize.{key_of(name)}")
+
+
+def _sensor_table(sensor: Sensor, search: Search) -> SensorTable:
+    free = search.free.get(sensor.name, PAPER_FREE)
+    return SensorTable(
+        sensor,
+        free=None if free == PAPER_FREE else free,
+        bounds=Bounds(**search.limits.get(sensor.name, {})),
+        mount=search.mounting.on.get(sensor.name),
+    )

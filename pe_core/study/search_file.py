@@ -98,11 +98,7 @@ def _read_schedule(table: Table, is_used: bool) -> Schedule:
             expected = f'method = "{SCHEDULED_METHOD}", the only method with this key'
             found = f'method = "{table.text("method")}"' if "method" in table else "no method"
             raise table.error(key, expected, found)
-    values = read_settings(table, Schedule)
-    try:
-        return Schedule(**values)
-    except InputError as error:  # too many rounds
-        raise table.error(key_of(error.field), error.expected, error.found) from None
+    return Schedule(**read_settings(table, Schedule))
 
 
 def _read_tolerance(table: Table) -> Tolerance:

@@ -128,7 +128,6 @@ BAD = [
     ("sensor[0].bounds.w", MINIMAL + "bounds = {w = [2, 3]}\n"),
     ("optimize.candidates", MINIMAL + f"[optimize]\n{RANDOM}candidates = 0\n"),
     ("optimize.candidates", MINIMAL + "[optimize]\ncandidates = 9\n"),
-    ("optimize.decay", MINIMAL + '[optimize]\nmethod = "portfolio"\ndecay = 0.5\n'),
 ]
 
 

@@ -72,7 +72,7 @@ def other_value(setting):
         case studies.OneOf():
             return next(text for text in reversed(rule.among) if text != setting.default)
         case studies.Several():
-            return rule.among[:2]
+            return tuple(rule.among)[:2]
         case studies.Pair():
             return (-30.0, 31.5)
         case studies.Texts():
@@ -115,7 +115,7 @@ def test_coordinates_in_double_precision_come_back_to_the_bit(scene):
 
 def test_what_a_scene_cannot_hold_is_reported(car, monkeypatch):
     study = scenes.study()
-    search = pe.Search(tolerance=pe.Tolerance(0.01, draws=8))
+    search = pe.Search(tolerance=pe.Tolerance(0.01, draws=6))
     assert load(pe.Study(study.rig, study.vehicle, search=search)) == ["optimize.tolerance.draws"]
 
 

@@ -3,4 +3,4 @@
 from ..metric.frames import Frames
 from .drive_by import DriveBy, Moment, SeenBody, drive_by
 from .story import CHANCE, RATE_HZ, Actor, Story, checked_stories, stories
-from .tracks import CORRELATION_TIME_S, Confirmation
+from .tracks import CORRELATION_TIME_S, WINDOW, Confirmation

@@ -15,7 +15,7 @@ from ..base.arrays import ReadOnlyDict
 from ..base.errors import InputError, require_name, shown
 from ..base.notebook import ShortRepr
 from ..base.setting import Panel, check_settings, setting
-from ..base.values import Angle, Number, Whole, listed, pair
+from ..base.values import Whole, listed, pair
 from ..geometry.overlap import hull_box, overlaps
 from ..geometry.poses import FARTHEST_M, METRES, ROTATION
 from ..scene.rig import Housing, Rig, Sensor, cuts_body
@@ -37,8 +37,11 @@ PAPER_FREE = ("x", "y", "z", "pitch")
 """What the paper searches; roll and yaw are fixed "for symmetry of the placement"."""
 HEADROOM_M = 0.75  # How far above the vehicle's top a sensor may be mounted by default
 MIN_HEIGHT_M = 0.2  # The least height of a sensor by default
-MAX_ROUNDS = 1000
-"""A schedule of more rounds (the paper's has seven) is taken for a typing error."""
+REACH_M, REACH_RAD = 1.0, math.radians(30.0)
+"""Half widths of the first neighbourhood of Algorithm 1 [m, rad]."""
+FLOOR_M, FLOOR_RAD = 0.01, math.radians(0.3)
+"""It ends when a neighbourhood is at or below both: mounts are not made more exactly."""
+DECAY = 0.5  # Each neighbourhood of Algorithm 1 over the one before, k
 Bounds = tuple[float, float]
 STANDOFF_TOLERANCE_M = 1e-3
 """How much nearer to its surface than its stand-off a sensor may be [m]."""
@@ -93,7 +96,7 @@ class SearchSpace(ShortRepr):
         Parameters
         ----------
         vehicle : Vehicle or None
-            Without a vehicle, sensors may move `Schedule.reach_m` from their start.
+            Without a vehicle, sensors may move `REACH_M` from their start.
         limits : mapping, optional
             Bounds that replace the default ones, by sensor and axis.
         mounting : Mounting, optional
@@ -161,8 +164,7 @@ def default_bounds(sensor: Sensor, vehicle: Vehicle | None) -> dict[str, Bounds]
     """Return the bounds of each axis without given ones; they always contain the start."""
     start = pose_values(sensor.pose)
     if vehicle is None:
-        reach = Schedule().reach_m
-        around = {a: (start[a] - reach, start[a] + reach) for a in POSITION_AXES}
+        around = {a: (start[a] - REACH_M, start[a] + REACH_M) for a in POSITION_AXES}
         bounds = {a: (max(lo, -FARTHEST_M), min(hi, FARTHEST_M)) for a, (lo, hi) in around.items()}
     else:
         low, high = vehicle.bounds
@@ -179,13 +181,8 @@ def _shown(axis: str, value: float) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Schedule:
-    """Neighbourhoods and candidates of Algorithm 1; the paper's by default.
-
-    `reach_m` and `reach_rad` are half widths of the first neighbourhood. Each is `decay` (k)
-    times the one before, until one is at or below `floor_m` and `floor_rad`.
-
-    `InputError` when a number is out of its range, or the rounds are more than 1000.
-    """
+    """Candidates in each round of Algorithm 1; its neighbourhoods are the paper's. `InputError`
+    when the number is out of its range."""
 
     candidates: int = setting(
         1000,
@@ -193,51 +190,18 @@ class Schedule:
         "Placements in each round of a search; the paper has 1000",
         Panel("candidates", "Candidates", default=150, soft_max=1000),
     )
-    reach_m: float = setting(
-        1.0,
-        Number(0.0, cap=FARTHEST_M, unit="m", noun="length"),
-        "How far round the start the first round looks",
-    )
-    reach_rad: float = setting(
-        math.radians(30.0), Angle(0.0, cap=360.0), "The same for angles, in degrees"
-    )
-    floor_m: float = setting(
-        0.01,
-        Number(1e-6, cap=FARTHEST_M, unit="m", noun="length"),
-        "The search ends when a round looks no farther than this round the best placement",
-    )
-    floor_rad: float = setting(
-        math.radians(0.3), Angle(1e-6, cap=360.0), "The same for angles, in degrees"
-    )
-    decay: float = setting(
-        0.5,
-        Number(0.0, 1.0, above=True, below=True),
-        "Each round looks this times as far as the one before",
-    )
 
     def __post_init__(self) -> None:
         check_settings(self, "optimize")
-        reaches = (self.reach_m, self.floor_m), (self.reach_rad, self.floor_rad)
-        rounds = max(_rounds(*each, self.decay) for each in reaches)
-        if rounds > MAX_ROUNDS:
-            expected = f"at most {MAX_ROUNDS} rounds from reach to floor"
-            raise InputError("optimize", "decay", expected, f"{rounds:.4g}")
 
     @property
     def scales(self) -> list[float]:
-        """Factor on the first neighbourhood in each round: 1, k, k^2, ... (seven in the paper)."""
+        """Factor on the first neighbourhood in each round: 1, k, k^2, ...: seven."""
         scales, scale = [], 1.0
-        while scale * self.reach_m > self.floor_m or scale * self.reach_rad > self.floor_rad:
+        while scale * REACH_M > FLOOR_M or scale * REACH_RAD > FLOOR_RAD:
             scales.append(scale)
-            scale *= self.decay
+            scale *= DECAY
         return scales
-
-
-def _rounds(reach: float, floor: float, decay: float) -> float:
-    """Return about how many rounds it takes from reach to floor."""
-    if reach <= floor:
-        return 0.0
-    return (math.log(reach) - math.log(floor)) / -math.log(decay)
 
 
 @dataclass(frozen=True, slots=True)

@@ -71,7 +71,7 @@ def other_value(setting):
         case studies.OneOf():
             return next(text for text in reversed(rule.among) if text != setting.default)
         case studies.Several():
-            return rule.among[:2]
+            return tuple(rule.among)[:2]
         case studies.Pair():
             return (-30.0, 31.5)
         case studies.Texts():
@@ -115,9 +115,8 @@ def test_coordinates_in_double_precision_come_back_to_the_bit(scene):
 
 def test_what_a_scene_cannot_hold_is_reported(car, monkeypatch):
     study = scenes.study()
-    schedule = pe.Schedule(candidates=3, decay=0.7)
-    other = pe.Study(study.rig, study.vehicle, search=pe.Search(schedule=schedule, method="random"))
-    assert load(other) == ["optimize.decay"]
+    search = pe.Search(tolerance=pe.Tolerance(0.01, draws=6))
+    assert load(pe.Study(study.rig, study.vehicle, search=search)) == ["optimize.tolerance.draws"]
 
 
 def test_a_model_of_the_study_s_own_is_refused_and_nothing_is_changed(car):

@@ -21,8 +21,6 @@ NOT_OF_A_SCENE = {
     *(f"study.axes.{key}" for key in ("forward", "rotation_deg", "scale", "up")),
     "study.faces",
     "study.mesh_notes",  # its vehicle is no file
-    *(f"study.search.schedule.{key}" for key in ("decay", "floor_m", "floor_rad")),
-    *(f"study.search.schedule.{key}" for key in ("reach_m", "reach_rad")),
     "study.search.tolerance.draws",
     "study.selection.max_of_kind",
     "study.prior.boxes",  # needs a file of labels

@@ -9,7 +9,7 @@ import pe_core as pe
 from pe_core import metric
 from pe_core.prior import HIGHWAY_CLASSES, ROAD_CLASSES
 from pe_core.scoring.score import ZONES
-from pe_core.search import PAPER_FREE
+from pe_core.search import PAPER_FREE, search_space
 
 # Ma, Liu and Li, Perception Entropy, ICRA 2021. Table I has the channels, steps and vertical fields
 # of view; where in it the channels lie is from Hesai's manuals, ranges are the makers'.
@@ -169,10 +169,10 @@ def test_the_paper_s_space():
 def test_algorithm_1_s_schedule():
     """From 1 m and 30 deg by halves to 0.01 m and 0.3 deg; 1000 placements each; x, y, z, pitch."""
     schedule = pe.Schedule()
-    assert (schedule.candidates, schedule.decay) == (1000, 0.5)
-    assert (schedule.reach_m, schedule.floor_m) == (1.0, 0.01)
-    assert math.degrees(schedule.reach_rad) == pytest.approx(30.0, abs=1e-12)
-    assert math.degrees(schedule.floor_rad) == pytest.approx(0.3, abs=1e-12)
+    assert (schedule.candidates, search_space.DECAY) == (1000, 0.5)
+    assert (search_space.REACH_M, search_space.FLOOR_M) == (1.0, 0.01)
+    assert math.degrees(search_space.REACH_RAD) == pytest.approx(30.0, abs=1e-12)
+    assert math.degrees(search_space.FLOOR_RAD) == pytest.approx(0.3, abs=1e-12)
     assert schedule.scales == [1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125, 0.015625]
     assert PAPER_FREE == ("x", "y", "z", "pitch")
     assert pe.Search().samples == 65_536 and pe.Search().seed == 0

@@ -26,7 +26,7 @@ def study(tolerance=OFF, samples=1024, failures=False):
     search = pe.Search(
         free={"roof": ("z",), "front": ("z",)},
         samples=samples,
-        schedule=pe.Schedule(2, floor_m=0.3, floor_rad=1.0),
+        schedule=pe.Schedule(1),
         method="random",
         tolerance=tolerance,
     )

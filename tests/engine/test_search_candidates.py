@@ -19,7 +19,6 @@ ROUNDED_M, ROUNDED_DEG = 0.5e-5, 0.5e-4
 """What rounding a placement to 0.01 mm and 0.0001 degrees may add."""
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 WIDE = dict.fromkeys("xyz", (-50.0, 50.0)) | dict.fromkeys(("roll", "pitch", "yaw"), (-9.0, 9.0))
-ONE_ROUND = {"floor_m": 0.5, "floor_rad": math.radians(15.0)}
 START = (0.3, -0.2, 1.9), (2.0, -3.0, 40.0)
 
 
@@ -96,7 +95,7 @@ def test_coordinates_are_clipped_to_their_bounds():
     """x from 0.3 may go 0.25 m up and 0.5 m down: of the first round's draws within 1 m, 3 in 8
     are held at the upper bound and 2 in 8 at the lower."""
     bounds = {"a": {"x": (-0.2, 0.55), "pitch": (math.radians(-9.0), math.radians(12.0))}}
-    recorder, _ = searched(flat, bounds, candidates=4000, **ONE_ROUND)
+    recorder, _ = searched(flat, bounds, candidates=4000)
     x = np.array(recorder.of("a")["x"])
     assert (x.min(), x.max()) == (-0.2, 0.55)
     first = x[1:4001]
@@ -144,64 +143,12 @@ def test_candidates_are_counted_exactly(candidates):
     assert gains == pytest.approx([1.0 / (7 * candidates)] * (7 * candidates))
 
 
-def test_metres_and_radians_are_each_read_from_the_schedule():
-    recorder, steps = searched(
-        flat,
-        {"a": WIDE},
-        candidates=400,
-        reach_m=0.2,
-        reach_rad=math.radians(4.0),
-        floor_m=0.1,
-        floor_rad=math.radians(1.0),
-        decay=0.25,
-    )
-    # one round of 0.2 m and 4 deg: a quarter of that, 0.05 m and 1 deg, is at or below the floors
-    assert [len(some) for some in rounds_of(steps)] == [400]
+def test_metres_and_radians_have_each_their_reach():
+    recorder, steps = searched(flat, {"a": WIDE}, candidates=400)
     for axis in AXES:
-        (some,) = moves(recorder, steps, "a", axis)
-        width = 0.2 if axis in "xyz" else 4.0
-        assert 0.97 * width < np.abs(some).max() <= width + ROUNDED_DEG
-
-
-THIRD = 1.0 / 3.0
-
-
-@pytest.mark.parametrize(
-    ("metres", "degrees", "decay", "scales"),
-    [
-        # 8 m to 0.01 m by halves: 8 / 2^9 = 0.0156, 8 / 2^10 = 0.0078: ten rounds
-        ((8.0, 0.01), (0.1, 0.3), 0.5, [2.0**-k for k in range(10)]),
-        # 30 deg to 0.01 deg: 30 / 2^11 = 0.0146, 30 / 2^12 = 0.0073: twelve
-        ((0.005, 0.01), (30.0, 0.01), 0.5, [2.0**-k for k in range(12)]),
-        # at the floor it ends: 1, 1/2, and 1/4 is no more
-        ((1.0, 0.25), (0.1, 0.3), 0.5, [1.0, 0.5]),
-        # both floors have to be reached: 1 m is there after one round, 9 deg after three
-        ((1.0, 0.5), (9.0, 0.5), THIRD, [1.0, THIRD, THIRD * THIRD]),
-        # nothing to search
-        ((0.01, 0.01), (0.3, 0.3), 0.5, []),
-    ],
-)
-def test_the_neighbourhood_shrinks_until_both_floors_are_reached(metres, degrees, decay, scales):
-    schedule = pe.Schedule(
-        reach_m=metres[0],
-        floor_m=metres[1],
-        reach_rad=math.radians(degrees[0]),
-        floor_rad=math.radians(degrees[1]),
-        decay=decay,
-    )
-    assert schedule.scales == scales
-
-
-@pytest.mark.parametrize("unit", ["m", "rad"])
-def test_a_schedule_has_a_thousand_rounds_at_most(unit):
-    """From 1 to exp(-10) by factors of exp(-0.01): 1000. The other one is at its floor."""
-    other = {"m": "rad", "rad": "m"}[unit]
-    sizes = {f"reach_{unit}": 1.0, f"floor_{unit}": math.exp(-10.0)}
-    sizes |= {f"reach_{other}": 0.5, f"floor_{other}": 0.5}
-    assert len(pe.Schedule(decay=math.exp(-0.010005), **sizes).scales) == 1000  # 999.5, rounded up
-    with pytest.raises(pe.InputError, match=r"decay: expected at most 1000 rounds .*, found 1001"):
-        pe.Schedule(decay=math.exp(-0.009995), **sizes)
-    assert pe.Schedule(reach_m=0.0, reach_rad=0.0).scales == []
+        first = moves(recorder, steps, "a", axis)[0]
+        width = 1.0 if axis in "xyz" else 30.0
+        assert 0.97 * width < np.abs(first).max() <= width + ROUNDED_DEG
 
 
 def test_where_a_sensor_may_go_when_nobody_says():

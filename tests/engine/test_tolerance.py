@@ -149,7 +149,7 @@ def test_failures_are_the_loss_of_each_sensor():
 def test_a_search_minimises_what_placements_are_worth_mounted_off(evaluator):
     bounds = {"roof": {"z": (1.5, 2.2), "pitch": (-0.2, 0.2)}}
     objective = RobustObjective(evaluator, BOTH)
-    schedule = pe.Schedule(4, floor_m=0.4, floor_rad=0.2)
+    schedule = pe.Schedule(4)
     *_, last = pe.optimize(objective, rig(), pe.SearchSpace(bounds), 1, schedule, method="random")
     assert last.entropy == objective.entropy(last.best) < objective.entropy(rig())
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pe_core as pe
 import pe_tools as pt
+from pe_core.motion import stories
 from pe_tools.page import ReportContext, keyed_contexts
 from pe_tools.page.sections.traceability import (
     CURVE_SOURCES,
@@ -13,6 +14,8 @@ from pe_tools.page.sections.traceability import (
     VALIDITY_PAGE,
     assumptions,
 )
+from pe_tools.page.sections.visibility import drive_by
+from tests.engine.processes import finished
 from tests.review.conftest import html_of, small_study
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -39,3 +42,9 @@ def test_the_verdict_on_validity_is_that_of_its_page():
     text = " ".join((ROOT / VALIDITY_PAGE).read_text("utf-8").split())
     assert VALIDITY in text and "16 placements in two papers" in text
     assert "detectors find more at a better score" in text and "a blind sector" in text  # OWN_STUDY
+
+
+def test_stories_say_of_how_many_frames_a_track_is_confirmed():
+    study = dataclasses.replace(small_study(), stories=(stories()["crossing_child"],))
+    html = html_of(drive_by, ReportContext("car", finished(pt.ScoreJob(study))))
+    assert "3 of the last 5 frames" in html

@@ -4,6 +4,7 @@ import numpy as np
 
 from ..domains import METRE, RADIAN, SHARE
 from ..parametrization import Candidate
+from ..search_space import REACH_M, REACH_RAD
 from .method import Given, Question, QuestionStream, sampled_candidate
 
 SHARE_REACH = 0.5
@@ -32,8 +33,7 @@ def _neighbour(
     center: Candidate, given: Given, scale: float, rng: np.random.Generator
 ) -> Candidate | None:
     """Return a feasible candidate in the neighbourhood; None when none was sampled."""
-    schedule = given.schedule
-    reach = {METRE: schedule.reach_m, RADIAN: schedule.reach_rad, SHARE: SHARE_REACH}
+    reach = {METRE: REACH_M, RADIAN: REACH_RAD, SHARE: SHARE_REACH}
 
     def sample() -> list[float]:
         values = zip(given.parametrization.variables, center.vector, strict=True)

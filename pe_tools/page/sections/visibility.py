@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import starmap
 from typing import Any
 
-from pe_core.motion import DriveBy
+from pe_core.motion import WINDOW, DriveBy
 from pe_core.scoring.sight import reach_text
 
 from ... import graphics
@@ -84,7 +84,9 @@ def drive_by(context: ReportContext) -> dict[str, Any] | None:
     ]
     shown = {each.story.name: _film_of(each, films) for each in driven}
     data = {each.story.name: strip_data(each.story) for each in driven}
-    return {"driven": driven, "strips": strips, "films": shown, "data": data} if driven else None
+    if not driven:
+        return None
+    return {"driven": driven, "strips": strips, "films": shown, "data": data, "window": WINDOW}
 
 
 def _film_of(driven: DriveBy, films: Sequence[bytes]) -> str:

@@ -192,6 +192,18 @@ def draw_add(layout: UILayout, name: str, text: str = "") -> None:
     button.rows = name
 
 
+def section(
+    layout: UILayout, name: str, title: str, *, count: str = "", closed: bool = True
+) -> UILayout | None:
+    """Draw the header of a part of a panel that folds; return the layout inside, None where it is
+    closed. `name` is what Blender remembers it by; `count` is drawn at the end of the header."""
+    header, inside = layout.panel(f"PE_{name}", default_closed=closed)
+    draw_label(header, title)
+    if count:
+        header.label(text=count, translate=False)
+    return inside
+
+
 def draw_stale_mark(layout: UILayout, settings: PropertyGroup) -> None:
     """Draw a mark above figures of a result that is out of date."""
     if settings.result_stale:
@@ -306,7 +318,7 @@ def draw_warning(layout: UILayout, context: Context, warning: advice.Advice) -> 
     row.label(text="", icon="BLANK1")
     if warning.part:
         part = row.operator(
-            "pe.select_part", text=warning.part, icon="RESTRICT_SELECT_OFF", translate=False
+            "pe.select_object", text=warning.part, icon="RESTRICT_SELECT_OFF", translate=False
         )
         part.name = warning.part
     if warning.fix in FIX_LABELS:

@@ -350,7 +350,7 @@ def test_rename_duplicate_and_remove_what_others_are_tied_to(car):
     assert {s.name for s in scenes.study().rig} == {"roof"}
     bpy.ops.pe.toggle_sensor(name="another")
     assert {s.name for s in scenes.study().rig} == {"roof", "another"}
-    assert bpy.ops.pe.select_part(name="cabin") == {"FINISHED"} and bpy.context.object == cabin
+    assert bpy.ops.pe.select_object(name="cabin") == {"FINISHED"} and bpy.context.object == cabin
     car.frame_set(20)
     bpy.ops.pe.add_row(rows="states")
     car.frame_set(1)

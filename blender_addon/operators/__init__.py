@@ -29,7 +29,6 @@ from .add_sensor import Offer, models, offers
 from .declared import CLASSES
 from .fix_warnings import FIX_LABELS
 from .imports import menu_of_rigs
-from .panel_rows import reference_label
 from .requirements import ShownVerdict, shown_verdicts
 from .rows import MENU_LENGTH, ROW_LISTS
 

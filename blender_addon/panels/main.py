@@ -80,7 +80,7 @@ def draw_add(layout: UILayout, settings: PropertyGroup) -> None:
     row.operator("pe.where", icon="SURFACE_DATA").model = offer.usual
     if settings.id_data.name in where_map.maps:
         row.operator("pe.take_place", icon="EYEDROPPER")
-        row.operator("pe.dismiss_places", text="", icon="X")
+        row.operator("pe.dismiss", text="", icon="X").answer = "PLACES"
 
 
 @panel("Export and Import", simple=True)

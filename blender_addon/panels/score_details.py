@@ -81,7 +81,7 @@ def draw_answer(layout: UILayout, context: Context) -> None:
     lines = row.column(align=True)
     for line in found.lines:
         draw_sentence(lines, context, line, beside_px=BUTTON_PX)
-    row.operator("pe.dismiss_place", text="", icon="X", emboss=False)
+    row.operator("pe.dismiss", text="", icon="X", emboss=False).answer = "QUERY"
     if found.place is not None and not found.place.in_vehicle:
         draw_offers(box, context, point=found.point)
 

@@ -100,8 +100,7 @@ def draw_bounds(layout: UILayout, settings: PropertyGroup) -> None:
         row = column.row(align=True)
         bounded = settings.bounded[index]
         text = label if bounded else f"Bound {label}"
-        button = row.operator("pe.bound_axis", text=text, depress=bounded, translate=False)
-        button.axis = index
+        row.prop(settings, "bounded", index=index, text=text, translate=False, toggle=True)
         if bounded:
             pair = row.row(align=True)
             pair.alert = settings.bounds_low[index] >= settings.bounds_high[index]

@@ -5,8 +5,8 @@ from typing import Any
 import bpy
 from bpy.types import Context, Object, PropertyGroup, UILayout
 
-from ..choices import BEFORE_MOVE, RANDOM
-from ..operators import menu_of_rigs, reference_label
+from ..choices import RANDOM
+from ..operators import menu_of_rigs
 from ..panel_text import draw_label
 from .layout import (
     columns,
@@ -58,8 +58,7 @@ def variants(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
     if settings.live.on:
         name, menu = columns(layout, 0.4)
         draw_label(name, "Compare Live With")
-        label = reference_label(context.scene)
-        menu.menu(PE_MT_live_against.bl_idname, text=label, translate=False)
+        menu.prop(settings.live, "reference", text="")
     draw_text(layout)
     layout.prop(selected(settings), "note", text="", icon="TEXT", placeholder="Note")
 
@@ -85,22 +84,6 @@ class PE_MT_known_rigs(bpy.types.Menu):
                 self.layout.separator()
         self.layout.separator()
         self.layout.operator("pe.show_places", icon="EMPTY_ARROWS")
-
-
-class PE_MT_live_against(bpy.types.Menu):
-    """What the live score is compared with"""
-
-    bl_idname = "PE_MT_live_against"
-    bl_label = "Compare Live With"
-
-    def draw(self, context: Context) -> None:
-        layout = self.layout
-        layout.operator("pe.live_against", text="Before the Last Move").key = BEFORE_MOVE
-        variants = context.scene.perception_entropy.variants
-        if variants:
-            layout.separator()
-        for row in variants:
-            layout.operator("pe.live_against", text=row.name, translate=False).key = row.key
 
 
 def selected(settings: PropertyGroup) -> PropertyGroup:
@@ -175,4 +158,4 @@ def draw_front(layout: UILayout, settings: PropertyGroup, context: Context) -> N
     draw_sentence(column, context, front.told)
 
 
-CLASSES = (PE_MT_known_rigs, PE_MT_live_against, variants_rows, variants, selection)
+CLASSES = (PE_MT_known_rigs, variants_rows, variants, selection)

@@ -9,7 +9,7 @@ import pytest
 from blender_addon import bridge, diagnostics, location_query, panels
 from blender_addon.engine import advice
 from tests.addon import scenes
-from tests.addon.layouts import Layout, Window, drawn
+from tests.addon.layouts import Window, drawn
 
 
 def told(scene):
@@ -94,7 +94,7 @@ def test_a_place_is_asked_as_the_engine_does(car):
     bpy.context.view_layer.update()
     location_query.query_again()
     assert location_query.answer(car).lines != expected.text
-    bpy.ops.pe.dismiss_place()
+    bpy.ops.pe.dismiss(answer="QUERY")
     assert location_query.answer(car) is None
 
 

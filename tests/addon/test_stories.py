@@ -185,7 +185,7 @@ def test_mount_bound_tie_and_search(car, tmp_path):
     bpy.ops.pe.mirror_sensor(name="roof", linked=True)
     eye = scenes.add_sensor("eye", "Camera 60 deg", location=(1.9, 0.0, 0.8))
     eye.perception_entropy.free = (True, *(False,) * 5)
-    bpy.ops.pe.bound_axis(axis=0)
+    eye.perception_entropy.bounded[0] = True
     car.cursor.location = (0.0, 0.0, 3.0)
     bpy.ops.pe.add_no_go()
     bpy.context.view_layer.update()

@@ -104,7 +104,7 @@ def searched(camera: Camera) -> None:
     """The search at work; its result beside the start."""
     stage = camera.stage
     stage.do(BUDGET.format(240))
-    stage.do("bpy.ops.pe.dismiss_place()")
+    stage.do("bpy.ops.pe.dismiss(answer='QUERY')")
     to_top(camera)
     stage.do("bpy.ops.pe.save_variant()")
     camera.caption = "Optimize: the best placement so far is shown while it searches. Esc keeps it."

@@ -30,7 +30,7 @@ from .declared import CLASSES
 from .fix_warnings import FIX_LABELS
 from .imports import menu_of_rigs
 from .requirements import ShownVerdict, shown_verdicts
-from .rows import MENU_LENGTH, ROW_LISTS
+from .rows import ROW_LISTS
 
 
 def register() -> None:

@@ -9,7 +9,6 @@ from ..panel_text import draw_label
 from ..sensor_kinds import kind_label, row_of
 from .layout import (
     columns,
-    draw_add,
     draw_declared,
     draw_list,
     draw_properties,
@@ -73,7 +72,7 @@ def advanced(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
             draw_sentence(layout, context, sensor.problem, icon="ERROR")
     draw_label(layout, "AP = a ln m - c ln R + b")
     if not settings.curves:
-        draw_add(layout, "curves", "Own AP Curves")
+        layout.operator("pe.add_row", text="Own AP Curves").rows = "curves"
     for curve in settings.curves:
         layout.prop(curve, "own", text=kind_label(curve.name), translate=False)
         numbers = layout.row(align=True)

@@ -10,7 +10,6 @@ from ..operators import menu_of_rigs
 from ..panel_text import draw_label
 from .layout import (
     columns,
-    draw_add,
     draw_declared,
     draw_list,
     draw_properties,
@@ -139,7 +138,7 @@ def draw_options(layout: UILayout, obj: Object) -> None:
         row = column.row(align=True)
         for name in ("mass", "power", "data_rate"):
             row.prop(option, name)
-    draw_add(column, "options", "Add Model")
+    column.operator("pe.add_row", text="Add Model", icon="ADD").rows = "options"
     if settings.options:
         layout.prop(settings, "may_be_left_out")
 

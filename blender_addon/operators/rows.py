@@ -143,8 +143,7 @@ def _about_adding(about: str, chosen: Any) -> str:
     found = ROW_LISTS.get(chosen.rows)
     if found is None or found.add is None:
         return about
-    tips = [tip for name, _, tip in found.kinds_now() if name == chosen.kind and tip]
-    return "\n\n".join([str(found.add.__doc__), *tips])
+    return str(found.add.__doc__)  # Blender adds the kind's own tooltip
 
 
 def _about_row(verb: str) -> Callable[[str, Any], str]:

@@ -14,6 +14,7 @@ from . import (
     look_through,
     mounts,
     named_places,
+    panel_rows,
     place_sensor,
     placement,
     running_job,

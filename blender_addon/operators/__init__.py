@@ -14,6 +14,7 @@ from . import (
     look_through,
     mounts,
     named_places,
+    panel_rows,
     place_sensor,
     placement,
     running_job,
@@ -29,9 +30,8 @@ from .add_sensor import Offer, models, offers
 from .declared import CLASSES
 from .fix_warnings import FIX_LABELS
 from .imports import menu_of_rigs
-from .panel_rows import reference_label
 from .requirements import ShownVerdict, shown_verdicts
-from .rows import MENU_LENGTH, ROW_LISTS
+from .rows import ROW_LISTS
 
 
 def register() -> None:

@@ -67,11 +67,11 @@ def compare_task(context: bpy.types.Context) -> Task | None:
 
 
 COMPARE = JobRow(
-    "compare_variants",
-    "Compare",
-    "Compare all variants: entropy and coverage by zone and class, blind ground, reach.\n\n"
+    name="compare_variants",
+    label="Compare",
+    about="Compare all variants: entropy and coverage by zone and class, blind ground, reach.\n\n"
     "Variants without a valid score are scored first",
-    compare_task,
+    read=compare_task,
     unless=unless_variants,
     show=lambda: bpy.ops.pe.show_comparison("INVOKE_DEFAULT"),
 ).declare()

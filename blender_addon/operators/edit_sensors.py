@@ -13,27 +13,13 @@ NAME = StringProperty(name="Name", description="Name of the sensor; the active o
 
 
 @operator(
-    "Select Sensor",
-    mode="Sensors are selected in Object Mode",
+    "Select Object",
+    mode="Objects are selected in Object Mode",
     options=INTERNAL | {"UNDO"},
-    name=StringProperty(name="Name", description="Name of the sensor's object"),
+    name=StringProperty(name="Name", description="Name of the sensor, part or test body"),
 )
-def select_sensor(context: bpy.types.Context, name: str) -> None:
-    """Select this sensor and show its settings"""
-    obj = context.view_layer.objects.get(name)
-    if obj is None or not obj.visible_get():
-        raise Refused(f"{name} is hidden")
-    select_only(context, obj)
-
-
-@operator(
-    "Select Part",
-    mode="Parts are selected in Object Mode",
-    options=INTERNAL | {"UNDO"},
-    name=StringProperty(name="Name", description="Name of the part's object"),
-)
-def select_part(context: bpy.types.Context, name: str) -> None:
-    """Select this part of the vehicle"""
+def select_object(context: bpy.types.Context, name: str) -> None:
+    """Select this object and show its settings"""
     # The name of a linked part includes its file; the view layer's objects have no such key.
     matches = (o for o in context.view_layer.objects if name in (o.name_full, o.name))
     obj = next(matches, None)

@@ -18,35 +18,23 @@ from .. import bridge, own_jobs
 from ..engine import app, exchange, jobs, outputs, page
 from ..own_jobs import ExportJob, WrittenFiles
 from . import running_job
-from .declared import INTERNAL, Answer, OperatorResult, Stopped, Told, chosen_file, operator
-from .jobs import JobRow, Task
-
-_waiting: list[ExportJob] = []
-"""The job of a file dialog, until its own operator begins."""
+from .declared import Answer, OperatorResult, Stopped, Told, chosen_file, operator
+from .jobs import JobRow, Task, begin
 
 
 def _take_waiting(_context: bpy.types.Context) -> Task:
-    return Task(_waiting.pop(), lambda _scene, written: told_of(written), "written")
+    job = EXPORT.asked.pop("job")
+    return Task(job, lambda _scene, written: told_of(written), "written")
 
 
 STOPPED = "Stopped: nothing was written"
-RUN_EXPORT = JobRow(
-    "run_export",
-    "Export",
-    "Run the export of a file dialog",
-    _take_waiting,
-    unless=lambda _context: None if _waiting else "",
-    unfinished=STOPPED,
-    options=INTERNAL,
-    of_scene=False,
-).declare()
+EXPORT = JobRow(read=_take_waiting, unfinished=STOPPED, of_scene=False)
 
 
 def run(job: ExportJob, asked_in_window: bool) -> Answer:
     """Run an export: at once, or after a file dialog in an operator of its own."""
     if asked_in_window:
-        _waiting[:] = [job]
-        bpy.ops.pe.run_export("INVOKE_DEFAULT")
+        begin(EXPORT, job=job)
         return None
     for _ in job:
         pass
@@ -242,4 +230,4 @@ def export_rig(
 
 def unregister() -> None:
     """Drop the waiting job."""
-    _waiting.clear()
+    EXPORT.asked.clear()

@@ -53,14 +53,14 @@ class Task(NamedTuple):
     place: Callable[[bpy.types.Scene, Any], Callable[[], None]] | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class JobRow:
-    """A job that a button starts."""
+    """A job that a button starts, or another operator (`begin`)."""
 
-    name: str
-    label: str
-    about: str
-    """Of the operator: its name, what its button says, and its tooltip."""
+    name: str = ""
+    label: str = ""
+    about: str = ""
+    """Of its own operator: name, what the button says, and tooltip."""
     read: Callable[[bpy.types.Context], Task | None]
     """Reads the scene and makes the task; None where there is nothing to do."""
     unless: Unless | None = None
@@ -197,6 +197,16 @@ class JobOperator(OperatorMixin):
         return {"FINISHED"}
 
 
+@declared
+class PE_OT_run_job(JobOperator, bpy.types.Operator):
+    """Run the job that another operator has asked for"""
+
+    bl_idname = "pe.run_job"
+    bl_label = "Run Job"
+    bl_options = {"INTERNAL"}
+    row = JobRow(read=lambda _context: None, unless=lambda _context: "")  # until one is asked for
+
+
 Make = Callable[[bpy.types.Scene, pe.Study, bridge.Fingerprint], Task]
 
 
@@ -223,8 +233,10 @@ def of_study(make: Make) -> Callable[[bpy.types.Context], Task]:
 def begin(job: JobRow, **asked: Any) -> OperatorResult:
     """Start a job from another operator, which raises what it reports; `job.asked` is set."""
     job.asked.update(asked)
+    if running_job.current is None:  # else the operator says why it is not possible
+        PE_OT_run_job.row = job
     try:
-        return getattr(bpy.ops.pe, job.name)("INVOKE_DEFAULT")
+        return bpy.ops.pe.run_job("INVOKE_DEFAULT")
     except RuntimeError as error:
         raise Failed(str(error).strip().removeprefix("Error: ")) from None
 
@@ -366,26 +378,30 @@ def check_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprin
 
 
 SCORE = JobRow(
-    "score", "Score", "Score the sensors at their present poses", of_study(score_task)
+    name="score",
+    label="Score",
+    about="Score the sensors at their present poses",
+    read=of_study(score_task),
 ).declare()
 OPTIMIZE = JobRow(
-    "optimize",
-    "Optimize",
-    "Search for better poses of the sensors, and move them there",
-    of_study(optimize_task),
+    name="optimize",
+    label="Optimize",
+    about="Search for better poses of the sensors, and move them there",
+    read=of_study(optimize_task),
 ).declare()
 FRONT = JobRow(
-    "choose_sensors",
-    "Choose Sensors",
-    "Find the Pareto front of price and entropy or of the chosen objectives; kept as variants",
-    of_study(front_task),
+    name="choose_sensors",
+    label="Choose Sensors",
+    about="Find the Pareto front of price and entropy or of the chosen objectives; "
+    "kept as variants",
+    read=of_study(front_task),
     unfinished="Stopped before a design was complete: nothing was changed",
 ).declare()
 CHECK = JobRow(
-    "check_requirements",
-    "Check Requirements",
-    "Hold the rig to all requirements that are switched on, with mounting errors and margins",
-    of_study(check_task),
+    name="check_requirements",
+    label="Check Requirements",
+    about="Hold the rig to all requirements that are switched on, with mounting errors and margins",
+    read=of_study(check_task),
 ).declare()
 
 

@@ -1,18 +1,16 @@
-"""Operators on rows of the panel: focus, own sensors, AP curves, models, axles, view settings."""
+"""Rows of focus, own sensors, AP curves and models; axles, and colours of the ground map."""
 
-import math
 from itertools import count
 
 import bpy
-from bpy.props import IntProperty
 
 from .. import bridge, vehicle_cache
 from ..choices import REGION_ITEMS
-from ..engine import catalog, kinds, pe, search
+from ..engine import catalog, kinds, pe
 from ..properties import DEFAULT_REGION
 from ..sensor_kinds import own_kinds
 from ..view_settings import FITTED
-from .declared import INTERNAL, Refused, operator
+from .declared import Refused, operator
 from .rows import new_row, row_list
 
 REGION_KINDS = tuple(sorted(REGION_ITEMS, key=lambda item: item[0] != DEFAULT_REGION))
@@ -73,26 +71,6 @@ row_list("curves", "AP curve", add=add_curves)
 row_list("options", "model", add=add_option, owner=of_sensor)
 
 
-BOUND_REACH = (0.5, 10.0)
-"""New bounds are this far to either side of a sensor's value: metres, degrees."""
-
-
-@operator(
-    "Bound Axis",
-    axis=IntProperty(name="Axis", description="x, y, z, roll, pitch, yaw", min=0, max=5),
-)
-def bound_axis(context: bpy.types.Context, axis: int) -> None:
-    """Set bounds of the search around this sensor's value; press again to remove them"""
-    settings = context.active_object.perception_entropy
-    pose = bridge.pose_of(context.active_object, context.evaluated_depsgraph_get())
-    settings.bounded[axis] = not settings.bounded[axis]
-    if settings.bounded[axis]:
-        middle = (*pose.position, *map(math.degrees, pose.rpy))[axis]
-        reach = BOUND_REACH[search.AXES[axis] not in ("x", "y", "z")]
-        settings.bounds_low[axis] = round(middle - reach, 3)
-        settings.bounds_high[axis] = round(middle + reach, 3)
-
-
 @operator("From Wheels")
 def guess_axles(context: bpy.types.Context) -> str:
     """Find the axles from the vehicle's parts with wheel, tire or tyre in their names"""
@@ -111,23 +89,3 @@ def fit_colors(context: bpy.types.Context) -> None:
     view = context.scene.perception_entropy.view
     view.ground_range = FITTED
     view.ground_fits += 1
-
-
-@operator(
-    "Compare Live With",
-    options=INTERNAL,
-    key=IntProperty(
-        name="Key",
-        description="0: the sensors before the last move; otherwise the key of a variant",
-        options={"HIDDEN", "SKIP_SAVE"},
-    ),
-)
-def live_against(context: bpy.types.Context, key: int) -> None:
-    """Compare the live score with this reference"""
-    context.scene.perception_entropy.live.against = key
-
-
-def reference_label(scene: bpy.types.Scene) -> str:
-    """Return what the live score of a scene is compared with, for the panel."""
-    names = {row.key: row.name for row in scene.perception_entropy.variants}
-    return names.get(scene.perception_entropy.live.against, "Before the Last Move")

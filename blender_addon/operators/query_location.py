@@ -7,7 +7,7 @@ import bpy
 from bpy.props import FloatVectorProperty
 
 from .. import bridge, location_query
-from .declared import INTERNAL, OperatorResult, operator, report
+from .declared import OperatorResult, operator, report
 from .surface_pose import ViewUnderMouse, ray_of, view_under
 
 OFF_SURFACE_M = 0.05
@@ -69,12 +69,6 @@ def ask_place(context: bpy.types.Context, point: Iterable[float]) -> None:
     """Click a location: which sensors see it, and what occludes it from the others"""
     x, y, z = point
     location_query.query(context.scene, context.evaluated_depsgraph_get(), (x, y, z))
-
-
-@operator("Dismiss", options=INTERNAL)
-def dismiss_place(context: bpy.types.Context) -> None:
-    """Remove the answer and its mark"""
-    location_query.discard(context.scene)
 
 
 def location_under(

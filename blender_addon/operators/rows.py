@@ -118,20 +118,32 @@ def _kinds(chosen: Any, _context: object) -> list[Kind]:
 
 
 def _choose(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
-    """Ask for the kind where there are many and none is given."""
-    found = ROW_LISTS.get(self.rows)
-    if found is None or len(found.kinds_now()) <= MENU_LENGTH:
+    """Ask for the kind where rows are of several kinds and none is given."""
+    # The menu is made here: one that the panel draws of the property would not know the list.
+    rows = self.rows
+    found = ROW_LISTS.get(rows)
+    kinds = () if found is None else found.kinds_now()
+    if not kinds or self.properties.is_property_set("kind"):
         return self.execute(context)
-    context.window_manager.invoke_search_popup(self)
-    return {"RUNNING_MODAL"}
+    if len(kinds) > MENU_LENGTH:
+        context.window_manager.invoke_search_popup(self)
+        return {"RUNNING_MODAL"}
+
+    def draw(menu: Any, _context: bpy.types.Context) -> None:
+        for name, label, _ in kinds:
+            entry = menu.layout.operator("pe.add_row", text=label, translate=False)
+            entry.rows = rows
+            entry.kind = name
+
+    context.window_manager.popup_menu(draw)
+    return {"INTERFACE"}
 
 
 def _about_adding(about: str, chosen: Any) -> str:
     found = ROW_LISTS.get(chosen.rows)
     if found is None or found.add is None:
         return about
-    tips = [tip for name, _, tip in found.kinds_now() if name == chosen.kind and tip]
-    return "\n\n".join([str(found.add.__doc__), *tips])
+    return str(found.add.__doc__)  # Blender adds the kind's own tooltip
 
 
 def _about_row(verb: str) -> Callable[[str, Any], str]:

@@ -52,14 +52,7 @@ def _task(_scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) 
     return Task(jobs.SuggestJob(study, **given), finish, "found")
 
 
-SUGGESTIONS = JobRow(
-    "find_suggestions",
-    "Find What Would Mend It",
-    "Look for the smallest move of a sensor, and for one more sensor",
-    of_study(_task),
-    unfinished="Stopped before anything was found",
-    options=INTERNAL,
-).declare()
+SUGGESTIONS = JobRow(read=of_study(_task), unfinished="Stopped before anything was found")
 
 
 @operator(

@@ -6,7 +6,7 @@ from typing import Any
 import bpy
 from bpy.props import EnumProperty, IntProperty
 
-from .. import bridge, where_map
+from .. import bridge, location_query, where_map
 from ..engine import catalog, jobs, kinds, pe
 from ..housing import measured_housing
 from ..sensor_kinds import mount_for
@@ -15,6 +15,9 @@ from .declared import INTERNAL, OperatorResult, Refused, operator
 from .jobs import JobRow, Task, begin, of_study
 from .query_location import clicking
 
+QUERY = "QUERY"
+PLACES_SHOWN = "PLACES"
+"""Answers that can be dismissed."""
 WHOLE = "WHOLE"  # What is covered, where it is no mount
 NEAR_M = 0.4  # A click takes the nearest place, if it is no farther away than this
 _listed: list[tuple[str, str, str]] = []
@@ -97,14 +100,10 @@ def _task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -
 
 
 PLACES = JobRow(
-    "score_places",
-    "Score Places",
-    "Score one more sensor all over the body",
-    of_study(_task),
+    read=of_study(_task),
     unfinished="Stopped before a place was scored",
     show=lambda: bpy.ops.pe.take_place("INVOKE_DEFAULT"),
-    options=INTERNAL,
-).declare()
+)
 
 
 @operator(
@@ -139,7 +138,21 @@ def put(context: bpy.types.Context, sensor: pe.Sensor) -> bpy.types.Object:
     return obj
 
 
-@operator("Dismiss", options=INTERNAL)
-def dismiss_places(context: bpy.types.Context) -> None:
-    """Remove the colours from the body"""
-    where_map.store(context.scene.name, None)
+@operator(
+    "Dismiss",
+    options=INTERNAL,
+    answer=EnumProperty(
+        name="Answer",
+        description="What is removed",
+        items=(
+            (QUERY, "Location", "The answer of Query Location, and its mark"),
+            (PLACES_SHOWN, "Places", "The colours of Where? on the body"),
+        ),
+    ),
+)
+def dismiss(context: bpy.types.Context, answer: str) -> None:
+    """Remove this answer from the 3D view"""
+    if answer == QUERY:
+        location_query.discard(context.scene)
+    else:
+        where_map.store(context.scene.name, None)

@@ -25,7 +25,6 @@ CLASSES = (
     *sensor_lists.CLASSES,
     *main.CLASSES,
     *selected_object.CLASSES,
-    *main.WARNING_CLASSES,
     *score_details.CLASSES,
     *variant_panels.CLASSES,
     *scoring_panels.CLASSES,

@@ -15,6 +15,7 @@ from .layout import (
     draw_sentence,
     panel,
     row_list,
+    section,
 )
 
 
@@ -34,7 +35,19 @@ def weathers_rows(_context: Context, layout: UILayout, _settings: Any, item: Any
 
 @panel("Conditions", bl_ui_units_x=17)
 def conditions(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
-    """States of the vehicle and weathers in which the rig is scored, too"""
+    """States and weathers in which the rig is scored, too; and stories of what moves"""
+    for name, title, draw in SECTIONS:
+        inside = section(layout, name, title, count=str(len(getattr(settings, name)) or ""))
+        if inside is not None:
+            draw(inside, settings, context)
+    if settings.states or settings.weathers:
+        draw_properties(layout, settings, ("search_conditions",))
+    for line in settings.result.conditions if settings.has_result else ():
+        draw_sentence(layout, context, line)
+
+
+def draw_states(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
+    """Draw the states of the vehicle, and the button that shows it as drawn."""
     draw_list(layout, states_rows, settings, "states")
     if settings.states:
         row = layout.row(align=True)
@@ -43,13 +56,13 @@ def conditions(layout: UILayout, settings: PropertyGroup, context: Context) -> N
         draw_properties(layout, settings, ("drawn_frame",))
     else:
         draw_sentence(layout, context, "Pose the vehicle at another frame, then add the frame")
+
+
+def draw_weathers(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
+    """Draw the weathers, and the settings of the selected one."""
     draw_list(layout, weathers_rows, settings, "weathers")
     if settings.weather_index < len(settings.weathers):
         draw_declared(layout, settings.weathers[settings.weather_index], "weather")
-    if settings.states or settings.weathers:
-        draw_properties(layout, settings, ("search_conditions",))
-    for line in settings.result.conditions if settings.has_result else ():
-        draw_sentence(layout, context, line)
 
 
 @row_list("PE_UL_stories")
@@ -68,9 +81,8 @@ def stories_rows(_context: Context, layout: UILayout, _settings: Any, item: Any)
         draw_label(margin, "never" if seconds is None else f"{seconds:+.1f} s")
 
 
-@panel("Seen in Time", bl_ui_units_x=17)
-def seen_in_time(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
-    """Stories of what moves: when a track is confirmed, and whether the vehicle stops in time"""
+def draw_stories(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
+    """Draw the stories: when a track is confirmed, and whether the vehicle stops in time."""
     draw_list(layout, stories_rows, settings, "stories")
     if settings.stories:
         row = layout.row(align=True)
@@ -116,4 +128,10 @@ def _draw_row(layout: UILayout, item: PropertyGroup) -> UILayout:
     return row
 
 
-CLASSES = (states_rows, weathers_rows, conditions, stories_rows, seen_in_time)
+SECTIONS = (
+    ("states", "States", draw_states),
+    ("weathers", "Weathers", draw_weathers),
+    ("stories", "Seen in Time", draw_stories),
+)
+"""By the property of the rows: title, and what draws the list."""
+CLASSES = (states_rows, weathers_rows, stories_rows, conditions)

@@ -12,7 +12,7 @@ from bpy.types import Context, PropertyGroup, UILayout
 
 from ..engine import advice
 from ..live import SAME, SENSE_ICONS
-from ..operators import FIX_LABELS, MENU_LENGTH, ROW_LISTS
+from ..operators import FIX_LABELS, ROW_LISTS
 from ..panel_text import draw_label, is_simple, worded
 from ..properties import INDEX_OF, ROWS, DeclaredRow, declared_rows
 from ..sensor_cache import sensors as listed_sensors
@@ -168,10 +168,9 @@ def draw_list(
     row.template_list(kind.__name__, "", settings, name, settings, INDEX_OF[name], rows=height)
     column = row.column(align=True)
     rows = ROW_LISTS[name]
-    if rows.add is None:
-        column.operator(add, text="", icon="ADD")
-    else:
-        draw_add(column, name)
+    button = column.operator(add, text="", icon="ADD")
+    if rows.add is not None:
+        button.rows = name
     below = column.column(align=True)
     below.enabled = getattr(settings, INDEX_OF[name]) < len(getattr(settings, name))
     below.operator("pe.remove_row", text="", icon="REMOVE").rows = name
@@ -183,13 +182,18 @@ def draw_list(
         move.step = step
 
 
-def draw_add(layout: UILayout, name: str, text: str = "") -> None:
-    """Draw the button that adds a row to a list: a menu of kinds, where these are few."""
-    if 0 < len(ROW_LISTS[name].kinds_now()) <= MENU_LENGTH:
-        button = layout.operator_menu_enum("pe.add_row", "kind", text=text, icon="ADD")
-    else:
-        button = layout.operator("pe.add_row", text=text, icon="ADD")
-    button.rows = name
+def section(
+    layout: UILayout, name: str, title: str, *, count: str = "", closed: bool = True
+) -> UILayout | None:
+    """Draw the header of a part of a panel that folds; return the layout inside, None where it is
+    closed. `name` is what Blender remembers it by; `count` is drawn at the end of the header."""
+    header, inside = layout.panel(f"PE_{name}", default_closed=closed)
+    draw_label(header, title)
+    if count:
+        at_end = header.row()
+        at_end.alignment = "RIGHT"
+        at_end.label(text=count, translate=False)
+    return inside
 
 
 def draw_stale_mark(layout: UILayout, settings: PropertyGroup) -> None:
@@ -306,7 +310,7 @@ def draw_warning(layout: UILayout, context: Context, warning: advice.Advice) -> 
     row.label(text="", icon="BLANK1")
     if warning.part:
         part = row.operator(
-            "pe.select_part", text=warning.part, icon="RESTRICT_SELECT_OFF", translate=False
+            "pe.select_object", text=warning.part, icon="RESTRICT_SELECT_OFF", translate=False
         )
         part.name = warning.part
     if warning.fix in FIX_LABELS:

@@ -9,7 +9,7 @@ from ..operators import offers, running_job
 from ..panel_text import draw_label, typeset
 from ..sensor_cache import sensors as listed_sensors
 from .dashboard import draw_dashboard
-from .layout import columns, draw_declared, draw_sentence, draw_warning, is_empty, panel
+from .layout import columns, draw_declared, draw_sentence, is_empty, panel
 from .sensor_lists import draw_sensors
 
 
@@ -66,27 +66,6 @@ def main(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     layout.row().prop(settings, "panels", expand=True)
 
 
-@panel(
-    "Warnings",
-    closed=False,
-    simple=True,
-    poll=lambda context: bool(context.scene.perception_entropy.result_warnings),
-    count="result_warnings",
-)
-def warnings(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
-    """What is wrong with the vehicle and the sensors, and buttons that correct it"""
-    found = settings.result_warnings
-    for subject in dict.fromkeys([None, *(warning.subject for warning in found)]):
-        own = [warning for warning in found if warning.subject == subject]
-        if not own:
-            continue
-        box = layout.box().column(align=True)
-        if subject:
-            box.operator("pe.select_sensor", text=subject, translate=False).name = subject
-        for warning in own:
-            draw_warning(box, context, warning)
-
-
 def draw_add(layout: UILayout, settings: PropertyGroup) -> None:
     """Draw a row: the kind; add its usual sensor, place it by pointing, or search all."""
     by_kind = {offer.kind: offer for offer in offers()}  # a plugin's kind may have gone
@@ -101,7 +80,7 @@ def draw_add(layout: UILayout, settings: PropertyGroup) -> None:
     row.operator("pe.where", icon="SURFACE_DATA").model = offer.usual
     if settings.id_data.name in where_map.maps:
         row.operator("pe.take_place", icon="EYEDROPPER")
-        row.operator("pe.dismiss_places", text="", icon="X")
+        row.operator("pe.dismiss", text="", icon="X").answer = "PLACES"
 
 
 @panel("Export and Import", simple=True)
@@ -137,7 +116,5 @@ def draw_import(menu: bpy.types.Menu, _context: Context) -> None:
 
 
 CLASSES = (main,)
-
-WARNING_CLASSES = (warnings,)  # below the selected sensor's panel, which they would move
 
 EXPORT_CLASSES = (export,)  # below all other panels

@@ -6,7 +6,6 @@ import bpy
 from bpy.types import Context, PropertyGroup
 
 from ..engine import graphics
-from ..operators import reference_label
 from ..panel_text import draw_label
 from ..properties import VIEW_ROWS
 from .layout import is_asked, panel
@@ -57,7 +56,7 @@ def _draw_colors(layout: UILayout, settings: OverlaySettings) -> None:
     row = layout.row(align=True)
     row.prop(view, "ground_difference", toggle=True)
     if view.ground_difference:
-        row.menu("PE_MT_live_against", text=reference_label(settings.id_data), translate=False)
+        row.prop(settings.live, "reference", text="")
 
 
 def _indented(layout: UILayout) -> UILayout:

@@ -16,6 +16,7 @@ from .layout import (
     draw_sentence,
     panel,
     row_list,
+    section,
 )
 from .score_details import draw_offers
 
@@ -107,7 +108,7 @@ def _draw_source(layout: UILayout, context: Context, check: str, source: str) ->
 def _draw_zone(layout: UILayout, row: PropertyGroup) -> None:
     """Draw the zone: its shape with its places, and what is less often changed."""
     draw_properties(layout, row, ("shape", "zone", "step"))
-    inside = _section(layout, "PE_requirement_planes", "Height and Planes")
+    inside = section(layout, "requirement_planes", "Height and Planes")
     if inside is not None:
         draw_declared(inside, row, "requirement.zone", ("step",))
 
@@ -118,15 +119,9 @@ def _draw_criterion(layout: UILayout, row: PropertyGroup) -> None:
         draw_properties(layout, row, OF_GROUND)
         return
     draw_properties(layout, row, ("sensors", "kinds"))
-    inside = _section(layout, "PE_requirement_criterion", "Points, Pixels, Shares")
+    inside = section(layout, "requirement_criterion", "Points, Pixels, Shares")
     if inside is not None:
         draw_declared(inside, row, "requirement.criterion", ("sensors", "kinds", *OF_GROUND))
-
-
-def _section(layout: UILayout, name: str, title: str) -> UILayout | None:
-    header, inside = layout.panel(name, default_closed=True)
-    draw_label(header, title)
-    return inside
 
 
 CLASSES = (requirements_rows, requirements)

@@ -1,35 +1,74 @@
-"""Details of a score: explanations, and figures by zone and class."""
+"""Details of a score: warnings, explanations, and figures by sensor, zone and class."""
+
+from collections.abc import Iterable
 
 from bpy.types import Context, PropertyGroup, UILayout
 
 from .. import body_query, location_query, where_map
 from ..diagnostics import explanation
 from ..operators import suggest
-from ..panel_text import draw_label
-from .layout import BUTTON_PX, draw_sentence, draw_stale_mark, panel
+from ..panel_text import draw_label, is_simple
+from .layout import BUTTON_PX, draw_sentence, draw_stale_mark, draw_warning, panel, section
 from .sensor_lists import draw_sensor_table
 
 
-@panel("Explain", closed=False, simple=True)
+def _warning_count(layout: UILayout, context: Context) -> None:
+    count = len(context.scene.perception_entropy.result_warnings)
+    if count:
+        draw_label(layout, f"{count} warning{'s' if count > 1 else ''}", "ERROR")
+
+
+@panel("Explain", closed=False, simple=True, preset=_warning_count)
 def explain(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
-    """The score in words, and the answer of a location query"""
-    settings = context.scene.perception_entropy
+    """Warnings with buttons that fix them; the score in words, by sensor, zone and class"""
+    # Below the selected sensor's panel: warnings come late, and would move what is below them.
+    draw_warnings(layout, settings, context)
     layout.operator("pe.ask_place", icon="EYEDROPPER")
     draw_answer(layout, context)
-    if (words := explanation(context.scene)) is not None:
-        lines = layout.column(align=True)
-        lines.active = not settings.result_stale
-        for line in words.rig:
-            draw_sentence(lines, context, line[:1].upper() + line[1:], icon="DOT")
-        if words.search:
-            lines = layout.box().column(align=True)
-            lines.active = not settings.result_stale
-            draw_label(lines, "How sure the search is")
-        for line in words.search:
-            text = line.strip()
-            draw_sentence(lines, context, text[:1].upper() + text[1:], icon="DOT")
+    draw_words(layout, settings, context)
     if settings.has_result:
         draw_sensor_table(layout, context)
+    if settings.has_result and settings.result.parts and not is_simple(context.scene):
+        inside = section(layout, "breakdown", "By Zone and Class")
+        if inside is not None:
+            draw_breakdown(inside, settings)
+
+
+def draw_warnings(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
+    """Draw a box of warnings for the vehicle and for each sensor that has some."""
+    found = settings.result_warnings
+    for subject in dict.fromkeys([None, *(warning.subject for warning in found)]):
+        own = [warning for warning in found if warning.subject == subject]
+        if not own:
+            continue
+        box = layout.box().column(align=True)
+        if subject:
+            box.operator("pe.select_object", text=subject, translate=False).name = subject
+        for warning in own:
+            draw_warning(box, context, warning)
+
+
+def draw_words(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
+    """Draw the score, and how sure a search is, as sentences."""
+    words = explanation(context.scene)
+    if words is None:
+        return
+    draw_lines(layout, settings, context, words.rig)
+    if words.search:
+        box = layout.box()
+        draw_label(box, "How sure the search is")
+        draw_lines(box, settings, context, words.search)
+
+
+def draw_lines(
+    layout: UILayout, settings: PropertyGroup, context: Context, lines: Iterable[str]
+) -> None:
+    """Draw a list of sentences on the last result, grey where it is out of date."""
+    column = layout.column(align=True)
+    column.active = not settings.result_stale
+    for line in lines:
+        text = line.strip()
+        draw_sentence(column, context, text[:1].upper() + text[1:], icon="DOT")
 
 
 def draw_answer(layout: UILayout, context: Context) -> None:
@@ -42,7 +81,7 @@ def draw_answer(layout: UILayout, context: Context) -> None:
     lines = row.column(align=True)
     for line in found.lines:
         draw_sentence(lines, context, line, beside_px=BUTTON_PX)
-    row.operator("pe.dismiss_place", text="", icon="X", emboss=False)
+    row.operator("pe.dismiss", text="", icon="X", emboss=False).answer = "QUERY"
     if found.place is not None and not found.place.in_vehicle:
         draw_offers(box, context, point=found.point)
 
@@ -77,7 +116,9 @@ def surroundings(layout: UILayout, settings: PropertyGroup, context: Context) ->
     layout.prop(settings.view, "show_birds_eye", toggle=True, icon="AXIS_TOP")
     for name, body in body_query.seen(context.scene).items():
         column = layout.column(align=True)
-        chosen = column.operator("pe.select_part", text=f"{name}: {body.summary}", translate=False)
+        chosen = column.operator(
+            "pe.select_object", text=f"{name}: {body.summary}", translate=False
+        )
         chosen.name = name
         if context.active_object == context.scene.objects[name]:
             for each in body.seeing:
@@ -87,14 +128,8 @@ def surroundings(layout: UILayout, settings: PropertyGroup, context: Context) ->
 PART_SHARE, NARROW_PART_SHARE = 0.5, 0.3
 
 
-def _breakdown_is_shown(context: Context) -> bool:
-    settings = context.scene.perception_entropy
-    return settings.has_result and len(settings.result.parts) > 0
-
-
-@panel("By Zone and Class", poll=_breakdown_is_shown)
-def breakdown(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
-    """Entropy and coverage by zone of the ground, and by class of object"""
+def draw_breakdown(layout: UILayout, settings: PropertyGroup) -> None:
+    """Draw entropy and coverage by zone of the ground, and by class of object."""
     result = settings.result
     draw_stale_mark(layout, settings)
     column = layout.box().column(align=True)
@@ -125,4 +160,4 @@ def draw_part_row(layout: UILayout, name: str, *figures: str, header: bool = Fal
         draw_label(cell, text)
 
 
-CLASSES = (explain, surroundings, breakdown)
+CLASSES = (explain, surroundings)

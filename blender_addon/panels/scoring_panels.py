@@ -9,28 +9,14 @@ from ..panel_text import draw_label
 from ..sensor_kinds import kind_label, row_of
 from .layout import (
     columns,
-    draw_add,
     draw_declared,
     draw_list,
     draw_properties,
     draw_sentence,
     panel,
     row_list,
+    section,
 )
-
-
-@panel("Prior", chosen="prior")
-def prior(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
-    """Where objects are expected"""
-    boxes = ("boxes",) if settings.prior == FROM_BOXES else ()
-    draw_properties(layout, settings, ("prior", *boxes))
-
-
-@panel("Targets", chosen="targets")
-def targets(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
-    """What is scored: voxels, or objects of the prior"""
-    draw_declared(layout, settings, "metric")
-    draw_declared(layout, settings, "ap" if settings.targets == OBJECTS else "")
 
 
 @row_list("PE_UL_focus")
@@ -44,9 +30,20 @@ def focus_rows(_context: Context, layout: UILayout, _settings: Any, item: Any) -
     factor.label(text=f"× {item.factor:g}", translate=False)
 
 
-@panel("Focus", count="focus")
-def focus(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
-    """Regions and classes with a weight of their own"""
+@panel("Scoring", chosen="prior")
+def scoring(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
+    """Where objects are expected, which targets are scored, and what counts more"""
+    boxes = ("boxes",) if settings.prior == FROM_BOXES else ()
+    draw_properties(layout, settings, ("prior", *boxes))
+    draw_declared(layout, settings, "metric")
+    draw_declared(layout, settings, "ap" if settings.targets == OBJECTS else "")
+    inside = section(layout, "focus", "Focus", count=str(len(settings.focus) or ""))
+    if inside is not None:
+        draw_focus(inside, settings)
+
+
+def draw_focus(layout: UILayout, settings: PropertyGroup) -> None:
+    """Draw the regions and classes with a weight of their own."""
     draw_list(layout, focus_rows, settings, "focus")
     if settings.focus_index < len(settings.focus):
         focus = settings.focus[settings.focus_index]
@@ -75,7 +72,7 @@ def advanced(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
             draw_sentence(layout, context, sensor.problem, icon="ERROR")
     draw_label(layout, "AP = a ln m - c ln R + b")
     if not settings.curves:
-        draw_add(layout, "curves", "Own AP Curves")
+        layout.operator("pe.add_row", text="Own AP Curves").rows = "curves"
     for curve in settings.curves:
         layout.prop(curve, "own", text=kind_label(curve.name), translate=False)
         numbers = layout.row(align=True)
@@ -88,6 +85,6 @@ def advanced(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
     draw_declared(column, settings, "vehicle")
 
 
-CLASSES = (prior, targets, focus_rows, focus)
+CLASSES = (focus_rows, scoring)
 ADVANCED_CLASSES = (own_sensors_rows, advanced)
 """These come last in the tab."""

@@ -6,7 +6,15 @@ from bpy.types import Context, PropertyGroup, UILayout
 
 from ..choices import BY_GROUP, BY_PARTS, EXPECTED_AP, OBJECTS, ON_SLOTS, RANDOM
 from ..live import built_lines
-from .layout import draw_declared, draw_list, draw_properties, draw_sentence, panel, row_list
+from .layout import (
+    draw_declared,
+    draw_list,
+    draw_properties,
+    draw_sentence,
+    panel,
+    row_list,
+    section,
+)
 from .variant_panels import draw_front
 
 ICONS = {BY_PARTS: "OBJECT_DATA", BY_GROUP: "WPAINT_HLT"}
@@ -30,6 +38,9 @@ def search(layout: UILayout, settings: PropertyGroup, _context: Context) -> None
         names = ("scenes", "ap_model") if by_ap else ("search_samples",)
         draw_properties(layout, settings, names)
     draw_declared(layout, settings, "search", ELSEWHERE)
+    inside = section(layout, "mounts", "Mounts", count=str(len(settings.mounts) or ""))
+    if inside is not None:
+        draw_mounts(inside, settings)
 
 
 @row_list("PE_UL_mounts")
@@ -39,9 +50,8 @@ def mounts_rows(_context: Context, layout: UILayout, _settings: Any, item: Any) 
     layout.prop(item, "name", text="", emboss=False, icon=icon)
 
 
-@panel("Mounts", simple=True, parent="PE_PT_search", count="mounts")
-def mounts(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
-    """Where sensors may be mounted: surfaces of the vehicle, or slots of a rack"""
+def draw_mounts(layout: UILayout, settings: PropertyGroup) -> None:
+    """Draw where sensors may be mounted: surfaces of the vehicle, or slots of a rack."""
     draw_list(layout, mounts_rows, settings, "mounts")
     if settings.mount_index < len(settings.mounts):
         draw_mount(layout, settings.mounts[settings.mount_index])
@@ -102,4 +112,4 @@ def tolerance(layout: UILayout, settings: PropertyGroup, _context: Context) -> N
     row.prop(settings, "worst")
 
 
-CLASSES = (search, mounts_rows, mounts, constraints, tolerance, goals)
+CLASSES = (mounts_rows, search, constraints, tolerance, goals)

@@ -6,7 +6,7 @@ from ..bridge import holder_of, in_surroundings
 from ..panel_text import draw_label, is_simple
 from ..properties import AXIS_LABELS
 from ..sensor_kinds import has_view
-from .layout import draw_declared, draw_sentence, panel
+from .layout import draw_declared, draw_sentence, panel, section
 
 POSITION_LABELS = ("X", "Y", "Height")
 """Height is z of the optical centre over the ground."""
@@ -47,6 +47,15 @@ def sensor(layout: UILayout, _settings: PropertyGroup, context: Context) -> None
         part = row.row(align=True)
         part.active = index >= len("xyz") or not settings.mount
         part.prop(settings, "free", index=index, text=label, translate=False, toggle=True)
+    inside = section(layout, "bounds", "Bounds")
+    if inside is not None:
+        draw_bounds(inside, settings)
+    if is_simple(context.scene):
+        return
+    draw_own_curve(layout, settings)
+    inside = section(layout, "data_sheet", "Data Sheet")
+    if inside is not None:
+        draw_declared(inside, settings, "sensor")
 
 
 def draw_pose(layout: UILayout, context: Context, obj: Object) -> None:
@@ -82,10 +91,8 @@ def draw_mirror(layout: UILayout, obj: Object) -> None:
     linked.name, linked.linked = obj.name, True
 
 
-@panel("Bounds", simple=True, parent="PE_PT_sensor")
-def bounds(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
-    """Bounds of the search for this sensor; by default the vehicle's outline and 0.75 m above it"""
-    settings = context.active_object.perception_entropy
+def draw_bounds(layout: UILayout, settings: PropertyGroup) -> None:
+    """Draw the sensor's bounds in a search; by default the vehicle's outline and 0.75 m above."""
     column = layout.column(align=True)
     for index, label in enumerate(AXIS_LABELS):
         if not settings.free[index]:
@@ -93,8 +100,7 @@ def bounds(layout: UILayout, _settings: PropertyGroup, context: Context) -> None
         row = column.row(align=True)
         bounded = settings.bounded[index]
         text = label if bounded else f"Bound {label}"
-        button = row.operator("pe.bound_axis", text=text, depress=bounded, translate=False)
-        button.axis = index
+        row.prop(settings, "bounded", index=index, text=text, translate=False, toggle=True)
         if bounded:
             pair = row.row(align=True)
             pair.alert = settings.bounds_low[index] >= settings.bounds_high[index]
@@ -102,26 +108,18 @@ def bounds(layout: UILayout, _settings: PropertyGroup, context: Context) -> None
             pair.prop(settings, "bounds_high", index=index, text="")
 
 
-def _own_curve_header(layout: UILayout, context: Context) -> None:
-    layout.prop(context.active_object.perception_entropy, "own_curve", text="")
-
-
-@panel("Own AP Curve", parent="PE_PT_sensor", header=_own_curve_header)
-def own_curve(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
-    """Score this sensor with an AP curve of its own: another perception algorithm"""
-    settings = context.active_object.perception_entropy
-    column = layout.column()
+def draw_own_curve(layout: UILayout, settings: PropertyGroup) -> None:
+    """Draw the switch of the sensor's own AP curve, of another perception algorithm."""
+    header, inside = layout.panel("PE_own_curve", default_closed=True)
+    header.prop(settings, "own_curve")
+    if inside is None:
+        return
+    column = inside.column()
     column.active = settings.own_curve
     draw_label(column, "AP = a ln m - c ln R + b")
     row = column.row(align=True)
     for name in "abc":
         row.prop(settings, f"curve_{name}")
-
-
-@panel("Data Sheet", parent="PE_PT_sensor")
-def data_sheet(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
-    """What this sensor weighs, takes, sends and costs, where no sheet says so"""
-    draw_declared(layout, context.active_object.perception_entropy, "sensor")
 
 
 def _part_is_shown(context: Context) -> bool:
@@ -141,4 +139,4 @@ def part(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
     layout.prop(obj.perception_entropy, "cover_loss_db", text="Radar Cover [dB]")
 
 
-CLASSES = (sensor, own_curve, data_sheet, bounds, part)
+CLASSES = (sensor, part)

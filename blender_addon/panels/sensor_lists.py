@@ -95,7 +95,7 @@ def draw_name(
     text = fitted(context, obj.name, beside_px + (ICON_PX / share if warned else 0.0), share)
     active, icon = obj == context.active_object, "ERROR" if warned else "NONE"
     layout.operator(
-        "pe.select_sensor", text=text, depress=active, icon=icon, translate=False
+        "pe.select_object", text=text, depress=active, icon=icon, translate=False
     ).name = obj.name
 
 
@@ -157,7 +157,7 @@ def _draw_row(layout: UILayout, context: Context, obj: Object) -> None:
         draw_label(below, "Occluded by")
         for part, share in parts[:PARTS_NAMED]:
             text = f"{part} {share:.1%}"
-            below.operator("pe.select_part", text=text, translate=False).name = part
+            below.operator("pe.select_object", text=text, translate=False).name = part
 
 
 def _cells(layout: UILayout) -> tuple[UILayout, UILayout, UILayout]:

@@ -5,12 +5,11 @@ from typing import Any
 import bpy
 from bpy.types import Context, Object, PropertyGroup, UILayout
 
-from ..choices import BEFORE_MOVE, RANDOM
-from ..operators import menu_of_rigs, reference_label
+from ..choices import RANDOM
+from ..operators import menu_of_rigs
 from ..panel_text import draw_label
 from .layout import (
     columns,
-    draw_add,
     draw_declared,
     draw_list,
     draw_properties,
@@ -58,8 +57,7 @@ def variants(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
     if settings.live.on:
         name, menu = columns(layout, 0.4)
         draw_label(name, "Compare Live With")
-        label = reference_label(context.scene)
-        menu.menu(PE_MT_live_against.bl_idname, text=label, translate=False)
+        menu.prop(settings.live, "reference", text="")
     draw_text(layout)
     layout.prop(selected(settings), "note", text="", icon="TEXT", placeholder="Note")
 
@@ -85,22 +83,6 @@ class PE_MT_known_rigs(bpy.types.Menu):
                 self.layout.separator()
         self.layout.separator()
         self.layout.operator("pe.show_places", icon="EMPTY_ARROWS")
-
-
-class PE_MT_live_against(bpy.types.Menu):
-    """What the live score is compared with"""
-
-    bl_idname = "PE_MT_live_against"
-    bl_label = "Compare Live With"
-
-    def draw(self, context: Context) -> None:
-        layout = self.layout
-        layout.operator("pe.live_against", text="Before the Last Move").key = BEFORE_MOVE
-        variants = context.scene.perception_entropy.variants
-        if variants:
-            layout.separator()
-        for row in variants:
-            layout.operator("pe.live_against", text=row.name, translate=False).key = row.key
 
 
 def selected(settings: PropertyGroup) -> PropertyGroup:
@@ -156,7 +138,7 @@ def draw_options(layout: UILayout, obj: Object) -> None:
         row = column.row(align=True)
         for name in ("mass", "power", "data_rate"):
             row.prop(option, name)
-    draw_add(column, "options", "Add Model")
+    column.operator("pe.add_row", text="Add Model", icon="ADD").rows = "options"
     if settings.options:
         layout.prop(settings, "may_be_left_out")
 
@@ -175,4 +157,4 @@ def draw_front(layout: UILayout, settings: PropertyGroup, context: Context) -> N
     draw_sentence(column, context, front.told)
 
 
-CLASSES = (PE_MT_known_rigs, PE_MT_live_against, variants_rows, variants, selection)
+CLASSES = (PE_MT_known_rigs, variants_rows, variants, selection)

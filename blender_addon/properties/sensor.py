@@ -28,6 +28,9 @@ from .list_rows import PE_SensorOption
 
 AXIS_LABELS = ("X", "Y", "Z", "Roll", "Pitch", "Yaw")  # Of `search.AXES`
 
+REACH_M = 0.5
+REACH_DEG = 10.0
+"""New bounds are this far to either side of a sensor's value."""
 FREE_BY_DEFAULT = tuple(axis in search.PAPER_FREE for axis in search.AXES)
 
 
@@ -64,6 +67,17 @@ def _set_rotation(settings: PropertyGroup, value: Sequence[float]) -> None:
 
 def _stand(obj: Object, position: Sequence[float], degrees: Sequence[float]) -> None:
     bridge.place_at(obj, bridge.pose_from_numbers((*position, *degrees)))
+
+
+def bounds_begun(settings: PropertyGroup, _context: Context) -> None:
+    """Update callback of bounded axes: bounds that are empty begin round the sensor's value."""
+    pose = shown_pose(settings.id_data)
+    values = (*pose.position, *pose.rotation_deg)
+    for index, axis in enumerate(search.AXES):
+        if settings.bounded[index] and settings.bounds_low[index] == settings.bounds_high[index]:
+            reach = REACH_M if axis in search.POSITION_AXES else REACH_DEG
+            settings.bounds_low[index] = round(values[index] - reach, 3)
+            settings.bounds_high[index] = round(values[index] + reach, 3)
 
 
 class GroundPose:
@@ -155,6 +169,7 @@ class PE_ObjectSettings(GroundPose, CurveFields, SheetFields, PropertyGroup):
         "Bounded",
         "The axis has its own bounds in a search; otherwise those of the vehicle's outline",
         len(search.AXES),
+        update=bounds_begun,
     )
     bounds_low: numbers(
         "From",

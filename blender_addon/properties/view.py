@@ -4,10 +4,12 @@ from typing import Any
 
 from bpy.types import Context, PropertyGroup
 
+from ..choices import BEFORE_MOVE
 from ..engine import pe
 from ..view_settings import LiveSettings, ViewSettings
 from .callbacks import redraw, switched
 from .declared import group_of
+from .fields import menu
 
 
 def classes_of(_view: PropertyGroup, context: Context, _typed: str) -> list[str]:
@@ -33,5 +35,26 @@ class PE_ViewSettings(ViewFields, PropertyGroup):
 LiveFields: Any = group_of(LiveSettings, update=switched)
 
 
+_references: list[tuple[str, str, str, int]] = []
+"""What the menu lists: Blender reads the texts after the function that made them returned."""
+
+
+def references(live: PropertyGroup, _context: Context | None) -> list[tuple[str, str, str, int]]:
+    """Return what the live score may be compared with, as items of a menu: numbers are keys."""
+    variants = live.id_data.perception_entropy.variants
+    about = "Compare the live score with this reference"
+    first = (str(BEFORE_MOVE), "Before the Last Move", about, BEFORE_MOVE)
+    _references[:] = [first, *((str(row.key), row.name, about, row.key) for row in variants)]
+    return _references
+
+
 class PE_LiveSettings(LiveFields, PropertyGroup):
     """The live score of a scene."""
+
+    reference: menu(
+        "Compare Live With",
+        "What the live score and the difference of the ground map are compared with",
+        references,
+        get=lambda live: live.against,
+        set=lambda live, key: setattr(live, "against", key),
+    )

@@ -53,6 +53,10 @@ class Layout:
     def _inner(self, **_):
         return Layout(self.notes)
 
+    def panel(self, name, **_):
+        self.notes.append(("panel", name))
+        return self._inner(), self._inner()
+
     row = column = split = box = grid_flow = _inner
 
 

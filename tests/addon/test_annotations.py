@@ -92,5 +92,5 @@ def test_the_scene_marks_the_place_that_was_asked_about(two):
     bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0))
     shape = scenes.drawn(two)["place"][layers.WHOLE_RIG]
     assert shape.labels and shape.labels[0].place[:2] == pytest.approx((6.05, 3.05))
-    bpy.ops.pe.dismiss_place()
+    bpy.ops.pe.dismiss(answer="QUERY")
     assert "place" not in scenes.drawn(two)

@@ -9,7 +9,7 @@ import pytest
 from blender_addon import bridge, diagnostics, location_query, panels
 from blender_addon.engine import advice
 from tests.addon import scenes
-from tests.addon.layouts import Layout, Window, drawn
+from tests.addon.layouts import Window, drawn
 
 
 def told(scene):
@@ -94,7 +94,7 @@ def test_a_place_is_asked_as_the_engine_does(car):
     bpy.context.view_layer.update()
     location_query.query_again()
     assert location_query.answer(car).lines != expected.text
-    bpy.ops.pe.dismiss_place()
+    bpy.ops.pe.dismiss(answer="QUERY")
     assert location_query.answer(car) is None
 
 
@@ -162,10 +162,8 @@ def test_panels_show_words_warnings_and_the_place(car):
     bpy.ops.pe.score()
     bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0))
     window = Window(car, car.objects["roof"])
-    layout = drawn(panels.main.warnings, **vars(window))
-    assert "clear of the vehicle" in " ".join(layout.texts("label"))
-    explain = type("Explain", (), {"layout": (shown := Layout())})
-    panels.score_details.explain.draw(explain, window)
+    shown = drawn(panels.score_details.explain, **vars(window))
     text = " ".join(shown.texts("label"))
+    assert "clear of the vehicle" in text
     assert "of where objects are is seen" in text.replace("  ", " ")
     assert "Ask" not in text and "pe.ask_place" in shown.texts("operator")

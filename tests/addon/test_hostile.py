@@ -132,7 +132,7 @@ def test_names(small, tmp_path, what, kind):
     said = score_and_export(tmp_path)
     if kind in MUST_BE_REFUSED or what in ("model", "focus", "boxes"):
         assert all(said)
-    assert said_by(bpy.ops.pe.select_sensor, name=sensor.name) is None
+    assert said_by(bpy.ops.pe.select_object, name=sensor.name) is None
 
 
 @pytest.mark.filterwarnings("error")

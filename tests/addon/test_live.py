@@ -139,7 +139,7 @@ def test_a_variant_is_what_it_is_compared_with(live):
     bpy.ops.pe.save_variant()
     row = live.perception_entropy.variants[0]
     drag(live.objects["roof"], 0.3)
-    bpy.ops.pe.live_against(key=row.key)
+    live.perception_entropy.live.reference = str(row.key)
     assert told(reading(live).before) == told(start)
     assert reading(live).baseline.label == row.name
     bpy.ops.pe.update_variant()
@@ -295,5 +295,5 @@ def test_a_search_s_gain_is_that_of_its_result(live):
     text = readout_text.readout_of(reading(live), state.shown_score(live))
     assert (text.change, text.against) == ("0.250 better", "compared with before the search")
     assert bpy.ops.pe.save_variant() == {"FINISHED"}
-    bpy.ops.pe.live_against(key=live.perception_entropy.variants[0].key)
+    live.perception_entropy.live.reference = str(live.perception_entropy.variants[0].key)
     assert state.shown_score(live).before is None, "compared with something else"

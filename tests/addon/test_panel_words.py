@@ -6,7 +6,7 @@ import bpy
 
 from blender_addon import bridge
 from blender_addon.engine import advice
-from blender_addon.panels import layout, main
+from blender_addon.panels import CLASSES, layout, main
 from tests.addon import layouts
 
 SENTENCE = "the vehicle collection Sedan is excluded from the view layer: nothing of it is scored"
@@ -62,4 +62,5 @@ def test_score_live_and_optimize_stand_first_and_late_lines_have_their_room(car)
     assert {*counts, len(shown)} == {counts[0]}, "as many lines before, after and when it is stale"
     bridge.store_warnings(settings, [advice.Advice("roof", "clear", {"gap": 0.6})])
     assert len(drawn_of(car).texts("label")) == counts[0], "warnings move nothing"
-    assert main.warnings.poll(layouts.Window(car))
+    order = [cls.__name__ for cls in CLASSES]
+    assert order.index("PE_PT_sensor") < order.index("PE_PT_explain"), "nor the selected sensor"

@@ -12,7 +12,7 @@ from mathutils import Vector
 import pe_core as pe
 from blender_addon import film
 from blender_addon.operators.compare_variants import pending_variants
-from blender_addon.panels.condition_panel import seen_in_time
+from blender_addon.panels.condition_panel import conditions
 from pe_core.motion import RATE_HZ, stories
 from pe_tools import graphics
 from tests.addon import layouts, scenes
@@ -39,7 +39,7 @@ def test_a_story_is_added_checked_and_shown(car):
         told = json.loads(row.result)
         assert told.pop("signature")
         assert told == json.loads(json.dumps(study.drive_by(story).summary()))
-    drawn = layouts.drawn(seen_in_time, **vars(layouts.Window(car)))
+    drawn = layouts.drawn(conditions, **vars(layouts.Window(car)))
     assert ("prop", "speed_kmh") in drawn.notes and ("prop", "track_needed") in drawn.notes
     settings.stories[1].enabled = False
     assert len(scenes.study().stories) == 1

@@ -185,7 +185,7 @@ def test_mount_bound_tie_and_search(car, tmp_path):
     bpy.ops.pe.mirror_sensor(name="roof", linked=True)
     eye = scenes.add_sensor("eye", "Camera 60 deg", location=(1.9, 0.0, 0.8))
     eye.perception_entropy.free = (True, *(False,) * 5)
-    bpy.ops.pe.bound_axis(axis=0)
+    eye.perception_entropy.bounded[0] = True
     car.cursor.location = (0.0, 0.0, 3.0)
     bpy.ops.pe.add_no_go()
     bpy.context.view_layer.update()
@@ -350,7 +350,7 @@ def test_rename_duplicate_and_remove_what_others_are_tied_to(car):
     assert {s.name for s in scenes.study().rig} == {"roof"}
     bpy.ops.pe.toggle_sensor(name="another")
     assert {s.name for s in scenes.study().rig} == {"roof", "another"}
-    assert bpy.ops.pe.select_part(name="cabin") == {"FINISHED"} and bpy.context.object == cabin
+    assert bpy.ops.pe.select_object(name="cabin") == {"FINISHED"} and bpy.context.object == cabin
     car.frame_set(20)
     bpy.ops.pe.add_row(rows="states")
     car.frame_set(1)

@@ -64,7 +64,7 @@ def test_the_layer_colours_the_body_and_its_legend_has_units_and_reasons(car):
     assert reasons == [f"forbidden: {why} ({n})" for why, n in found.reasons().items()][:3]
     scenes.add_sensor("late", model=MODEL, location=(0.0, 0.0, 2.0))
     assert "before the last change" in scenes.drawn(car)["where"][""].legend.title
-    bpy.ops.pe.dismiss_places()
+    bpy.ops.pe.dismiss(answer="PLACES")
     assert "where" not in scenes.drawn(car)
 
 

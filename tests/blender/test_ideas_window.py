@@ -24,7 +24,7 @@ def test_save_move_come_back_ask_the_ground_and_mend_what_is_blind_by_clicks(win
     )
     assert not window.state["variant_changed"]
 
-    window.press("pe.select_sensor")
+    window.press("pe.select_object")
     window.point_at_view()
     window.key("g", "x", "1", "Return")
     window.wait_for(lambda: window.state["places"] != start, EFFECT_TIMEOUT_S, "the move")

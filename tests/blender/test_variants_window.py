@@ -11,7 +11,7 @@ VIEW = "bpy.context.window_manager.windows[0].scene.perception_entropy.view"
 
 def test_two_variants_in_one_view_and_side_by_side(window, screenshots):
     window.press_until("pe.save_variant", lambda: window.state["variants"], "a variant")
-    window.press("pe.select_sensor")
+    window.press("pe.select_object")
     window.point_at_view()
     start = window.state["places"]
     window.key("g", "x", "1", "Return")

@@ -175,7 +175,7 @@ def asked(camera: Camera) -> None:
     stage.wait_until(ANSWER)
     stage.rest()
     camera.still("guide_ask")
-    stage.do(f"bpy.ops.pe.dismiss_place()\n{CLOSE}")
+    stage.do(f"bpy.ops.pe.dismiss(answer='QUERY')\n{CLOSE}")
 
 
 def optimized(camera: Camera) -> None:

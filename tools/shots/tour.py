@@ -25,7 +25,7 @@ def dragged(camera: Camera) -> None:
     """A LiDAR in the hand: the score and blind ground follow."""
     stage = camera.stage
     stage.do(f"{CLOSE}{SETTINGS}settings.live.on, settings.view.show_beams = True, False")
-    stage.press("pe.select_sensor")
+    stage.press("pe.select_object")
     settled(camera)
     camera.caption = "A car with one LiDAR. Within the red outline what is 0.5 m tall stays unseen."
     camera.frame(STILL_MS)
@@ -104,7 +104,7 @@ def searched(camera: Camera) -> None:
     """The search at work; its result beside the start."""
     stage = camera.stage
     stage.do(BUDGET.format(240))
-    stage.do("bpy.ops.pe.dismiss_place()")
+    stage.do("bpy.ops.pe.dismiss(answer='QUERY')")
     to_top(camera)
     stage.do("bpy.ops.pe.save_variant()")
     camera.caption = "Optimize: the best placement so far is shown while it searches. Esc keeps it."

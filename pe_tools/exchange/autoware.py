@@ -22,6 +22,7 @@ from pe_core.scene.vehicle_description import Reference
 from pe_tools.formats.yaml_text import KeyPath, YamlText, parse_yaml
 
 from . import foreign_values as foreign
+from .camera_info import info_files, info_name, read_info, with_info
 from .foreign_values import RPY, XYZ, Export, plain_number
 from .frames import (
     composed,
@@ -35,7 +36,6 @@ from .lens_pictures import alike
 from .merging import gone_lines, is_there, is_turned_so
 from .portable import ORIGIN, ForeignRig, MergeTarget, PortableRig, PortableSensor, merged_lines
 from .portable_kinds import CAMERA, LIDAR, RADAR
-from .ros import info_files, info_name, read_info, with_info
 from .sensor_names import said_kind
 
 BASE, KIT = "base_link", "sensor_kit_base_link"
@@ -68,49 +68,34 @@ class Kit:
     infos: Mapping[str, str]
 
 
-def kit_texts(folder: Path) -> dict[str, str]:
-    """Return the calibration texts of a kit by file name; the file of base_link comes first."""
-    file_names = sorted(path.name for path in folder.glob("*_calibration.yaml"))
-    units = [name for name in file_names if name not in (TO_KIT, IN_KIT)]
-    kit = [IN_KIT] if IN_KIT in file_names or not units else []
-    return {name: foreign.text_of(folder / name) for name in (TO_KIT, *kit, *units)}
-
-
-def _units(folder: Path, texts: Mapping[str, str]) -> tuple[dict[str, Unit], list[str]]:
+def _units(folder: Path) -> tuple[dict[str, Unit], list[str]]:
     """Return the parts of a kit by file name: the frames on base_link first, then its units. With
     messages on files that are not read. A unit is the sensor kit itself or one of several groups,
     each in a file UNIT_calibration.yaml. The kit aip_x2 of TIER IV, for example, has the units
     top_unit and front_unit. Files of other content are left out, unless nothing is left then."""
-    units = {TO_KIT: _unit(folder / TO_KIT, texts[TO_KIT], (BASE,))}
-    base = units[TO_KIT].frames
-    strays = _strays(folder, texts, base)
-    if strays and len(strays) == len(texts) - 1:
-        raise next(iter(strays.values()))
-    for file, text in texts.items():
-        if file != TO_KIT and file not in strays:
-            units[file] = _unit(folder / file, text, base)
-    return units, [f"{error.at(file)}; the file is not read" for file, error in strays.items()]
-
-
-def _strays(
-    folder: Path, texts: Mapping[str, str], parents: Collection[str]
-) -> dict[str, InputError]:
-    """Return the files that are no unit of the kit, and what they lack. The file of the kit itself
-    has to be one."""
-    strays = {}
-    for file, text in texts.items():
-        if file in (TO_KIT, IN_KIT):
-            continue
+    file_names = sorted(path.name for path in folder.glob("*_calibration.yaml"))
+    names = [name for name in file_names if name not in (TO_KIT, IN_KIT)]
+    if IN_KIT in file_names or not names:
+        names.insert(0, IN_KIT)
+    base = _unit(*_head(folder / TO_KIT, (BASE,)))
+    units, strays = {TO_KIT: base}, {}
+    for name in names:
         try:
-            _head(folder / file, text, parents)
+            head = _head(folder / name, base.frames)
         except InputError as error:
-            strays[file] = error
-    return strays
+            if name == IN_KIT:
+                raise
+            strays[name] = error
+        else:
+            units[name] = _unit(*head)
+    if len(units) == 1:
+        raise next(iter(strays.values()))
+    return units, [f"{error.at(name)}; the file is not read" for name, error in strays.items()]
 
 
-def _head(path: Path, text: str, parents: Collection[str]) -> tuple[YamlText, str]:
+def _head(path: Path, parents: Collection[str]) -> tuple[YamlText, str]:
     """Return a file of a kit, and the frame that it is about: one of `parents`."""
-    yaml = YamlText(str(path), text)
+    yaml = YamlText(str(path), foreign.text_of(path))
     if len(yaml.data) != 1:
         found = ", ".join(yaml.data) or "none"
         raise InputError(path, "file", "one frame, and others on it", found)
@@ -122,21 +107,14 @@ def _head(path: Path, text: str, parents: Collection[str]) -> tuple[YamlText, st
     raise InputError(path.parent / TO_KIT, BASE, parent, ", ".join(parents))
 
 
-def _unit(path: Path, text: str, parents: Collection[str]) -> Unit:
-    yaml, parent = _head(path, text, parents)
-    table = Table(yaml.data, str(path)).table(parent)
+def _unit(yaml: YamlText, parent: str) -> Unit:
+    table = Table(yaml.data, yaml.source).table(parent)
     frames = {}
     for name in table.names:
         row = table.table(name)
         position, angles = (foreign.named_numbers(row, keys) for keys in (XYZ, RPY))
-        frames[name] = foreign.pose_from(path, row.path, position, angles)
+        frames[name] = foreign.pose_from(yaml.source, row.path, position, angles)
     return Unit(yaml, parent, frames)
-
-
-def _models(unit: Unit) -> dict[str, str]:
-    """Return catalogue model names by frame, from the comments that `write` adds to frames."""
-    models = {frame: _model_in(text) for frame, (text, _) in _comments(unit).items()}
-    return {frame: model for frame, model in models.items() if model}
 
 
 def _model_in(text: str) -> str:
@@ -186,7 +164,7 @@ def read(path: Path) -> ForeignRig:
     of the frames in the files. `lifted` moves a pose from the base of the housing to the scan
     centre, once the model is known."""
     folder = path if path.is_dir() else path.parent
-    by_file, lines = _units(folder, kit_texts(folder))
+    by_file, lines = _units(folder)
     base, *units = by_file.values()
     poses = {
         name: composed(base.frames[unit.parent], pose)
@@ -195,12 +173,12 @@ def read(path: Path) -> ForeignRig:
     }
     parents = {unit.parent for unit in units}
     poses |= {name: pose for name, pose in base.frames.items() if name not in parents}
-    models = {frame: model for unit in (base, *units) for frame, model in _models(unit).items()}
     comments = {frame: both for unit in (base, *units) for frame, both in _comments(unit).items()}
     sensors = []
     for frame, pose in poses.items():
-        sensor = PortableSensor(frame, pose, _kind_of(frame), models.get(frame), entry=frame)
-        _, axes = comments.get(frame, ("", ""))
+        text, axes = comments.get(frame, ("", ""))
+        model = _model_in(text) or None
+        sensor = PortableSensor(frame, pose, _kind_of(frame), model, entry=frame)
         if sensor.kind == CAMERA and _is_optical_here(frame, pose, axes):
             sensor = turned_to_body(sensor)
         sensors.append(replace(sensor, name=frame.removesuffix(_suffix_of(frame))))

@@ -51,19 +51,9 @@ def write(sensors: PortableRig, into: MergeTarget | None) -> Export:
     more than `MAX_BEAMS` raise `InputError`."""
     beams = sum(s.scan.beam_count for s in sensors if s.scan is not None)
     require_at_most("osi", "sensors", beams, MAX_BEAMS, "beams, each of which is written")
-    figures = ((s.name, s.scan or s.field) for s in sensors)
-    ranges = {name: own.max_range for name, own in figures if own is not None}
     top: dict[str, Any] = {} if into is None else into.document
-    known_range = Message(top, FILE).figures.number("range") or 0.0
-    farthest = max([known_range, *ranges.values()])
-    if ranges:
-        top["range"] = farthest
-    in_file = [row for key in (*LISTS.values(), OTHER) for row in top.get(key, ())]
-    used_ids = {_id_of(Message(row, FILE)) for row in in_file}
-    free_ids = (number for number in count() if number not in used_ids)
-    new = [sensor for sensor in sensors if sensor.entry is None]
-    by_id = dict(zip(free_ids, new, strict=False))
-    ids = {sensor.name: number for number, sensor in by_id.items()}
+    lines = _write_range(top, sensors)
+    ids = _new_ids(top, sensors, () if into is None else into.gone)
 
     def fresh(sensor: PortableSensor) -> dict[str, Any]:
         return {"sensor_id": {"value": ids.get(sensor.name)}, **_row(sensor)}
@@ -76,13 +66,34 @@ def write(sensors: PortableRig, into: MergeTarget | None) -> Export:
         if rows or key in top:
             top[key] = rows
     text = json.dumps(top, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-    order = ", ".join(f"{number} {sensor.name}" for number, sensor in by_id.items())
-    lines = [f"OSI numbers sensors, it has no names: {order}"]
+    order = ", ".join(f"{number} {name}" for name, number in ids.items())
+    return {FILE: text.encode()}, [f"OSI numbers sensors, it has no names: {order}", *lines]
+
+
+def _write_range(top: dict[str, Any], sensors: PortableRig) -> list[str]:
+    """Write the range of all sensors, the farthest; return a message on those that are shorter."""
+    figures = ((sensor.name, sensor.scan or sensor.field) for sensor in sensors)
+    ranges = {name: own.max_range for name, own in figures if own is not None}
+    if not ranges:
+        return []
+    known = Message(top, FILE).figures.number("range") or 0.0
+    top["range"] = farthest = max([known, *ranges.values()])
     shorter = [f"{name} {reach:g} m" for name, reach in ranges.items() if reach != farthest]
-    if shorter:
-        left_out = f"left out: {', '.join(shorter)}"
-        lines.append(f"OSI has one range for all sensors, {farthest:g} m; {left_out}")
-    return {FILE: text.encode()}, lines
+    if not shorter:
+        return []
+    left_out = f"left out: {', '.join(shorter)}"
+    return [f"OSI has one range for all sensors, {farthest:g} m; {left_out}"]
+
+
+def _new_ids(top: dict[str, Any], sensors: PortableRig, gone: PortableRig) -> dict[str, int]:
+    """Return the ids of new sensors by name, around those that stay in the file."""
+    used = {
+        _id_of(Message(row, FILE)) for key in (*LISTS.values(), OTHER) for row in top.get(key, ())
+    }
+    used -= {_id_of(Message(sensor.entry, FILE)) for sensor in gone}
+    free = (number for number in count() if number not in used)
+    names = (sensor.name for sensor in sensors if sensor.entry is None)
+    return {name: number for name, number in zip(names, free, strict=False)}
 
 
 def _id_of(row: Message) -> int | None:

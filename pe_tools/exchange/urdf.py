@@ -9,14 +9,13 @@ from xml.etree.ElementTree import Element
 from pe_core.base.errors import InputError, plural, shown
 from pe_core.base.files import decode_text, read_bytes
 from pe_core.geometry.poses import Pose
-from pe_tools.formats.xml_text import parse_xml
+from pe_tools.formats.xml_text import parse_xml, without_comments
 
 from . import foreign_values as values
 from . import frames
 from .gazebo_sensors import OWN, LinkBlock, LinkEntry, read_sensors
 from .portable import ForeignRig, PortableSensor
 from .robot_links import LinkTree, SensorLink, has_mass, sensor_links, unread_lines
-from .ros import without_comments
 from .sdf import read_sdf
 
 XACRO = re.compile(r"<xacro:|\$\{|\$\((find|arg|eval|env|optenv|dirname|anon)\b")

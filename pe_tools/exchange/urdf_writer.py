@@ -31,6 +31,7 @@ FIGURES = {
 }
 """Elements of a camera or a LiDAR in a Gazebo sensor that describe the model, by kind."""
 HOLDERS = {CAMERA: (CAMERA,), LIDAR: (LIDAR, "ray")}  # Elements of a sensor that hold these
+SENSOR_LEVEL = 2  # Depth of a sensor in a robot: it is in an element of Gazebo
 INERTIA_KEYS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 MASS_KG, INERTIA = 0.01, 1e-5
 """Of every link [kg, kg m2]: Gazebo has none without (sdformat's issue 199), nor below 1e-5 kg."""
@@ -66,16 +67,20 @@ def write(sensors: PortableRig, into: MergeTarget | None) -> Export:
     return {FILE: text.encode()}, [*lines, *name_lines, *gazebo_lines]
 
 
-def _indent_from(robot: Element, first: int) -> None:
-    """Indent the children of a robot from number `first` on."""
-    if first == len(robot):
+def _indent_from(parent: Element, first: int, level: int = 0) -> None:
+    """Indent the children of an element, which is `level` deep, from number `first` on."""
+    outer = "\n" + "  " * level
+    inner = f"{outer}  "
+    if first == len(parent):
         return
-    for element in robot[first:]:
-        indent(element, level=1)
-        element.tail = "\n  "
+    for element in parent[first:]:
+        indent(element, level=level + 1)
+        element.tail = inner
     if first:
-        robot[first - 1].tail = "\n  "
-    robot[-1].tail = "\n"
+        parent[first - 1].tail = inner
+    else:
+        parent.text = inner
+    parent[-1].tail = outer
 
 
 def _link(robot: Element, name: str) -> None:
@@ -208,9 +213,13 @@ def _replace_figures(element: Element, sensor: PortableSensor) -> None:
         found = [h for tag in HOLDERS[kind] if (h := element.find(tag)) is not None]
         if not found:
             element.set("type", GAZEBO_KINDS[kind])
-        holder = found[0] if found else SubElement(element, kind)
+            found = [SubElement(element, kind)]
+            _indent_from(element, len(element) - 1, SENSOR_LEVEL)
+        holder = found[0]
     _remove(holder, [part for part in holder if part.tag in FIGURES[kind]])
+    first = len(holder)
     _write_figures(holder, sensor)
+    _indent_from(holder, first, SENSOR_LEVEL + 1)
 
 
 def _remove(tree: Element, elements: Iterable[Element]) -> None:

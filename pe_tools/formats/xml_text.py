@@ -1,10 +1,12 @@
 """XML, read without entity definitions and with limited depth, as hostile files abuse both."""
 
+import re
 from xml.etree.ElementTree import Element, TreeBuilder
 from xml.parsers import expat
 
 from pe_core.base.errors import InputError
 
+NO_LINE_END = re.compile(r"[^\n]")
 MAX_DEPTH = 100  # Maximum levels of elements; calibrations have fewer than ten
 
 
@@ -48,3 +50,14 @@ def parse_xml(source: str, data: bytes, *, comments: bool = False) -> Element:
     except (expat.ExpatError, AssertionError, ValueError, LookupError) as error:
         raise InputError(source, "file", "well-formed XML", error) from None
     return root
+
+
+def without_comments(text: str) -> str:
+    """Return XML with blanks in place of its comments, in one pass; an unclosed comment extends to
+    the end."""
+    first, *parts = text.split("<!--")
+    plain = [first]
+    for part in parts:
+        comment, end, after = part.partition("-->")
+        plain += [NO_LINE_END.sub(" ", f"<!--{comment}{end}"), after]
+    return "".join(plain)

@@ -19,7 +19,6 @@ from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused
 
 AXLE = pe.Reference(-1.31, 0.33)
-WITHIN = 1e-6
 PUCK = "Velodyne VLP-16 Puck"
 
 
@@ -36,51 +35,12 @@ MIXED = pe.Rig(
         sensor("up cam", "KITTI cam2", (0, 0, 2.0), (20, -90, 0)),
     ]
 )
-ONE_WAY = pe.Rig(
-    [
-        sensor("velodyne", PUCK, (0.1, 0.0, 1.73), (1, 2, 3)),
-        *(sensor(f"c{k}", "KITTI cam2", (0.5, -0.5 * k, 1.6), (0.3, 2.5, -0.4)) for k in range(3)),
-    ]
-)
-FEW_BEAMS = pe.Lidar("few beams", np.radians([-20, -7, 3]), 36, 80.0, np.radians([0, 2, 0]))
-FEW = pe.Rig([pe.Sensor("roof", FEW_BEAMS, MIXED["roof"].pose), MIXED["front cam"]])
-RIGS = {name: {"kitti": ONE_WAY, "osi": FEW}.get(name, MIXED) for name in RIG_FORMATS}
-CHOSEN = {
-    "autoware": {"side_left": PUCK, "roof": "Pandar64"},
-    "ros": {"front_cam": "Front 120 deg 8 MP", "side_left": PUCK},
-}
 
 
-def there_and_back(name, folder):
-    """A rig written in a format, and what is read of it."""
-    if name == "argoverse2":
-        pytest.importorskip("pyarrow", reason="of the extra argoverse")
-    rig = RIGS[name]
-    paths, _ = pt.export_rig(rig, name, folder, AXLE)
-    placed = rig["velodyne"].pose if name == "kitti" else None
-    file = folder if len(paths) > 1 else paths[0]
-    return rig, pt.import_rig(file, None, AXLE, CHOSEN.get(name), placed)
-
-
-@pytest.mark.parametrize("name", RIG_FORMATS)
-def test_a_rig_goes_out_and_comes_back_where_it_was(name, tmp_path):
-    rig, found = there_and_back(name, tmp_path)
-    assert len(found.rig) == len(rig)
-    for ours, theirs in zip(rig, found.rig, strict=True):
-        assert theirs.kind == ours.kind
-        assert np.abs(np.subtract(theirs.pose.position, ours.pose.position)).max() < WITHIN
-        turned = theirs.pose.ground_from_sensor - ours.pose.ground_from_sensor
-        assert np.abs(turned).max() < WITHIN
-
-
-def test_carla_brings_back_even_channels_and_says_what_it_cannot(tmp_path):
-    _, lines = rig_files(MIXED, "carla")
-    told = [line for line in lines if "spaces channels evenly" in line]
-    assert [line.split(":")[0] for line in told] == ["roof"], "a Pandar64's channels are uneven"
-    _, found = there_and_back("carla", tmp_path)
-    puck, model = found.rig["side_left"].model, MIXED["side left"].model
-    assert np.abs(puck.elevations - np.sort(model.elevations)).max() < 1e-9
-    assert puck.beam_count == model.beam_count and puck.max_range == model.max_range
+def test_uneven_channels_and_their_azimuths_are_told():
+    for name, told in (("carla", ["roof"]), ("urdf", ["roof"]), ("ros", [])):
+        _, lines = rig_files(MIXED, name, AXLE)
+        assert [s.split(":")[0] for s in lines if "spaces channels evenly" in s] == told
 
 
 def spawned(kind, name, **more):
@@ -114,16 +74,6 @@ def test_carla_s_ground_truth_and_spectator_are_no_sensors(tmp_path):
         "2 spectator sensors (rgb_view, Spectator)" in line
         and "1 camera.dvs sensor (events)" in line
     )
-
-
-@pytest.mark.parametrize("name", [n for n, row in RIG_FORMATS.items() if n != "argoverse2"])
-def test_a_folder_with_the_file_of_a_format_is_read(name, tmp_path):
-    rig = RIGS[name]
-    pt.export_rig(rig, name, tmp_path, AXLE)
-    placed = rig["velodyne"].pose if name == "kitti" else None
-    assert len(pt.import_rig(tmp_path, None, AXLE, CHOSEN.get(name), placed).rig) == len(rig)
-    again = pt.import_rig(tmp_path, name, AXLE, CHOSEN.get(name), placed)
-    assert len(again.rig) == len(rig)
 
 
 TABLE = """\
@@ -377,17 +327,6 @@ def test_what_a_format_cannot_hold_is_one_line():
         _, lines = rig_files(rig, name, AXLE)
         told = [each for each in lines if each.startswith("left out of ")]
         assert told == [f"left out of {row.title}: {LOST.get(name, NOTHING_BUT_POSES)}"]
-
-
-@pytest.mark.parametrize("name", ["csv", "urdf"])
-def test_ranges_and_fusion_groups_come_back(name, tmp_path):
-    (path,), _ = pt.export_rig(LOSSY, name, tmp_path / RIG_FORMATS[name].files[0])
-    found = pt.import_rig(path).rig
-    assert (found["eye"].model.min_range, found["eye"].model.max_range) == (0.3, 40.0)
-    assert (found["roof"].fusion, found["eye"].fusion) == ("top", None)
-    assert found["puck"].model.max_range == LOSSY["puck"].model.max_range
-    if name == "urdf":
-        assert (found["roof"].model.min_range, found["roof"].model.max_range) == (0.5, 80.0)
 
 
 def test_gazebo_s_clip_is_the_camera_s_ranges_and_a_foreign_clip_is_not():

@@ -8,7 +8,8 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_tools.exchange import import_rig, rig_files, ros
-from pe_tools.exchange.ros import info_name, without_comments
+from pe_tools.exchange.camera_info import info_name
+from pe_tools.formats.xml_text import without_comments
 
 PUCK = "Velodyne VLP-16 Puck"
 IMU = (

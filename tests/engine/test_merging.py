@@ -228,3 +228,18 @@ def test_a_kit_that_is_there_keeps_its_text(tmp_path):
     again = import_rig(new, None, AXLE).rig
     for name in ("hesai_top", "hesai_left"):
         assert again[name].pose.position == pytest.approx(rig[name].pose.position, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", RIG_FORMATS)
+def test_an_export_over_the_last_one_is_the_same(name, tmp_path):
+    rig = pe.Rig([NEW, pe.Sensor("roof", pe.Lidar("own", np.radians([-9.0, 3.0]), 36, 80.0), POSE)])
+    if name == "argoverse2":
+        pytest.importorskip("pyarrow", reason="of the extra argoverse")
+    written = []
+    for _ in range(2):
+        paths, _ = pt.export_rig(rig, name, tmp_path / "out", AXLE, replace=True)
+        written.append([path.read_bytes() for path in paths])
+    assert written[0] == written[1]
+
+
+POSE = pe.Pose((0.5, 0.0, 1.9), (0.0, 0.1, 0.2))

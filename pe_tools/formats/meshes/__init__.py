@@ -1,9 +1,8 @@
 """Read and write files of triangle meshes, by their suffix."""
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
 
@@ -22,21 +21,25 @@ from .obj import read_obj
 from .ply import read_ply
 from .with_trimesh import dump_obj, read_scene
 
-_F = TypeVar("_F")
 
-_READERS: dict[str, Callable[[Path, bytes], Mesh]] = {
-    ".npz": read_npz,
-    ".obj": read_obj,
-    ".ply": read_ply,
-    **dict.fromkeys((".stl", ".glb"), read_scene),
-}
-_SAYS: dict[str, Callable[[bytes], SaidAxes]] = {
-    ".npz": lambda _: OURS,
-    ".obj": said_in_comments,
-    ".glb": lambda _: GLTF,
-}
-"""Axes that the files of a format define; other formats define none."""
-_WRITERS: dict[str, Callable[[Path, Mesh], bytes]] = {".npz": dump_npz, ".obj": dump_obj}
+@dataclass(frozen=True, slots=True)
+class MeshFormat:
+    """A format of meshes. `read`: function of a path and the file's bytes. `axes`: function of the
+    bytes; returns the axes that they define. `write`: function of a path and a mesh; returns the
+    bytes of a file. None for a format that is only read."""
+
+    read: Callable[[Path, bytes], Mesh]
+    axes: Callable[[bytes], SaidAxes] = lambda _: UNSAID
+    write: Callable[[Path, Mesh], bytes] | None = None
+
+
+MESH_FORMATS = {
+    ".npz": MeshFormat(read_npz, lambda _: OURS, dump_npz),
+    ".obj": MeshFormat(read_obj, said_in_comments, dump_obj),
+    ".ply": MeshFormat(read_ply),
+    ".stl": MeshFormat(read_scene),
+    ".glb": MeshFormat(read_scene, lambda _: GLTF),
+}  # Formats by suffix; plugins add others
 
 
 def read_mesh(path: str | Path, axes: MeshAxes | None = None) -> Mesh:
@@ -67,16 +70,16 @@ def read_mesh(path: str | Path, axes: MeshAxes | None = None) -> Mesh:
     """
     path = Path(path)
     suffix = path.suffix.lower()
-    if suffix not in _READERS and find_plugin(MESH_PLUGIN, suffix[1:]) is None:
-        _of_suffix(path, _READERS)  # reports it
+    row = MESH_FORMATS.get(suffix)
+    if row is None and find_plugin(MESH_PLUGIN, suffix[1:]) is None:
+        raise InputError(path, "suffix", " ".join(MESH_FORMATS), suffix or "none")
     data = read_bytes(path, MESH_BYTES)
     # Overflow and NaN are refused later, with their location; NumPy need not warn first.
     with np.errstate(all="ignore"), report_memory_errors(path):
-        if suffix in _READERS:
-            mesh = _READERS[suffix](path, data)
-            said = _SAYS[suffix](data) if suffix in _SAYS else UNSAID
-        else:
+        if row is None:
             mesh, said = read_with_plugin(path, data)
+        else:
+            mesh, said = row.read(path, data), row.axes(data)
         fit = replace(mesh, part_names=fit_names(mesh.part_names))
         return oriented(str(path), fit, said, axes or MeshAxes())
 
@@ -89,13 +92,9 @@ def write_mesh(path: str | Path, mesh: Mesh) -> None:
     a file that cannot be written raises `InputError`.
     """
     path = Path(path)
-    writer = _of_suffix(path, _WRITERS)
-    sound = make_mesh(str(path), mesh.triangles, mesh.parts, mesh.part_names)
-    write_bytes(path, writer(path, sound))
-
-
-def _of_suffix(path: Path, table: dict[str, _F]) -> _F:
     suffix = path.suffix.lower()
-    if suffix not in table:
-        raise InputError(str(path), "suffix", " ".join(table), suffix or "none")
-    return table[suffix]
+    written = {key: row.write for key, row in MESH_FORMATS.items() if row.write is not None}
+    if suffix not in written:
+        raise InputError(path, "suffix", " ".join(written), suffix or "none")
+    sound = make_mesh(str(path), mesh.triangles, mesh.parts, mesh.part_names)
+    write_bytes(path, written[suffix](path, sound))

@@ -22,6 +22,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 import pe_core as pe  # noqa: E402
+from pe_core.search.limits import LimitRule  # noqa: E402
 from pe_core.sensors import BLIND_RULES  # noqa: E402
 from pe_core.study import (  # noqa: E402
     METHODS,
@@ -88,7 +89,18 @@ def of_rule(rule: object) -> dict[str, Any]:
             return numbers(3, of_rule(rule.rule))
         case Number() | Whole():
             return {"type": "integer" if isinstance(rule, Whole) else "number", **_range(rule)}
+        case LimitRule():
+            return of_limit(rule)
     return ANYTHING  # places of a zone: numbers, or texts such as "rear + 1"
+
+
+def of_limit(rule: LimitRule) -> dict[str, Any]:
+    """Return the schema of a limit: a number, true, or a table of both."""
+    if rule.rule is None:
+        return {"const": True}
+    number = of_rule(rule.rule)
+    alone = [] if rule.needs_number else [{"const": True}]
+    return {"anyOf": [number, *alone, table({"value": number, "kept": SWITCH}, "value")]}
 
 
 def _range(rule: Number | Whole) -> dict[str, Any]:
@@ -171,7 +183,6 @@ def study_schema() -> dict[str, Any]:
         "tolerance": table(declared["optimize.tolerance"]),
         "stop": table(declared["optimize.stop"]),
         "front": table(declared["optimize.front"]),
-        "wanted": table(declared["optimize.wanted"]),
         "mount": tables(mount, "name"),
         "no_go": tables({"name": TEXT, **declared["optimize.no_go"]}, "name"),
         **{"pair": tie, "group": tie, "start": tables(start, "name", "placements")},
@@ -208,6 +219,7 @@ def study_schema() -> dict[str, Any]:
         "state": tables(state, "name"),
         "time": table({**declared["time"], "noises": by_name, "rates": by_name}),
         "story": tables(story),
+        "limits": table(declared["limits"]),
         "optimize": table(optimize),
         "choice": tables(choice, "option"),
         "selection": table({**declared["selection"], "max_of_kind": counts}),

@@ -271,6 +271,8 @@ def changed_settings(instance: Any, names: Iterable[str] = ()) -> dict[str, Any]
 
 def value_in_file(setting: Setting, value: Any) -> Any:
     """Return a value as a file holds it: angles in degrees, lists for tuples."""
+    if value is not None and (in_file := getattr(setting.rule, "in_file", None)) is not None:
+        return in_file(value)
     if isinstance(value, tuple):
         return [value_in_file(setting, each) for each in value]
     return degrees_in_file(value) if value is not None and _is_angle(setting) else value

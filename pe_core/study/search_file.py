@@ -6,14 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ..base.errors import InputError, shown
-from ..base.setting import (
-    changed_settings,
-    key_of,
-    read_declared,
-    read_settings,
-    settings_of,
-    settings_table,
-)
+from ..base.setting import key_of, read_declared, read_settings, settings_of, settings_table
 from ..base.table_reader import Table
 from ..base.values import A_NAME, degrees_in_file
 from ..geometry.poses import Pose
@@ -32,7 +25,6 @@ from ..search import (
     checked_bounds,
 )
 from ..search.goals import Front, Goals, Start, Stop
-from ..search.key_figures import Wanted
 from ..search.tolerance import CASES, ERRORS
 from ..sensors import KINDS
 from .mounting_file import mounting_tables, read_mounting
@@ -208,11 +200,10 @@ def read_goals(table: Table) -> Goals:
     """Return the goals in the table `[optimize]`; an `InputError` names the key in the file."""
     stop = read_declared(table.table("stop"), Stop)
     front = read_declared(table.table("front"), Front)
-    wanted = read_declared(table.table("wanted"), Wanted)
     starts = [_read_start(each) for each in table.tables("start")]
     with table.naming():
         goals = read_settings(table, Goals)
-        return Goals(stop, starts=starts, front=front, wanted=wanted, **goals)
+        return Goals(stop, starts=starts, front=front, **goals)
 
 
 def _read_start(table: Table) -> Start:
@@ -236,8 +227,6 @@ def goals_tables(goals: Goals) -> dict[str, Any]:
     return {
         "stop": None if goals.stop == default.stop else settings_table(goals.stop),
         "fixed": own.pop("fixed") or None,
-        "keep": own.pop("keep") or None,
-        "wanted": changed_settings(goals.wanted) or None,
         "start": [{"name": each.name, "placements": each.numbers} for each in goals.starts] or None,
         "front": None if goals.front == default.front else settings_table(goals.front),
         **own,

@@ -45,6 +45,7 @@ from ..search import (
     Constraints,
     Front,
     Goals,
+    Limits,
     NoGo,
     Option,
     Schedule,
@@ -54,7 +55,6 @@ from ..search import (
     Tolerance,
     checked_axes,
 )
-from ..search.key_figures import Wanted
 from ..search.tolerance import CASES, ERRORS
 from ..sensors import PerceptionModel
 from ..sensors.weather import Weather
@@ -177,6 +177,7 @@ def study_to_dict(study: Study) -> dict[str, Any]:
         **condition_tables(study.conditions),
         "time": time_table(study.frames, study.confirmation) or None,
         "story": [story_table(each) for each in study.stories] or None,
+        "limits": changed_settings(study.limits) or None,
         "optimize": search_table(study.search, is_choice=bool(study.selection.choices)),
         **selection_tables(study.selection, _model_value),
     }
@@ -221,6 +222,7 @@ def _read_study(table: Table, folder: Path) -> Study:
         read_requirements(table),
         read_conditions(table),
         **_read_measurement(table.table("measurement")),
+        limits=read_declared(table.table("limits"), Limits),
         frames=frames,
         confirmation=confirmation,
         stories=read_stories(table.tables("story")),
@@ -403,6 +405,7 @@ SECTIONS = (
     StudyTable("reference", Reference),
     StudyTable("time", Frames),
     StudyTable("time", Confirmation),
+    StudyTable("limits", Limits),
     StudyTable("optimize", Search, part="search"),
     StudyTable("optimize", Schedule, part="schedule"),
     StudyTable("optimize", Constraints, part="constraints"),
@@ -410,7 +413,6 @@ SECTIONS = (
     StudyTable("optimize", Goals, part="goals"),
     StudyTable("optimize.tolerance", Tolerance, ERRORS),
     StudyTable("optimize.stop", Stop),
-    StudyTable("optimize.wanted", Wanted),
     StudyTable("optimize.front", Front),
     StudyTable("selection", Selection),
     StudyTable("optimize.mount", SurfaceMount, rows=True),

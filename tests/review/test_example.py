@@ -45,7 +45,7 @@ def test_it_shows_the_verdicts_of_the_example_s_requirements_and_all_are_met(sho
     """The study keeps requirements that its start breaks; the page is of a search that does."""
     study = pe.load_study(ROOT / "blend_assets" / "examples" / "four_corners" / "study.toml")
     names = [each.name for each in study.requirements]
-    assert study.search.requirements == "keep" and len(names) == 8
+    assert study.limits.keeps_requirements and len(names) == 8
     head = r'<th scope="row">\d ([^<]*)(?:<br><small>[^<]*</small>)?</th>'
     rows = re.findall(head + r'<td><span class="tag ([^"]*)"', shown)
     assert rows == [(name, "met") for name in names]

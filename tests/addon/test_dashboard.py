@@ -46,6 +46,7 @@ def test_its_values_are_those_of_the_score(car):
     assert f"{result.entropy:.3f}" in texts
     data = json.loads(car.perception_entropy.result_json)
     data["figures"]["after"]["reach"] = {"car": [20.0, True], "cone": [20.0, True]}
+    data["figures"]["after"]["values"]["reach"] = 20.0
     car.perception_entropy.result_json = json.dumps(data)
     assert "≥ 20 m" in shown(car).texts("label"), "the space ends there"
 

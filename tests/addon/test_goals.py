@@ -3,6 +3,7 @@
 import bpy
 import pytest
 
+import pe_core as pe
 from blender_addon import bridge, diagnostics
 from pe_core.search import Goals
 from pe_tools.advice import flatness

@@ -2,7 +2,7 @@
 
 A shuttle with a LiDAR at each of its four corners and a camera on each side, 12 design variables
 and nine presets, of which the start breaks some. Each seed is a whole `OptimizeJob` with
-``requirements = "keep"`` in a process of its own, and leaves a JSON file of its own; what is there
+``requirements = true`` in a process of its own, and leaves a JSON file of its own; what is there
 already is not run again, so it may be broken off at any time. Then come the table (in
 benchmarks/README.md, by `make bench`) and what docs/requirements.md says.
 """
@@ -77,9 +77,8 @@ def shuttle() -> pe.Study:
         body.space,
         body.prior,
         requirements=[presets[name].requirement() for name in NINE],
-        search=pe.Search(
-            free=free, limits=limits, requirements="keep", samples=SAMPLES, evaluations=EVALUATIONS
-        ),
+        search=pe.Search(free=free, limits=limits, samples=SAMPLES, evaluations=EVALUATIONS),
+        limits=pe.Limits(requirements=True),
     )
 
 

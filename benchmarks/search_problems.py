@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -264,9 +264,10 @@ def three_on_roof() -> pe.Study:
     mounting = pe.Mounting(
         mounts={"roof": pe.SurfaceMount(["hull top"], 0.15, "upright")},
         on=dict.fromkeys(place, "roof"),
-        constraints=pe.Constraints(min_distance=0.5),
     )
-    return study(sensors, body(SHUTTLE), dict.fromkeys(place, ("roll", "pitch")), limits, mounting)
+    free = dict.fromkeys(place, ("roll", "pitch"))
+    found = study(sensors, body(SHUTTLE), free, limits, mounting)
+    return replace(found, limits=pe.Limits(distance=0.5))
 
 
 def cameras_around() -> pe.Study:

@@ -109,7 +109,8 @@ def design() -> None:
     add_pair("camera", CAMERA, (-3.0, 0.7, 0.42), BUMPER)
     add_requirements()
     settings = bpy.context.scene.perception_entropy
-    settings.min_distance, settings.max_height = 0.3, 2.7
+    settings.limit_distance = 0.3
+    settings.limit_height = 2.7
     settings.method = METHOD  # said, so that another default changes nothing
     settings.keep_requirements = True
     # the study does not name them

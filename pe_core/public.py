@@ -39,6 +39,8 @@ from .search import (
     Constraints,
     Front,
     Goals,
+    Limit,
+    Limits,
     Method,
     MountArea,
     Mounting,
@@ -56,7 +58,6 @@ from .search import (
     Stop,
     SurfaceMount,
     Tolerance,
-    Wanted,
     optimize,
     snap_to_mount,
 )
@@ -80,13 +81,13 @@ from .version import __version__
 __all__ = ["METHODS", "ApCurve", "BeamField", "BlindGround", "BoxReport", "Boxes", "BrownConrady"]
 __all__ += ["Camera", "Choice", "Conditions", "Constraints", "DataSheet", "Evaluator", "FTheta"]
 __all__ += ["Focus", "Front", "Goals", "GroundMap", "GroundSight", "Housing", "InputError"]
-__all__ += ["KannalaBrandt", "Lidar", "Mesh", "MeshAxes", "Method", "Motion", "MountArea"]
-__all__ += ["Mounting", "NoGo", "ObjectClass", "ObjectEvaluator", "ObjectScore", "Objective"]
-__all__ += ["Objects", "Option", "PartScore", "PerceptionModel", "PerceptionSpace", "Pinhole"]
-__all__ += ["Pose", "Prior", "Reach", "Reference", "Rig", "RigEvaluator", "Scatter"]
+__all__ += ["KannalaBrandt", "Lidar", "Limit", "Limits", "Mesh", "MeshAxes", "Method", "Motion"]
+__all__ += ["MountArea", "Mounting", "NoGo", "ObjectClass", "ObjectEvaluator", "ObjectScore"]
+__all__ += ["Objective", "Objects", "Option", "PartScore", "PerceptionModel", "PerceptionSpace"]
+__all__ += ["Pinhole", "Pose", "Prior", "Reach", "Reference", "Rig", "RigEvaluator", "Scatter"]
 __all__ += ["Schedule", "Score", "Search", "SearchRun", "SearchSpace", "Selection", "Sensor"]
 __all__ += ["SensorScore", "Sight", "Slot", "SlotMount", "Start", "State", "Step", "Stop", "Study"]
-__all__ += ["SurfaceMount", "TargetRule", "Tolerance", "Vehicle", "Wanted", "Weather"]
+__all__ += ["SurfaceMount", "TargetRule", "Tolerance", "Vehicle", "Weather"]
 __all__ += ["__version__", "beam_field", "catalog", "cuts_body", "guessed_reference", "load_study"]
 __all__ += ["measure", "measure_objects", "optimize", "requirements", "save_study"]
 __all__ += ["snap_to_mount", "study_from_dict", "study_to_dict"]

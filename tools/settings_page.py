@@ -13,6 +13,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
+from pe_core.search.limits import LimitRule  # noqa: E402
 from pe_core.study import (  # noqa: E402
     REQUIRED,
     Declared,
@@ -33,8 +34,8 @@ from pe_core.study import (  # noqa: E402
 PAGE = ROOT / "docs" / "settings.md"
 HEAD = """# Settings
 
-Numbers and switches of a study, by their table in the file: `max_height` below `[optimize]` is
-`optimize.max_height` for `pe set`. Each has its values, its default, if any, and its meaning.
+Numbers and switches of a study, by their table in the file: `height` below `[limits]` is
+`limits.height` for `pe set`. Each has its values, its default, if any, and its meaning.
 [study.md](study.md) explains the file. Blender's panels have most of them.
 """
 
@@ -75,6 +76,8 @@ def type_text(rule: object) -> str:
             return f"low, high{_unit(rule.rule.unit)}"
         case Triple():
             return f"three numbers{_unit(rule.rule.unit)}"
+        case LimitRule():
+            return "true" if rule.rule is None else type_text(rule.rule)
         case Whole():
             return f"whole{_unit(rule.unit)}"
         case Number():
@@ -103,7 +106,7 @@ def range_text(rule: object) -> str:
             return "|".join(f'"{text}"' for text in rule.among)
         case Pair():
             return ""
-        case Triple():
+        case Triple() | LimitRule():
             return range_text(rule.rule)
         case Whole():
             return f"{rule.minimum:,}–{rule.maximum:,}"

@@ -6,6 +6,7 @@ What is imported here is what other modules of the add-on take from it.
 from .apply_variant import apply_records, shown_collection
 from .conditions import as_drawn, conditions_of, read_states, shown_motions, shown_state, with_drawn
 from .fingerprint import Fingerprint, fingerprint
+from .limits import NONE, keep_property, limit_property, limits_of
 from .loading import load_into, record_of_study
 from .mirroring import (
     clear_mirrors,
@@ -77,7 +78,6 @@ from .scene_settings import (
     space_of,
     targets_of,
     value_of_property,
-    wanted_of,
     write_reference,
 )
 from .sensor_colors import assign_colors

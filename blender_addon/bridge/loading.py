@@ -17,6 +17,7 @@ from ..choices import BY_GROUP, BY_PARTS, ON_SLOTS
 from ..engine import catalog, kinds, pe, search, studies
 from .apply_variant import apply_records
 from .conditions import write_conditions
+from .limits import write_limits
 from .prior import write_prior
 from .requirements import write_requirements
 from .rig import place_at, view_layer_of
@@ -203,6 +204,7 @@ def _write_settings(settings: PropertyGroup, record: SceneRecord) -> None:
     settings.score_samples, settings.returns = record.samples, record.returns
     settings.method = own.method
     write_goals(settings, own.goals)
+    write_limits(settings, record.limits)
     settings.mounting_errors = tolerance.position > 0.0 or tolerance.angle > 0.0
     names = () if settings.mounting_errors else ("failures", "worst")
     write_values(settings, tolerance, names)  # without errors their fields keep their values

@@ -14,6 +14,7 @@ from bpy.types import Collection, Depsgraph, Object, PropertyGroup, Scene
 
 from ..engine import catalog, motion, pe, requirements, search, studies
 from .conditions import as_drawn, conditions_of, read_states
+from .limits import limits_of
 from .mounting import constraints_of, mounting_of, mounts_of
 from .prior import prior_from_scene
 from .requirements import requirements_of
@@ -63,6 +64,7 @@ class SceneRecord:
     search: pe.Search
     mounts: Mapping[str, AnyMount]
     constraints: pe.Constraints
+    limits: search.Limits
     selection: pe.Selection
     reference: pe.Reference | None
     requirements: tuple[Requirement, ...]
@@ -136,6 +138,7 @@ def record_of_scene(
         vehicle=vehicle or vehicle_of_scene(scene, depsgraph),
         mounts=mounts_of(scene, depsgraph, records),
         constraints=constraints_of(scene),
+        limits=limits_of(settings),
         space=space_of(settings),
         prior=prior_from_scene(scene),
         model=perception_of(settings),

@@ -146,25 +146,16 @@ def search_of(settings: PropertyGroup, *, is_choice: bool) -> pe.Search:
             search.Stop(**values_of(settings, search.Stop)),
             starts=search.Start.of_text(settings.start_poses),
             front=search.Front(**values_of(settings, search.Front)),
-            keep=[key for key in search.KEPT if getattr(settings, f"keep_{key}")],
-            wanted=wanted_of(settings),
             **values_of(settings, search.Goals),
         ),
         **values_of(settings, pe.Search),
     )
 
 
-def wanted_of(settings: PropertyGroup) -> search.Wanted:
-    """Return what is wanted of the rig of a scene."""
-    return search.Wanted(**values_of(settings, search.Wanted))
-
-
 def write_goals(settings: PropertyGroup, goals: search.Goals) -> None:
     """Write the goals of a search to a scene; further starts as JSON text."""
-    for each in (goals.stop, goals.front, goals.wanted, goals):
+    for each in (goals.stop, goals.front, goals):
         write_values(settings, each)
-    for key in search.KEPT:
-        setattr(settings, f"keep_{key}", key in goals.keep)
     settings.start_poses = search.Start.text_of(goals.starts)
     settings.start_variants = False
 

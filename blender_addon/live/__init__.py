@@ -13,12 +13,12 @@ from .readout_text import BETTER, SAME, SENSE_ICONS, WORSE, change_text
 from .state import FinishedScore, ShownScore, live_state, shown_score
 
 
-def built_lines(scene: bpy.types.Scene) -> list[str]:
-    """Return what can be built, of the live score, or of the stored result."""
+def latest_figures(scene: bpy.types.Scene) -> list[advice.KeyFigures]:
+    """Return the key figures of the live score, or of the stored result; none before both."""
     found = background_figures.figures_of(scene)
     if not found and scene.perception_entropy.has_result:
         found = told_figures(scene, live=False)
-    return advice.built_lines(found[-1:]) if found else []
+    return found[-1:]
 
 
 def told_figures(scene: bpy.types.Scene, *, live: bool) -> list[advice.KeyFigures]:

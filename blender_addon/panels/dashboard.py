@@ -1,8 +1,8 @@
 """The dashboard: what the sensors are decided by, what is wanted, and what *Optimize* keeps."""
 
-from bpy.types import Context, Scene, UILayout
+from bpy.types import Context, PropertyGroup, Scene, UILayout
 
-from ..bridge import Result, shown_state, wanted_of
+from ..bridge import NONE, Result, keep_property, limit_property, limits_of, shown_state
 from ..engine import advice, search
 from ..live import BETTER, SAME, SENSE_ICONS, WORSE, change_text, shown_score, told_figures
 from ..operators import known_rigs, shown_verdicts
@@ -13,8 +13,6 @@ from .layout import columns, draw_sentence
 MET_ICONS = {True: "COLORSET_03_VEC", False: "ERROR"}
 """Blender's own green, and its orange triangle."""
 NAME_SHARE, VALUE_SHARE, SHARE_WITHOUT_UNIT = 0.39, 0.42, 0.34
-KEEP = {"requirements": "keep_requirements"} | {key: f"keep_{key}" for key in search.KEPT}
-"""Properties of what *Optimize* keeps, by figure."""
 LOCKS = {True: "LOCKED", False: "UNLOCKED"}
 
 
@@ -46,7 +44,7 @@ def draw_dashboard(layout: UILayout, context: Context) -> None:
         entropies.insert(0, result.entropy_before)
     met = [v.met for v in shown_verdicts(scene).values() if v.met is not None]
     rows = search.dashboard(
-        figures[-1] if figures else None, (entropies or [None])[-1], met, wanted_of(settings)
+        figures[-1] if figures else None, (entropies or [None])[-1], met, limits_of(settings)
     )
     judged = [row.met for row in rows if row.met is not None]
     draw_label(wanted, f"{sum(judged)} of {len(judged)} met" if judged else "Wanted")
@@ -83,11 +81,7 @@ def draw_row(
     is the standard error of its change."""
     settings, figure = scene.perception_entropy, row.figure
     line = layout.row(align=True)
-    if (lock := KEEP.get(figure.key)) is not None:
-        icon = LOCKS[getattr(settings, lock)]
-        line.prop(settings, lock, text="", icon=icon, emboss=False)
-    else:
-        line.label(text="", icon="BLANK1")
+    draw_lock(line, settings, figure)
     name, rest = columns(line, NAME_SHARE, align=True)
     is_score = figure.key == search.ENTROPY and is_simple(scene)
     draw_label(name, "Score" if is_score else figure.label)
@@ -110,16 +104,42 @@ def draw_row(
         wanted.label(text="", icon=MET_ICONS[row.met])
 
 
+def draw_lock(layout: UILayout, settings: PropertyGroup, figure: search.Figure) -> None:
+    """Draw whether *Optimize* keeps a figure."""
+    lock = keep_property(figure.key)
+    layout.prop(settings, lock, text="", icon=LOCKS[getattr(settings, lock)], emboss=False)
+
+
+def draw_limits(layout: UILayout, settings: PropertyGroup, now: advice.KeyFigures | None) -> None:
+    """Draw the limits on what can be built: the others are in the dashboard. A limit begins with
+    the figure that is `now`."""
+    column = layout.column(align=True)
+    for key in search.BUILD_FIGURES:
+        figure = search.FIGURES[key]
+        line = column.row(align=True)
+        draw_lock(line, settings, figure)
+        name, value = columns(line, NAME_SHARE, align=True)
+        draw_label(name, figure.label)
+        draw_limit(value, settings, figure, figure.value(now))
+
+
 def draw_wanted(layout: UILayout, scene: Scene, row: search.Reading) -> None:
     """Draw the field of what is wanted; without that, a button that begins with what there is."""
-    settings, name = scene.perception_entropy, f"wanted_{row.figure.key}"
-    if row.wanted is not None:
+    draw_limit(layout, scene.perception_entropy, row.figure, row.value)
+
+
+def draw_limit(
+    layout: UILayout, settings: PropertyGroup, figure: search.Figure, now: float | None
+) -> None:
+    """Draw the field of a limit; without one, a button that begins with the value that is now."""
+    name = limit_property(figure.key)
+    if getattr(settings, name) > NONE:
         layout.prop(settings, name, text="")
         return
     kind = settings.bl_rna.properties[name].type.lower()
     button = layout.operator(f"wm.context_set_{kind}", text="", icon="ADD")
     button.data_path = f"scene.perception_entropy.{name}"
-    button.value = 0 if row.value is None else row.figure.begin(row.value)
+    button.value = 0 if now is None else figure.begin(now)
 
 
 def draw_outcome(layout: UILayout, context: Context) -> None:

@@ -1,11 +1,14 @@
-"""How to search: the method, mounts, constraints and tolerance."""
+"""How to search: the method, mounts and limits."""
 
 from typing import Any
 
 from bpy.types import Context, PropertyGroup, UILayout
 
 from ..choices import BY_GROUP, BY_PARTS, EXPECTED_AP, OBJECTS, ON_SLOTS, RANDOM
-from ..live import built_lines
+from ..engine import advice
+from ..live import latest_figures
+from ..panel_text import is_simple
+from .dashboard import draw_limits
 from .layout import (
     draw_declared,
     draw_list,
@@ -18,10 +21,7 @@ from .layout import (
 from .variant_panels import draw_front
 
 ICONS = {BY_PARTS: "OBJECT_DATA", BY_GROUP: "WPAINT_HLT"}
-ELSEWHERE = (
-    *("objective", "evaluations", "seed", "search_samples"),
-    *("keep_requirements", "search_conditions"),
-)
+ELSEWHERE = ("objective", "evaluations", "seed", "search_samples", "search_conditions")
 """Settings of a search that are drawn before the others, or in another panel."""
 SLOTS_ICON = "OUTLINER_COLLECTION"
 
@@ -74,34 +74,26 @@ def draw_mount(layout: UILayout, mount: PropertyGroup) -> None:
     draw_declared(layout, mount, "optimize.mount")
 
 
-@panel("Constraints", simple=True, parent="PE_PT_search")
-def constraints(layout: UILayout, _settings: PropertyGroup, context: Context) -> None:
-    """Constraints of every placement of a search"""
-    draw_declared(layout, context.scene.perception_entropy, "constraints")
-    for line in built_lines(context.scene):
+@panel("Limits", simple=True, parent="PE_PT_search")
+def limits(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
+    """What placements of a search keep to, tolerate and trade off, and when it ends"""
+    figures = latest_figures(context.scene)
+    draw_limits(layout, settings, figures[-1] if figures else None)
+    for line in advice.built_lines(figures) if figures else ():
         draw_sentence(layout, context, line)
+    draw_declared(layout, settings, "constraints")
     layout.operator("pe.add_no_go", icon="CUBE")
     obj = context.active_object
     if obj is not None and not obj.perception_entropy.is_sensor:
         layout.label(text=f"{obj.name}:", translate=False)
         draw_properties(layout, obj.perception_entropy, ("is_no_go",))
+    if not is_simple(context.scene):
+        draw_tolerance(layout.column(), settings)
+        draw_goals(layout.column(), settings, context)
 
 
-@panel("Goals", parent="PE_PT_search")
-def goals(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
-    """When a search stops, from where it starts, and how its result is analysed"""
-    draw_declared(layout, settings, "optimize.stop")
-    draw_properties(layout, settings, ("start_variants",))
-    draw_declared(layout, settings, "goals")
-    draw_declared(layout, settings, "optimize.front")
-    layout.operator("pe.choose_sensors", text="Find Front", icon="FCURVE")
-    if settings.front.rows:
-        draw_front(layout, settings, context)
-
-
-@panel("Tolerance", parent="PE_PT_search")
-def tolerance(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
-    """What placements have to tolerate: mounting errors, or the loss of a sensor"""
+def draw_tolerance(layout: UILayout, settings: PropertyGroup) -> None:
+    """Draw what placements have to tolerate: mounting errors, or the loss of a sensor."""
     draw_properties(layout, settings, ("mounting_errors",))
     column = layout.column()
     column.active = settings.mounting_errors
@@ -112,4 +104,15 @@ def tolerance(layout: UILayout, settings: PropertyGroup, _context: Context) -> N
     row.prop(settings, "worst")
 
 
-CLASSES = (mounts_rows, search, constraints, tolerance, goals)
+def draw_goals(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
+    """Draw when a search ends, from where it starts, its analysis, and the front."""
+    draw_declared(layout, settings, "optimize.stop")
+    draw_properties(layout, settings, ("start_variants",))
+    draw_declared(layout, settings, "goals")
+    draw_declared(layout, settings, "optimize.front")
+    layout.operator("pe.choose_sensors", text="Find Front", icon="FCURVE")
+    if settings.front.rows:
+        draw_front(layout, settings, context)
+
+
+CLASSES = (search, mounts_rows, mounts, limits)

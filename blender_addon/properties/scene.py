@@ -8,10 +8,10 @@ from bpy.types import Collection, PropertyGroup
 
 from .. import bridge
 from ..choices import PANELS, PRIORS
-from ..engine import search
+from ..engine import search, studies
 from .callbacks import changed, kinds_to_add, redraw, select_object_by_index, selected_object_index
 from .declared import mixin, scene_group
-from .fields import menu, pointer, rows, switch, text, whole
+from .fields import menu, number, pointer, rows, switch, text, whole
 from .list_rows import (
     PE_CurveSettings,
     PE_FocusSettings,
@@ -67,21 +67,48 @@ ListFields: Any = _lists()
 
 
 KEPT_AT_FIRST = ("blind_ground", "blind_sector")
-KeepFields: Any = mixin(
-    "Keep",
-    {
-        f"keep_{key}": switch(
-            f"Keep {search.FIGURES[key].label}",
-            "Optimize keeps it: as wanted, or as good as now where nothing is wanted. "
-            f"{search.FIGURES[key].about}",
-            key in KEPT_AT_FIRST,
+UNITS = {"m": "LENGTH", "m2": "AREA"}
+KEEPS = "Optimize will not make it worse than its limit, or than now if there is no limit"
+HOLDS = "Optimize keeps to the limit; a limit on what it improves ends it"
+LARGEST_LIMIT = 1e6
+
+
+def _limits() -> Any:
+    """Return a mixin with the limits: a lock and, of all but requirements, a number a figure."""
+    properties = {}
+    for key in search.LIMITED:
+        row = search.FIGURES[key]
+        is_seen = key in search.KEPT or key == search.REQUIREMENTS
+        properties[bridge.keep_property(key)] = switch(
+            f"Keep {row.label}",
+            f"{KEEPS if is_seen else HOLDS}. {row.about}",
+            key in KEPT_AT_FIRST or not (is_seen or key in search.NUMBERED),
         )
-        for key in search.KEPT
-    },
-)
+        if row.rule is not None:
+            properties[bridge.limit_property(key)] = _limit_number(row)
+    return mixin("Limit", properties)
 
 
-class PE_SceneSettings(StudyFields, ListFields, KeepFields, bridge.ResultViews, PropertyGroup):
+def _limit_number(row: search.Figure) -> Any:
+    about = f"{row.about}: at {'least' if row.higher else 'most'}; {bridge.NONE}: no limit"
+    rule, least = row.rule, bridge.NONE
+    if isinstance(rule, studies.Whole):
+        return whole(row.label, about, least, min=least, max=rule.maximum)
+    return number(
+        row.label,
+        about,
+        least,
+        min=least,
+        max=min(rule.maximum, LARGEST_LIMIT),
+        precision=row.decimals,
+        unit=UNITS.get(row.unit, "NONE"),
+    )
+
+
+LimitFields: Any = _limits()
+
+
+class PE_SceneSettings(StudyFields, ListFields, LimitFields, bridge.ResultViews, PropertyGroup):
     """The study's settings, and the last result."""
 
     kind_to_add: menu("Kind", "Kind of sensor that Add and Place put on the vehicle", kinds_to_add)

@@ -24,7 +24,7 @@ def schema_of(cls: type) -> Schema:
 def schema_of_setting(setting: Setting) -> Schema:
     """Return the schema of a setting: what it is, its values, its default."""
     unit = " [deg]" if isinstance(setting.rule, Angle) else ""
-    own = {"description": f"{setting.text}{unit}", **_schema_of_rule(setting.rule)}
+    own = {"description": f"{setting.text}{unit}", **schema_of_rule(setting.rule)}
     if setting.default is REQUIRED or setting.default is None:
         return own
     default = json.dumps(value_in_file(setting.rule, setting.default))
@@ -58,7 +58,7 @@ def _schema_of_field(each: DocumentField) -> Schema:
     if each.setting is not None:
         return schema_of_setting(each.setting)
     if each.rule is not None:
-        return _schema_of_rule(each.rule)
+        return schema_of_rule(each.rule)
     if not each.part.by_name:
         return _schema_of_hint(each.hint)
     inner = [_schema_of_hint(cls) for cls, _ in classes_in(each.hint)]
@@ -72,7 +72,7 @@ def _schema_of_hint(hint: Any) -> Schema:
     if own is not None:
         return schema_of(own.form) if isinstance(own.form, type) else own.form
     if hint in BY_TYPE:
-        return _schema_of_rule(BY_TYPE[hint])
+        return schema_of_rule(BY_TYPE[hint])
     if is_dataclass(hint):
         return schema_of(typing.cast(type, hint))
     origin, inner = typing.get_origin(hint), typing.get_args(hint)
@@ -86,8 +86,12 @@ def _schema_of_hint(hint: Any) -> Schema:
     return _list_of(len(inner), _schema_of_hint(inner[0]))
 
 
-def _schema_of_rule(rule: object) -> Schema:
-    """Return the schema of the values that a rule allows, as a document has them."""
+def schema_of_rule(rule: object) -> Schema:
+    """Return the schema of the values that a rule allows, as a document has them. A rule of another
+    room says its own: ``json_schema``."""
+    if (own := getattr(rule, "json_schema", None)) is not None:
+        found: Schema = own(schema_of_rule)
+        return found
     match rule:
         case Toggle():
             return {"type": "boolean"}
@@ -100,9 +104,9 @@ def _schema_of_rule(rule: object) -> Schema:
         case Name():
             return {"type": "string"}
         case Pair():
-            return _list_of(2, _schema_of_rule(rule.rule))
+            return _list_of(2, schema_of_rule(rule.rule))
         case Triple():
-            return _list_of(3, _schema_of_rule(rule.rule))
+            return _list_of(3, schema_of_rule(rule.rule))
         case Number() | Whole():
             kind = "integer" if isinstance(rule, Whole) else "number"
             return {"type": kind, **_range(rule)}

@@ -227,6 +227,8 @@ def key_of(name: str) -> str:
 
 def value_in_file(rule: object, value: Any) -> Any:
     """Return a value of a rule as a file holds it: angles in degrees, lists for tuples."""
+    if value is not None and (in_file := getattr(rule, "in_file", None)) is not None:
+        return in_file(value)
     if isinstance(value, list | tuple):
         return [value_in_file(rule, each) for each in value]
     return degrees_in_file(value) if value is not None and is_angle(rule) else value

@@ -2,6 +2,7 @@
 
 from ..scoring.score import Objective
 from .ask_tell import SearchRun
+from .build_figures import BUILD_FIGURES
 from .dispatch import Call, WorkerDied, evaluate_all, run_tasks, shared_parts
 from .domains import (
     AXES,
@@ -15,7 +16,8 @@ from .figure import HIGHER, LOWER, NO_FIGURE, Figure
 from .figures import ENTROPY, FIGURES, KEPT, ON_FRONT, REQUIREMENTS, RigView, figure_of
 from .goals import Front, Goals, Start, Stop
 from .journal import EvaluatedRig, Journal, checked_entries
-from .key_figures import KeyFigures, Reading, Wanted, dashboard
+from .key_figures import KeyFigures, Reading, dashboard
+from .limits import LIMITED, NUMBERED, Limit, Limits
 from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_method
 from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .optimize import Step, as_objective, optimize

@@ -193,11 +193,6 @@ class BuildFigure(Figure):
     on_body: bool = False
     slack: float = 0.0
 
-    @property
-    def limit(self) -> str:
-        """Name of its limit."""
-        return f"{'min' if self.higher else 'max'}_{self.key}"
-
     def lacking(self, placed: Placement) -> tuple[str, ...]:
         """Return of what it is not known: names of sensors, or why there is no such figure."""
         if self.on_body and placed.vehicle is None:
@@ -219,23 +214,24 @@ class BuildFigure(Figure):
         names = [sensor.name for sensor in placed.rig]
         return self.worst([self.each(placed, *some) for some in combinations(names, self.arity)])
 
-    def required(self, placed: Placement, field: str) -> None:
-        """Raise `InputError` where something is not known; `field` is what asks for it."""
+    def required(self, placed: Placement, source: str, field: str) -> None:
+        """Raise `InputError` where something is not known; a field of `source` asks for it."""
         if lacking := self.lacking(placed):
             expected = f"a known {self.name} of each sensor"
-            raise InputError(
-                "optimize", field, expected, f"unknown: {', '.join(dict.fromkeys(lacking))}"
-            )
+            found = f"unknown: {', '.join(dict.fromkeys(lacking))}"
+            raise InputError(source, field, expected, found)
 
     def rules(
-        self, limit: float | None, start: Placement, moving: Set[str]
+        self, value: float | None, start: Placement, moving: Set[str]
     ) -> Iterator[tuple[str, Callable[[Placement], bool]]]:
-        """Yield the rules of a limit: their texts, and whether a placement breaks them.
-        `InputError` where what the limit needs is not known of the start."""
-        if limit is None or (self.higher and (not limit or len(start.rig) < 2)):
+        """Yield the rules of a limit: their texts, and whether a placement breaks them. Its value
+        is that of the start if it is None. `InputError` where what the limit needs is not known of
+        the start."""
+        if self.higher and (value == 0.0 or len(start.rig) < 2):
             return
-        self.required(start, self.limit)
-        sign = -1.0 if self.higher else 1.0
+        self.required(start, "limits", self.key)
+        limit = value if value is not None else self.of_placement(start) or 0.0
+        sign = self.signed(1.0)
         edge = sign * limit + self.slack + (limit * RELATIVE if self.needs == SUM else 0.0)
 
         def breaks(some: tuple[str, ...], placed: Placement) -> bool:
@@ -244,7 +240,7 @@ class BuildFigure(Figure):
         for some in combinations([sensor.name for sensor in start.rig], self.arity):
             if not some or moving & set(some):
                 named = f" of {' and '.join(map(repr, some))}" if some else ""
-                yield f"{self.limit}{named}", partial(breaks, some)
+                yield f"limits.{self.key}{named}", partial(breaks, some)
 
 
 AT = ROUNDING_M

@@ -151,7 +151,7 @@ _SCORE = (
         rule=Number(-99.0, cap=1e6),
         least=0.005,  # 0.2 % of a detector's standard deviation
     ),
-    _Ap(AP, "Expected AP", about="Expected AP of the scored objects", decimals=3, rule=None),
+    _Ap(AP, "Expected AP", about="Expected AP of the scored objects", decimals=3),
     Figure(
         COVERAGE,
         "Coverage",

@@ -16,8 +16,7 @@ from ..base.setting import NAMES, Panel, Several, check_settings, setting
 from ..base.values import A_NAME, Number, Whole, listed
 from ..geometry.poses import Pose
 from ..scene.rig import Rig
-from .figures import FIGURES, KEPT, ON_FRONT
-from .key_figures import Wanted
+from .figures import FIGURES, ON_FRONT
 from .mounts import Mounting
 
 OVER = 200  # Placements over which the gain of a search is taken by default
@@ -25,24 +24,10 @@ OVER = 200  # Placements over which the gain of a search is taken by default
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """When a search ends before its budget does; each field that is set may end it. The target is
-    reached on all voxels of the search. The time is that of the search, without the scores before
-    and after it; `evaluations` of the result repeats a search that it ended."""
+    """When a search ends before its budget does; each field that is set may end it. A limit that is
+    kept on what the search improves ends it as well. The time is that of the search, without the
+    scores before and after it; `evaluations` of the result repeats a search that it ended."""
 
-    target: float | None = setting(
-        None,
-        Number(-1e6, cap=1e6),
-        "The search ends at this entropy or below; by expected AP, at this AP or above",
-        Panel(
-            "stop_target",
-            "Target",
-            min=-100.0,
-            soft_max=5.0,
-            zero="none",
-            beside="Off",
-            precision=3,
-        ),
-    )
     seconds: float | None = setting(
         None,
         Number(0.0, above=True, cap=1e9, unit="s"),
@@ -80,11 +65,6 @@ class Stop:
 
     def __post_init__(self) -> None:
         check_settings(self, "optimize", "stop.")
-
-    @property
-    def is_on(self) -> bool:
-        """Whether any rule is set."""
-        return self.target is not None or self.seconds is not None or self.gain is not None
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,13 +155,9 @@ class Goals:
     )
     starts: Annotated[Sequence[Start], Part(key="start")] = ()
     front: Front = field(default_factory=Front)
-    keep: Sequence[str] = setting(
-        (), Several(KEPT), "Key figures that placements keep: as wanted, or as good as at the start"
-    )
-    wanted: Wanted = field(default_factory=Wanted)
 
     def __post_init__(self) -> None:
-        for key, kind in (("stop", Stop), ("front", Front), ("wanted", Wanted)):
+        for key, kind in (("stop", Stop), ("front", Front)):
             require_kind("optimize", key, getattr(self, key), kind)
         starts: Any = listed(self.starts)
         if starts is None or not all(isinstance(each, Start) for each in starts):

@@ -4,18 +4,24 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from ..base.setting import Panel, check_settings, setting
-from ..base.values import Whole, rounded
+from ..base.values import rounded
 from ..scene.rig import Rig
 from ..scoring.score import TrafficAp
 from ..scoring.sight import Sight
 from ..scoring.sight.blind_ground import WITHIN_M, BlindSector
 from .build_figures import BUILD_FIGURES
 from .figure import Figure
-from .figures import AP_RINGS, ENTROPY, FIGURES, REQUIREMENTS, RigView, blind_height, on_dashboard
-
-NONE_WANTED = -100
-"""A field of the panel with this value or a lower one asks for nothing: 0 may be wanted."""
+from .figures import (
+    AP,
+    AP_RINGS,
+    ENTROPY,
+    FIGURES,
+    REQUIREMENTS,
+    RigView,
+    blind_height,
+    on_dashboard,
+)
+from .limits import Limits
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,32 +102,6 @@ class KeyFigures:
         return cls(**{**data, "traffic": traffic, "sectors": sectors, "reach": reach})
 
 
-def _wanted(key: str) -> Any:
-    row = FIGURES[key]
-    assert row.rule is not None
-    worst = "least" if row.higher else "most"
-    digits = None if isinstance(row.rule, Whole) else row.decimals
-    panel = Panel(f"wanted_{key}", row.label, none=NONE_WANTED, precision=digits)
-    return setting(None, row.rule, f"{row.about} (wanted: at {worst})", panel)
-
-
-@dataclass(frozen=True, slots=True)
-class Wanted:
-    """What is wanted of a rig: values of `FIGURES`, each as bad as it may be."""
-
-    blind_ground: float | None = _wanted("blind_ground")
-    blind_sector: int | None = _wanted("blind_sector")
-    reach: float | None = _wanted("reach")
-    ap_near: float | None = _wanted("ap_near")
-    ap_mid: float | None = _wanted("ap_mid")
-    ap_far: float | None = _wanted("ap_far")
-    traffic_ap: float | None = _wanted("traffic_ap")
-    entropy: float | None = _wanted("entropy")
-
-    def __post_init__(self) -> None:
-        check_settings(self, "optimize", "wanted.")
-
-
 @dataclass(frozen=True, slots=True)
 class Reading:
     """A row of the dashboard: a figure, its value, what is wanted, whether a search keeps it.
@@ -162,18 +142,22 @@ def dashboard(
     figures: KeyFigures | None,
     entropy: float | None = None,
     met: Sequence[bool] = (),
-    wanted: Wanted | None = None,
-    keep: Sequence[str] = (),
+    limits: Limits | None = None,
+    ap: float | None = None,
 ) -> tuple[Reading, ...]:
-    """Return all rows for a rig; `met` tells of each requirement whether it is met. Of `keep` a
-    search keeps what is wanted; where nothing is, what its start has."""
-    rows = []
-    for row in on_dashboard():
-        key = row.key
-        value = entropy if key == ENTROPY else row.value(figures)
-        asked = getattr(wanted, key, None)
-        if key == REQUIREMENTS and met:
-            value, asked = float(sum(met)), float(len(met))
-        is_cut = figures is not None and row.is_cut(figures)
-        rows.append(Reading(row, value, asked, key in keep, is_cut))
-    return tuple(rows)
+    """Return the rows for a rig: what every rig is decided by, and what else has a limit. `met`
+    tells of each requirement whether it is met; `ap` is the expected AP of the score."""
+    limits = limits or Limits()
+    of_score = {ENTROPY: entropy, AP: ap, REQUIREMENTS: float(sum(met)) if met else None}
+    rows = on_dashboard()
+    rows += [row for key, _ in limits if (row := FIGURES[key]) not in rows]
+    return tuple(
+        Reading(
+            row,
+            of_score.get(row.key, row.value(figures)),
+            float(len(met)) if row.key == REQUIREMENTS and met else limits.value(row.key),
+            kept=limits.kept(row.key) is not None,
+            is_cut=figures is not None and row.is_cut(figures),
+        )
+        for row in rows
+    )

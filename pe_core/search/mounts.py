@@ -12,7 +12,7 @@ from ..base.codec import Named, Part
 from ..base.errors import InputError, one_of, require_kind, shown
 from ..base.notebook import ShortRepr
 from ..base.setting import FLAG, OneOf, Pair, Panel, check_settings, setting
-from ..base.values import A_NAME, A_PATH, ANY, LENGTH, Angle, Number, listed
+from ..base.values import A_NAME, A_PATH, ANY, Angle, Number, listed
 from ..geometry.poses import Pose
 from ..scene.vehicle import Vehicle
 
@@ -64,7 +64,6 @@ UPRIGHT = "upright"
 ORIENTATIONS = (UPRIGHT, "normal", "facing")
 SLOPE = Angle(0.0, 180.0)
 STANDOFF = Number(0.0, 10.0, unit="m")
-DISTANCE = Number(0.0, cap=1e4, unit="m")
 SIDES = Pair(ANY)
 Range = tuple[float, float]
 NO_MOUNT = "the name of an [[optimize.mount]]"
@@ -183,36 +182,10 @@ class NoGo:
             raise InputError(f"no_go {self.name!r}", "x, y, z", "at least one of them", "none")
 
 
-def _limit(name: str, unit: str, usual: float, precision: int, text: str) -> Any:
-    """Return the field of an optional limit, whose usual values are up to `usual`."""
-    label = name.replace("_", " ").title() + ("" if unit in ("m", "m2") else f" ({unit})")
-    shown: dict[str, Any] = {"soft_max": usual, "zero": "no limit", "precision": precision}
-    rule = Number(0.0, cap=1e6, unit=unit)
-    return setting(None, rule, text, Panel(name, label, beside="Any", **shown))
-
-
 @dataclass(frozen=True, slots=True)
 class Constraints:
-    """The constraints on every placement of a search, as its fields say; lengths are in metres."""
+    """The constraints on every placement of a search besides `Limits`, as its fields say."""
 
-    max_height: float | None = setting(
-        None,
-        LENGTH,
-        "No housing's top is above this",
-        Panel("max_height", "Max Height", soft_max=5.0, zero="no limit", beside="Any", precision=3),
-    )
-    max_width: float | None = setting(
-        None,
-        LENGTH,
-        "Overall width: no housing is farther than half of this from the middle",
-        Panel("max_width", "Max Width", soft_max=4.0, zero="no limit", beside="Any", precision=3),
-    )
-    min_distance: float = setting(
-        0.0,
-        DISTANCE,
-        "Smallest distance between any two sensors' origins",
-        Panel("min_distance", "Min Distance", soft_max=2.0, precision=3),
-    )
     clear_housings: bool = setting(
         False,
         FLAG,
@@ -220,27 +193,6 @@ class Constraints:
         Panel("clear_housings", "Clear Housings"),
     )
     no_go: Sequence[NoGo] = ()
-    max_protrusion: float | None = _limit(
-        *("max_protrusion", "m", 1.0, 3),
-        "No housing reaches farther beyond the body's length or width than this",
-    )
-    max_cleaning_reach: float | None = _limit(
-        *("max_cleaning_reach", "m", 3.0, 3),
-        "No sensor is farther than this from the nearest ground beside the body",
-    )
-    max_frontal_area: float | None = _limit(
-        *("max_frontal_area", "m2", 1.0, 4),
-        "Largest area that housings add to the body's silhouette from the front",
-    )
-    min_overlap: float | None = _limit(
-        *("min_overlap", "deg", 90.0, 0),
-        "Smallest azimuth that neighbours have in common, to calibrate them to each other",
-    )
-    max_mass: float | None = _limit("max_mass", "kg", 100.0, 2, "Largest mass of all sensors")
-    max_power: float | None = _limit("max_power", "W", 1e3, 1, "Largest power of all sensors")
-    max_data_rate: float | None = _limit(
-        "max_data_rate", "Mbit/s", 1e4, 1, "Largest data rate of all sensors"
-    )
 
     def __post_init__(self) -> None:
         put, who = object.__setattr__, "optimize"

@@ -20,6 +20,7 @@ from ..scene.vehicle import Vehicle
 from ..sensors.kind import kind_of
 from .build_figures import Placement, housings_of
 from .domains import MountSurface, pose_on, standoff_point
+from .limits import Limits
 from .mounts import Constraints, Mounting, SurfaceMount
 from .search_space import MIN_HEIGHT_M, SearchSpace, rules_of
 
@@ -92,6 +93,7 @@ class MountingPlaces:
         sensor: Sensor,
         vehicle: Vehicle | None,
         constraints: Constraints,
+        limits: Limits,
         *,
         parts: Sequence[str] = (),
         mount: SurfaceMount | None = None,
@@ -110,7 +112,12 @@ class MountingPlaces:
         self._turned = kind.outward(sensor.model) and self._mount.orientation != "facing"
         self._middle, self._look_at = (vehicle.bounds[0] + vehicle.bounds[1]) / 2.0, look_at
         moving = {sensor.name}
-        space = SearchSpace({}, Mounting(constraints=constraints), vehicle, self._housings)
+        space = SearchSpace(
+            mounting=Mounting(constraints=constraints),
+            vehicle=vehicle,
+            housings=self._housings,
+            figure_limits=limits,
+        )
         self._rules = rules_of(self.with_sensor(sensor.pose), space, moving, moving, {})
         count = PLACES.checked("where", "places", count)
         faces = self.surface.faces

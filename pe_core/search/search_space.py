@@ -31,6 +31,7 @@ from .domains import (
     pose_values,
     start_values,
 )
+from .limits import Limits
 from .mounts import Mounting, NoGo, SlotMount, SurfaceMount
 
 PAPER_FREE = ("x", "y", "z", "pitch")
@@ -66,6 +67,8 @@ class SearchSpace(ShortRepr):
         The housings that are known.
     fixed : sequence of str
         Sensors that stay where they are, with those that follow them.
+    figure_limits : Limits
+        Those on what can be built hold for every placement.
     """
 
     bounds: Mapping[str, Mapping[str, Bounds]] = field(default_factory=dict)
@@ -73,6 +76,7 @@ class SearchSpace(ShortRepr):
     vehicle: Vehicle | None = None
     housings: Mapping[str, Housing] = field(default_factory=dict)
     fixed: Sequence[str] = ()
+    figure_limits: Limits = field(default_factory=Limits)
 
     def __post_init__(self) -> None:
         for name in ("bounds", "housings"):
@@ -90,6 +94,7 @@ class SearchSpace(ShortRepr):
         mounting: Mounting | None = None,
         housings: Mapping[str, Housing] | None = None,
         fixed: Sequence[str] = (),
+        figure_limits: Limits | None = None,
     ) -> "SearchSpace":
         """Return a rig's free axes within the vehicle's outline and HEADROOM_M above it.
 
@@ -118,7 +123,8 @@ class SearchSpace(ShortRepr):
                 turns = (axis for axis in axes if axis not in POSITION_AXES)
                 axes = (*(axis for axis in POSITION_AXES if axis in given), *turns)
             bounds[sensor.name] = {a: given.get(a, default[a]) for a in axes}
-        return cls(bounds, mounting, vehicle, housings or {}, fixed).checked(rig)
+        space = cls(bounds, mounting, vehicle, housings or {}, fixed, figure_limits or Limits())
+        return space.checked(rig)
 
     def placement(self, rig: Rig) -> Placement:
         """Return a rig on the vehicle, as rules see it."""
@@ -223,11 +229,12 @@ def rules_of(
     its own, only those between it and moving sensors. Housings of the sensors named by `clear` must
     be clear of the body and of other housings."""
     names = [sensor.name for sensor in rig if sensor.name in moving]
-    limits, start = space.mounting.constraints, space.placement(rig)
+    start = space.placement(rig)
     rules = [
         Rule(*rule)
         for figure in BUILD_FIGURES.values()
-        for rule in figure.rules(getattr(limits, figure.limit, None), start, moving)
+        if (limit := space.figure_limits.kept(figure.key)) is not None
+        for rule in figure.rules(limit.value, start, moving)
     ]
     rules += [rule for name in names for rule in _of_one(name, space)]
     has_slots = any(isinstance(mount, SlotMount) for mount in space.mounting.mounts.values())

@@ -19,6 +19,7 @@ from ..scene.data_sheet import PRICE, DataSheet
 from ..scene.rig import Rig, Sensor, SensorModel
 from ..sensors import KINDS
 from .build_figures import BUILD_FIGURES, RELATIVE, SUMS, Placement, sheet_of
+from .limits import Limits
 from .mounts import NO_MOUNT, Mounting
 
 COUNT = Whole(0, 10_000)
@@ -26,6 +27,7 @@ CURRENCY = Name("a currency", empty=True)
 Picks = tuple[int, ...]
 """A design: the number of the option that each site takes."""
 COUNTED, OF_KIND = "max_sensors", "max_of_kind"
+PRICE_SUM = "price"
 """Limits of numbers of sensors; the others are of sums, as `SUMS`."""
 MAX_STEPS = 20_000
 """How many partial designs are tried in the search for designs within the limits."""
@@ -120,20 +122,6 @@ class Selection:
     """
 
     choices: Annotated[Sequence[Choice], Part(key="choice")] = ()
-    max_price: float | None = setting(
-        None,
-        PRICE,
-        "Largest sum of the prices of all chosen sensors",
-        Panel(
-            "max_price",
-            "Max Price",
-            soft_max=1e6,
-            zero="no limit",
-            beside="No Limit",
-            precision=2,
-            step=1000,
-        ),
-    )
     max_sensors: int | None = setting(
         None,
         COUNT,
@@ -251,16 +239,21 @@ class DesignSpace:
     others: tuple[Sensor, ...]
 
     @classmethod
-    def of(cls, selection: Selection, rig: Rig, mounting: Mounting) -> "DesignSpace":
+    def of(
+        cls, selection: Selection, rig: Rig, mounting: Mounting, limits: Limits | None = None
+    ) -> "DesignSpace":
         """Return the designs of a rig; `InputError` for an impossible choice, or none left."""
         sites = sites_of(selection, rig, mounting)
         chosen = {name for site in sites for name in site.sensors}
         others = tuple(sensor for sensor in rig if sensor.name not in chosen)
-        given = {name: getattr(selection, name) for name in ("max_price", COUNTED, OF_KIND)}
-        given |= {f"max_{key}": getattr(mounting.constraints, f"max_{key}") for key in SUMS[:-1]}
-        limits = {name: value for name, value in given.items() if value not in (None, {})}
-        designs = cls(sites, limits, others)
-        designs.require({name.removeprefix("max_") for name in limits})
+        kept = limits or Limits()
+        sums = {key: kept.kept_value(key) for key in SUMS}
+        given: dict[str, Any] = {PRICE_SUM: sums.pop(PRICE_SUM)}
+        given |= {name: getattr(selection, name) for name in (COUNTED, OF_KIND)}
+        given |= sums
+        design_limits = {name: value for name, value in given.items() if value not in (None, {})}
+        designs = cls(sites, design_limits, others)
+        designs.require(design_limits)
         if sites and not designs.first(1):
             raise designs._excluded()
         return designs
@@ -270,8 +263,8 @@ class DesignSpace:
         options = (each for site in self.sites for each in site.options if each)
         models = (Sensor(each.model.name, each.model, sheet=each.sheet) for each in options)
         offered = Placement((*self.others, *models))  # type: ignore[arg-type]  # not one rig
-        for key in (name for name in SUMS[:-1] if name in names):
-            BUILD_FIGURES[key].required(offered, f"max_{key}")
+        for key in (name for name in SUMS if name in names and name != PRICE_SUM):
+            BUILD_FIGURES[key].required(offered, "limits", key)
 
     def __iter__(self) -> Iterator[Picks]:
         """Yield designs; sites of one choice take their options in ascending order. `InputError`
@@ -361,8 +354,7 @@ class DesignSpace:
         rest = self.sites[len(begun) :]
         if name == COUNTED:
             return count + sum(len(s.sensors) for s in rest if None not in s.options)
-        key = name.removeprefix("max_")
-        return self.sum(key, begun) + sum(site.least(key) for site in rest)
+        return self.sum(name, begun) + sum(site.least(name) for site in rest)
 
     def _excluded(self) -> InputError:
         """Return the error that names a smallest set of limits that leaves no design."""

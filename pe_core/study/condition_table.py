@@ -63,11 +63,7 @@ def searched_study(study: Study) -> Study:
     """Return the study that a search evaluates candidates of: by expected AP, one in traffic."""
     if not is_by_ap(study):
         return study
-    target, targets = study.search.goals.stop.target, study.targets
-    if target is not None and not 0.0 <= target <= 1.0:
-        expected = f'an expected AP, 0 to 1, with objective = "{EXPECTED_AP}"'
-        raise InputError("optimize", "stop.target", expected, target)
-    return replace(study, targets=replace(targets, targets=OBJECTS, traffic=True), samples=0)
+    return replace(study, targets=replace(study.targets, targets=OBJECTS, traffic=True), samples=0)
 
 
 def search_evaluator(

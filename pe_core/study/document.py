@@ -24,7 +24,7 @@ from ..scene.vehicle_description import Reference
 from ..scene.vehicle_state import State
 from ..scoring.requirements import Requirement
 from ..scoring.targets import TargetRule
-from ..search import AXES, PAPER_FREE, SCHEDULED_METHOD, Schedule, Selection
+from ..search import AXES, PAPER_FREE, SCHEDULED_METHOD, Limits, Schedule, Selection
 from ..sensors import PerceptionModel
 from ..sensors.weather import Weather
 from .conditions import Conditions
@@ -152,6 +152,7 @@ class Document:
     state: tuple[State, ...] = ()
     time: Timing = field(default_factory=Timing)
     story: tuple[Story, ...] = ()
+    limits: Limits = field(default_factory=Limits)
     optimize: Optimize = field(default_factory=Optimize)
     selection: Selection = field(default_factory=Selection)
 
@@ -174,6 +175,7 @@ class Document:
             state=tuple(study.conditions.states),
             time=Timing(study.frames, study.confirmation),
             story=study.stories,
+            limits=study.limits,
             optimize=Optimize(search=study.search),
             selection=study.selection,
         )
@@ -202,6 +204,7 @@ class Document:
             frames=self.time.frames,
             confirmation=self.time.confirmation,
             stories=self.story,
+            limits=self.limits,
         )
 
     def _search(self, node: Node) -> Search:

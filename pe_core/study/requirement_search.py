@@ -1,9 +1,9 @@
 """Requirements and blind ground as constraints of a search.
 
-`[optimize] requirements = "keep"`: a placement that meets all requirements beats each one that does
+`[limits] requirements = true`: a placement that meets all requirements beats each one that does
 not. Of placements that break some, the one with the least violation is the best; their entropies do
-not matter and are not computed. `[optimize] keep = ["blind_ground"]`: a placement with more blind
-ground than is wanted, or than the study's own where nothing is wanted, is infeasible, too.
+not matter and are not computed. `[limits] blind_ground = 3.0`: a placement with more blind ground
+is infeasible, too; with `true`, one with more than the study's own.
 """
 
 import math
@@ -18,11 +18,10 @@ from ..scoring.sight import Sight
 from ..search import shared_parts
 from ..search.dispatch import value_below
 from ..search.figures import FIGURES, KEPT, REACH, RigView
-from ..search.key_figures import Wanted
+from ..search.limits import Limits
 from .conditions import mounting_cases
 from .study import Study
 
-KEEP = "keep"
 INFEASIBLE = 100.0
 """Value of a placement that breaks a constraint, without the violation: above all entropies."""
 
@@ -30,10 +29,10 @@ INFEASIBLE = 100.0
 class FiguresLimit:
     """The constraint that key figures of a rig cost no more than limits; the vehicle is as drawn.
 
-    A limit is the cost of what is wanted, and those of the rig `start` where nothing is. Scenes of
-    a search are others than those that its result is reported on: what is wanted is moved by the
-    difference of the start's figures on both. So a limit is one of the change from the start, in
-    which the scatter of scenes cancels.
+    A limit is the cost of its number, and those of the rig `start` without one. Scenes of a search
+    are others than those that its result is reported on: the number is moved by the difference of
+    the start's figures on both. So a limit is one of the change from the start, in which the
+    scatter of scenes cancels.
 
     Parameters
     ----------
@@ -46,14 +45,14 @@ class FiguresLimit:
     """
 
     def __init__(
-        self, sight: Sight, reported: Sight, keys: Sequence[str], wanted: Wanted, start: Rig
+        self, sight: Sight, reported: Sight, keys: Sequence[str], limits: Limits, start: Rig
     ) -> None:
         self._sight = sight
         self._keys = tuple(keys)
         self._limits = dict(_costs(sight, self._keys, start))
-        asked = [key for key in self._keys if getattr(wanted, key) is not None]
+        asked = [key for key in self._keys if limits.value(key) is not None]
         for key, costs in _costs(reported, asked, start):
-            limit = FIGURES[key].cost_of(getattr(wanted, key))
+            limit = FIGURES[key].cost_of(limits.value(key) or 0.0)
             pairs = zip(self._limits[key], costs, strict=True)
             self._limits[key] = tuple(rounded(limit + searched - own) for searched, own in pairs)
 
@@ -141,15 +140,13 @@ def _added(violations: Iterable[float], enough: float) -> float:
 def constraints_of(study: Study) -> tuple[FeasibilityRule, ...]:
     """Return what placements of a study's search have to keep: requirements, key figures.
     `InputError` when a zone of a requirement that is to be kept cannot be placed."""
-    search, constraints = study.search, list[FeasibilityRule]()
-    if search.requirements == KEEP and study.requirements:
+    constraints = list[FeasibilityRule]()
+    if study.limits.keeps_requirements and study.requirements:
         constraints.append(RequirementConstraint(study))
-    if keep := [key for key in KEPT if key in search.goals.keep]:
+    if keep := [key for key in KEPT if study.limits.kept(key) is not None]:
         if REACH in keep and study.targets.are_objects:
-            raise InputError("optimize", "keep", "a reach of voxels", "a study on objects")
-        limit = FiguresLimit(
-            study.sight(SEARCHED), study.sight(), keep, search.goals.wanted, study.rig
-        )
+            raise InputError("limits", REACH, "a reach of voxels", "a study on objects")
+        limit = FiguresLimit(study.sight(SEARCHED), study.sight(), keep, study.limits, study.rig)
         constraints.append(limit)
     return tuple(constraints)
 

@@ -43,6 +43,7 @@ from ..search import (
     SCHEDULED_METHOD,
     DesignSpace,
     Goals,
+    Limits,
     Mounting,
     Parametrization,
     Schedule,
@@ -104,8 +105,6 @@ class Search(ShortRepr):
         Placements evaluated at most; 0: as many as the method takes.
     tolerance : Tolerance
         Mounting errors and failures that a candidate is evaluated with; none by default.
-    requirements : {"keep"}, optional
-        Placements that meet the study's requirements are better than all that do not.
     goals : Goals
         When to stop, what stays, further starts, several objectives, the analysis of the result.
     conditions : {"mean", "worst"}, optional
@@ -135,12 +134,6 @@ class Search(ShortRepr):
         Panel("evaluations", "Budget", soft_max=10_000, beside="All"),
     )
     tolerance: Tolerance = field(default_factory=Tolerance)
-    requirements: str | None = setting(
-        None,
-        OneOf(("keep",)),
-        "Placements that meet all requirements come first",
-        Panel("keep_requirements", "Keep in Searches"),
-    )
     goals: Annotated[Goals, Part(inline=True)] = field(default_factory=Goals)
     conditions: str | None = setting(
         None,
@@ -247,6 +240,7 @@ class Study(Tabular):
         ),
         scored=True,
     )
+    limits: Limits = field(default_factory=Limits)
     frames: Frames = field(default_factory=Frames)
     confirmation: Confirmation = field(default_factory=Confirmation)
     stories: tuple[Story, ...] = ()
@@ -447,7 +441,11 @@ class Study(Tabular):
         search = self.search
         check_pairs(self.rig, search.mounting)
         where = search.free, search.limits, search.mounting, housings_of(self.rig)
-        return SearchSpace.on_vehicle(self.rig, self.vehicle, *where, search.goals.fixed)
+        # Prices are of the designs, not of the sensors that they replace.
+        limits = self.limits.changed(price=None) if self.selection.choices else self.limits
+        return SearchSpace.on_vehicle(
+            self.rig, self.vehicle, *where, fixed=search.goals.fixed, figure_limits=limits
+        )
 
     def on_mounts(self) -> "Study":
         """Return the study with each sensor that is not on its mount at the nearest pose there.
@@ -472,7 +470,7 @@ class Study(Tabular):
 
     def designs(self) -> DesignSpace:
         """Return the designs to choose from; `InputError` where there is none."""
-        return DesignSpace.of(self.selection, self.rig, self.search.mounting)
+        return DesignSpace.of(self.selection, self.rig, self.search.mounting, self.limits)
 
     def with_rig(self, rig: Rig) -> "Study":
         """Return the study with other placements."""
@@ -486,7 +484,7 @@ class Study(Tabular):
 FIELDS: dict[str, type] = {"rig": Rig, "space": PerceptionSpace, "prior": Prior, "search": Search}
 FIELDS |= {"model": PerceptionModel, "axes": MeshAxes, "selection": Selection}
 FIELDS |= {"targets": TargetRule, "vehicle": Vehicle, "reference": Reference}
-FIELDS |= {"conditions": Conditions}
+FIELDS |= {"conditions": Conditions, "limits": Limits}
 FIELDS |= {"frames": Frames, "confirmation": Confirmation}
 OPTIONAL = ("vehicle", "reference")
 

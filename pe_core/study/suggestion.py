@@ -263,7 +263,7 @@ class _Mender:
         """Look for one more sensor."""
         study = self._study
         models = list({each.model.name: each.model for each in study.rig}.values())
-        where = study.vehicle, study.search.mounting.constraints
+        where = study.vehicle, study.search.mounting.constraints, study.limits
         pairs = [(requirement, model) for requirement in self._left for model in models]
         best: dict[str, tuple[float, Rig]] = {}
         for number, (requirement, model) in enumerate(pairs):

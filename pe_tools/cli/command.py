@@ -14,7 +14,7 @@ from pe_core import catalog
 from pe_core.base.errors import InputError, one_of
 from pe_core.base.files import named_path, quoted, reason_of
 from pe_core.base.input_files import noting_inputs
-from pe_core.search import KEPT, ON_FRONT, Schedule
+from pe_core.search import LIMITED, ON_FRONT, Limits, Schedule
 from pe_core.search.goals import Front, Start
 from pe_core.sensors import CURVE_MODELS, KINDS, curve_source, detectors, fitted_curves, kind_of
 from pe_core.sensors.lidar import RETURNS
@@ -30,8 +30,8 @@ MAX_WORKERS, MAX_VOXELS, LAST_SEED = 1024, 10**9, 2**64 - 1
 """Greatest values of options: more threads or voxels than anyone has a use for."""
 
 
-NOTHING = "none"  # Value of `--keep` that keeps no figure
-STOPS = {"stop_at": "target", "stop_after": "seconds", "stop_gain": "gain"}
+NOTHING = "none"  # Value of `--limit` that drops the limits of the study
+STOPS = {"stop_after": "seconds", "stop_gain": "gain"}
 """Fields of `Stop` by option."""
 PATHS = ("STUDY", "FILE", "MESH", "PATH", "TABLE", "DIR")
 """Metavars of arguments that are files or folders."""
@@ -103,8 +103,6 @@ def add_search_options(parser: argparse.ArgumentParser) -> None:
     for option, greatest, about in options:
         parser.add_argument(option, type=count_up_to(greatest), metavar="N", help=about)
     add = parser.add_argument
-    about = "end at this entropy (or AP), or a better one"
-    add("--stop-at", type=number, metavar="VALUE", help=about)
     add("--stop-after", type=number, metavar="S", help="end after so many seconds")
     about = "end when the last placements gained less than this"
     add("--stop-gain", type=number, metavar="VALUE", help=about)
@@ -114,8 +112,8 @@ def add_search_options(parser: argparse.ArgumentParser) -> None:
     add("--start", action="append", default=[], metavar="STUDY", help=about)
     about = f"a Pareto front of these: two or more of {', '.join(ON_FRONT)}"
     add("--front", type=_names, metavar="NAME,...", help=about)
-    about = f"{', '.join(KEPT)}: kept as this or as the start has it, too; none: nothing is kept"
-    add("--keep", action="append", type=_kept, metavar="FIGURE[=VALUE]", help=about)
+    about = f"{', '.join(LIMITED)}: at this limit, or as at the start; none: no limit of the study"
+    add("--limit", action="append", type=_limit, metavar="FIGURE[=VALUE]", help=about)
 
 
 def add_score_options(parser: argparse.ArgumentParser, workers: str = "threads") -> None:
@@ -224,24 +222,24 @@ def with_goals(study: Study, args: argparse.Namespace) -> Study:
         goals = replace(goals, fixed=tuple(dict.fromkeys((*goals.fixed, *names))))
     if (names := getattr(args, "front", None)) is not None:
         goals = replace(goals, front=Front(names, goals.front.points))
-    if given := dict(getattr(args, "keep", None) or ()):
-        keep = () if NOTHING in given else tuple(dict.fromkeys((*goals.keep, *given)))
-        asked = {name: value for name, value in given.items() if value is not None}
-        goals = replace(goals, keep=keep, wanted=replace(goals.wanted, **asked))
-    if goals == own:
+    limits = study.limits
+    if given := dict(getattr(args, "limit", None) or ()):
+        limits = Limits() if given.pop(NOTHING, None) is not None else limits
+        limits = limits.changed(**given)
+    if goals == own and limits == study.limits:
         return study
-    changed = replace(study, search=replace(study.search, goals=goals))
+    changed = replace(study, search=replace(study.search, goals=goals), limits=limits)
     changed.coding()  # a follower that is to stay is bad input, not a late surprise
     return changed
 
 
-def _kept(text: str) -> tuple[str, float | None]:
-    """Return the figure and the value of ``--keep``; None where there is no value."""
+def _limit(text: str) -> tuple[str, float | bool]:
+    """Return the figure and the value of ``--limit``; true where there is no value."""
     name, _, value = text.partition("=")
-    if name not in (*KEPT, NOTHING):
-        expected = f"expected {one_of((*KEPT, NOTHING), name)}, found {quoted(name)}"
+    if name not in (*LIMITED, NOTHING):
+        expected = f"expected {one_of((*LIMITED, NOTHING), name)}, found {quoted(name)}"
         raise argparse.ArgumentTypeError(expected)
-    return name, int(value) if value.isdecimal() else number(value) if value else None
+    return name, int(value) if value.isdecimal() else number(value) if value else True
 
 
 def add_sensors_verb(verbs: Any) -> None:

@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import TextIO
 
 from pe_core.base.values import error_text
-from pe_core.search import ENTROPY
+from pe_core.search.figures import AP, ENTROPY, REQUIREMENTS
 from pe_core.sensors import kind_of
 
 from ..advice import (
@@ -161,10 +161,12 @@ def figure_lines(outcome: Outcome) -> list[str]:
     lines = [f"entropy over frames  {' -> '.join(over)} nats"] if over else []
     plain: list[str] = []
     for row in outcome.dashboard:
-        if row.figure.is_seen or (row.figure.key == ENTROPY and row.wanted is not None):
+        if row.figure.is_seen or (row.figure.key != REQUIREMENTS and row.wanted is not None):
             figure, values = row.figure, [row.figure.value(each) for each in told]
             if figure.key == ENTROPY:
                 values = [each.entropy for each in ends]
+            elif figure.key == AP:
+                values = [row.value]
             cut = map(figure.is_cut, told) if told else (False, False)
             before = map(figure.text, values[:-1], cut)
             text = f"{figure.name} {' -> '.join([*before, row.text])}"

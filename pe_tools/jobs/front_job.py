@@ -17,10 +17,10 @@ from pe_core.search import (
     EvaluatedRig,
     Journal,
     KeyFigures,
+    Limits,
     Objective,
     Picks,
     Stop,
-    Wanted,
     above_front,
     pareto_front,
 )
@@ -160,7 +160,7 @@ class FrontJob(Job):
             return None
         ordered = self._named()
         compared = [d for d in ordered if d.score is not None] or ordered
-        if self.study.search.requirements:  # those that break the fewest
+        if self.study.limits.keeps_requirements:  # those that break the fewest
             broken = [len(design.broken) + design.is_led_in for design in compared]
             fewest = min(broken)
             compared = [d for d, n in zip(compared, broken, strict=True) if n == fewest]
@@ -366,6 +366,7 @@ class FrontJob(Job):
         self._inner = job = _DesignJob(study, self)
         if objectives is not None:
             job._objectives = objectives
+            job.target = None  # of another value
         job.journal = self.journals.begin(name)
         return job
 
@@ -417,8 +418,7 @@ class _DesignJob(OptimizeJob):
         self, rigs: Sequence[Rig], waiting: Progress
     ) -> ProgressSteps[tuple[KeyFigures, ...]]:
         """Return the key figures only where some are wanted: a design shows its objectives."""
-        goals = self.study.search.goals
-        if goals.keep or goals.wanted != Wanted():
+        if self.study.limits != Limits():
             return (yield from super()._figures(rigs, waiting))
         return ()
 

@@ -71,7 +71,7 @@ def check_objectives(study: Study, names: Sequence[str]) -> None:
             raise InputError("optimize", f"front.objectives: {name}", expected, found)
         if name in BUILD_FIGURES and not study.selection.choices:
             placed = Placement.on(study.rig, study.vehicle)
-            BUILD_FIGURES[name].required(placed, f"front.objectives: {name}")
+            BUILD_FIGURES[name].required(placed, "optimize", f"front.objectives: {name}")
 
 
 class FrontFigures:
@@ -134,7 +134,7 @@ class FrontFigures:
             return self._of[name](view.rig)
         row = FIGURES[name]
         if isinstance(row, BuildFigure):
-            row.required(view.placement, f"front.objectives: {name}")
+            row.required(view.placement, "optimize", f"front.objectives: {name}")
         found = row.worst(row.values(view))
         if found is None:
             expected = f"a study with a known {row.name}"

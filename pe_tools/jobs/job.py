@@ -19,14 +19,7 @@ from pe_core.scoring.requirements import CheckStep, RequirementChecker, Verdict
 from pe_core.scoring.sampling import CENTERED, SEARCHED, Shift
 from pe_core.scoring.score import SURE, ObjectScore, Score, ScoreStopped
 from pe_core.search import EvaluatedRig, KeyFigures, Reading, Robustness, dashboard
-from pe_core.search.figures import (
-    BLIND_GROUND,
-    BLIND_SECTOR,
-    ENTROPY,
-    FIGURES,
-    REQUIREMENTS,
-    TRAFFIC_AP,
-)
+from pe_core.search.figures import BLIND_GROUND, BLIND_SECTOR, ENTROPY, FIGURES, TRAFFIC_AP
 from pe_core.study.condition_table import (
     ConditionTable,
     condition_table,
@@ -189,9 +182,15 @@ class Outcome(Tabular):
     @property
     def dashboard(self) -> tuple[Reading, ...]:
         """What the result is decided by, with what is wanted and kept."""
-        search, met = self.study.search, [each.met for each in self.verdicts]
-        keep = [*search.goals.keep, *[REQUIREMENTS] * (search.requirements is not None)]
-        return dashboard(self.figures_after, self.after.entropy, met, search.goals.wanted, keep)
+        met = [each.met for each in self.verdicts]
+        objects = self.after.objects if self.in_traffic is None else self.in_traffic[1]
+        return dashboard(
+            self.figures_after,
+            self.after.entropy,
+            met,
+            limits=self.study.limits,
+            ap=None if objects is None else objects.ap,
+        )
 
     def _rows(self) -> list[dict[str, Any]]:
         told = [{}, {}] if self.figures is None else [_beside(each) for each in self.figures]

@@ -97,6 +97,8 @@ class OptimizeJob(Job):
         What the search minimises in place of entropy: takes a `Rig`, returns a number. Processes
         evaluate it if it can be pickled. Limits of the study are kept; robustness and flatness,
         which are of entropy, are left out.
+    target : float, optional
+        The search ends at this figure; by default the study's limit on what the search improves.
 
     Attributes
     ----------
@@ -124,11 +126,13 @@ class OptimizeJob(Job):
         before: Score | None = None,
         journal: Journal | None = None,
         objective: Callable[[Rig], float] | Objective | None = None,
+        target: float | None = None,
     ) -> None:
         super().__init__(study, workers)
         self._own = None if objective is None else own_objective(study, objective)
         self.figure = searched_figure(study) if self._own is None else self._own.figure
         self.journal_name = "" if self._own is None else self.figure.key
+        self.target = self.figure.target(study) if target is None else target
         self.before, self.journal = before, journal or Journal()
         self.round = 0
         self.history: list[HistoryRow] = []
@@ -235,7 +239,7 @@ class OptimizeJob(Job):
             found = yield from self._beside(lambda _: self._robustness(best), analysing)
         verdicts = (yield from self._verdicts(best, analysing, to_the_end=False)) or ()
         against: tuple[Advice, ...] | None = ()
-        if best.search.requirements and not all(verdict.met for verdict in verdicts):
+        if best.limits.keeps_requirements and not all(verdict.met for verdict in verdicts):
             against = yield from self._beside(lambda _: unmet(suggestions(best)), analysing)
         flat = None
         if self.analyses and self._own is None and not self.stopped:
@@ -357,7 +361,13 @@ class OptimizeJob(Job):
                 break
             if number:  # the best so far stays the job's until a start ends better
                 self.history = []
-            watch = StopWatch(self.study.search.goals.stop, self._objectives, began, self.figure)
+            watch = StopWatch(
+                self.study.search.goals.stop,
+                self._objectives,
+                began,
+                figure=self.figure,
+                target=self.target,
+            )
             share = number / len(rigs), 1.0 / len(rigs)
             yield from self._search_from(rig, objectives, watch, share)
             if len(rigs) > 1 and self.history:
@@ -393,7 +403,7 @@ class OptimizeJob(Job):
             fraction = share[0] + share[1] * step.fraction
             self._note(replace(step, evaluations=before + step.evaluations, fraction=fraction))
             yield self._progress
-            if self.study.search.goals.stop.is_on and (reason := watch.reason(step)):
+            if reason := watch.reason(step):
                 self.stop_reason = reason
                 break
 

@@ -3,6 +3,7 @@ search minimises one value. By expected AP the value is minus the AP, which nobo
 
 from dataclasses import dataclass
 
+from pe_core.search.figures import AP
 from pe_core.study.condition_table import is_by_ap, searched_study
 from pe_core.study.requirement_search import INFEASIBLE, is_infeasible
 from pe_core.study.study import ENTROPY, EXPECTED_AP, Study
@@ -21,6 +22,11 @@ class SearchedFigure:
     def higher_is_better(self) -> bool:
         """Whether a search raises the figure."""
         return self.sign < 0.0
+
+    def target(self, study: Study) -> float | None:
+        """Return the figure that ends the study's search: the limit on it that is kept."""
+        key = AP if self.higher_is_better else self.key
+        return study.limits.kept_value(key)
 
     def to_figure(self, value: float) -> float:
         """Return the figure of a value that a search minimises."""

@@ -22,7 +22,7 @@ APART = 2.0
 class StopWatch:
     """Watches the steps of one search. There is an objective for each level: a target that is
     reached on few voxels is checked on the last one. `started` is `time.monotonic()` when the first
-    search of a job began."""
+    search of a job began; `target` is the figure that ends the search."""
 
     def __init__(
         self,
@@ -30,10 +30,11 @@ class StopWatch:
         objectives: Sequence[Objective],
         started: float,
         figure: SearchedFigure = IN_NATS,
+        target: float | None = None,
     ) -> None:
         self._stop, self._objectives, self._started = stop, objectives, started
         self._figure = figure
-        self._target = None if stop.target is None else figure.to_value(stop.target)
+        self._target = None if target is None else figure.to_value(target)
         self._bests: deque[float] = deque(maxlen=stop.over + 1)
         self._checked: float | None = None
 
@@ -66,9 +67,11 @@ def stop_text(outcome: Outcome) -> str:
     """Return why a search ended early, as text; empty without a reason."""
     stop = outcome.start.search.goals.stop
     figure = outcome.figure
-    target, gain = (figure.amount(f"{value or 0.0:g}") for value in (stop.target, stop.gain))
+    target = figure.target(outcome.start)
+    at = "" if target is None else f" of {figure.amount(f'{target:g}')}"
+    gain = figure.amount(f"{stop.gain or 0.0:g}")
     return {
-        TARGET: f"ended at its target of {target}",
+        TARGET: f"ended at its target{at}",
         SECONDS: f"ended after {stop.seconds or 0.0:g} s",
         GAIN: f"ended: {stop.over:,} placements gained less than {gain}",
     }.get(outcome.stop_reason, "")

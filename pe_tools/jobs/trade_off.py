@@ -61,7 +61,10 @@ def design_study(
     rig = rig.with_poses(_seated(study.rig, rig, mounting))
     search = replace(study.search, mounting=mounting, goals=goals)
     conditions = study.conditions.without(gone)
-    return replace(study, rig=rig, conditions=conditions, search=search, selection=Selection())
+    limits = study.limits.changed(price=None)  # the design is within it
+    return replace(
+        study, rig=rig, conditions=conditions, search=search, selection=Selection(), limits=limits
+    )
 
 
 def design_names(designs: Sequence[Models]) -> list[str]:
@@ -230,7 +233,7 @@ class TradeOff(Tabular):
         if not count or not self.front or not self.searched:
             return ""
         fewest = min(len(design.broken) for design in self.front)
-        if self.study.search.requirements and fewest:
+        if self.study.limits.keeps_requirements and fewest:
             some = f"the fewest broken are {fewest}, by the designs of the front"
             return f"no design meets all {count} requirements: {some}"
         good = sum(not design.broken for design in self.front)

@@ -223,7 +223,7 @@ class WhereJob(Job):
     def __iter__(self) -> Iterator[Progress]:
         row, study = self.row, self.study
         yield self._waiting
-        where = study.vehicle, study.search.mounting.constraints
+        where = study.vehicle, study.search.mounting.constraints, study.limits
         mount: Any = study.search.mounting.mounts.get(self._mount)
         own: Any = {"parts": self._parts, "mount": mount, "count": self.count}
         self._places = MountingPlaces(study.rig, self.sensor, *where, **own)

@@ -7,10 +7,10 @@ import bpy
 import pytest
 
 from blender_addon import bridge, engine_calls
-from blender_addon.bridge.scene_settings import write_goals
+from blender_addon.bridge.limits import write_limits
 from blender_addon.engine import pe, search
 from blender_addon.operators import known_rigs
-from blender_addon.panels import CLASSES, dashboard, main
+from blender_addon.panels import CLASSES, main
 from tests.addon import layouts, scenes
 
 TERMS = re.compile(r"\bnats\b|\bprior\b|\bfusion\b|entropy", re.IGNORECASE)
@@ -46,6 +46,7 @@ def test_its_values_are_those_of_the_score(car):
     assert f"{result.entropy:.3f}" in texts
     data = json.loads(car.perception_entropy.result_json)
     data["figures"]["after"]["reach"] = {"car": [20.0, True], "cone": [20.0, True]}
+    data["figures"]["after"]["values"]["reach"] = 20.0
     car.perception_entropy.result_json = json.dumps(data)
     assert "≥ 20 m" in shown(car).texts("label"), "the space ends there"
 
@@ -58,24 +59,25 @@ def test_what_is_wanted_is_met_or_not_and_is_the_study_s(car):
     )
     assert "Wanted" in shown(car).texts("label")
     for wanted, text in ((0.0, "0 of 1 met"), (value + 1.0, "1 of 1 met")):
-        settings.wanted_blind_ground = wanted
+        settings.limit_blind_ground = wanted
         assert text in shown(car).texts("label")
-        goals = scenes.study().search.goals
-        assert goals.wanted.blind_ground == pytest.approx(wanted, rel=1e-6)
+        limit = scenes.study().limits.value("blind_ground")
+        assert limit == pytest.approx(wanted, rel=1e-6)
     settings.keep_blind_ground, settings.keep_ap_near = False, True
-    assert scenes.study().search.goals.keep == ("blind_sector", "ap_near")
+    kept = [key for key, limit in scenes.study().limits if limit.kept]
+    assert kept == ["blind_sector", "ap_near"]
     bpy.ops.pe.score()
     (row,) = (r for r in settings.result.data["dashboard"] if r["figure"] == "blind_ground")
     assert row["met"] and not row["kept"]
-    settings.wanted_blind_ground = -1.0  # nothing, as all below 0
-    assert scenes.study().search.goals.wanted == search.Wanted()
+    settings.limit_blind_ground = -100.0  # no limit: a lower number is none, 0 may be one
+    assert scenes.study().limits == search.Limits(blind_sector=True, ap_near=True)
 
 
-def test_goals_that_are_written_are_those_that_are_read(car):
-    wanted = search.Wanted(blind_sector=0, reach=40.0, entropy=-1.5)
-    goals = search.Goals(keep=("reach", "ap_far"), wanted=wanted)
-    write_goals(car.perception_entropy, goals)
-    assert scenes.study().search.goals == goals
+def test_limits_that_are_written_are_those_that_are_read(car):
+    shown_only = search.Limit(-1.5, kept=False)
+    limits = search.Limits(blind_sector=0, reach=True, ap_far=0.25, height=2.5, entropy=shown_only)
+    write_limits(car.perception_entropy, limits)
+    assert scenes.study().limits == limits
 
 
 def test_a_good_score_is_told_by_the_known_rigs_on_this_body(car):
@@ -114,7 +116,6 @@ def test_simple_has_eight_headers_at_most_and_no_terms(car):
     assert len(panels(car, roots=True)) > len(simple)
     assert f"{car.perception_entropy.result.entropy:.3f} nats" in shown(car).texts("label")
     assert json.loads(car.perception_entropy.result_json)["dashboard"]
-    assert dashboard.KEEP.keys() == {*search.KEPT, "requirements"}
 
 
 def test_all_panels_are_drawn_before_there_is_a_score(car):

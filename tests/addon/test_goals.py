@@ -3,6 +3,7 @@
 import bpy
 import pytest
 
+import pe_core as pe
 from blender_addon import bridge, diagnostics
 from pe_core.search import Goals
 from pe_tools.advice import flatness
@@ -53,7 +54,7 @@ def test_what_a_search_could_not_keep_stays_until_something_moves(asked):
 
     settings = asked.perception_entropy
     settings.keep_blind_ground = True
-    settings.wanted_blind_ground = 0.0  # one sensor on the roof cannot have it
+    settings.limit_blind_ground = 0.0  # one sensor on the roof cannot have it
     settings.evaluations = 5
     assert bpy.ops.pe.optimize() == {"FINISHED"}
     assert not settings.result_stale and "figure" in codes()
@@ -66,14 +67,16 @@ def test_what_a_search_could_not_keep_stays_until_something_moves(asked):
 
 def test_goals_of_the_panel_are_those_of_the_study(asked):
     settings = asked.perception_entropy
-    kept = ("blind_ground", "blind_sector")
-    assert scenes.study().search.goals == Goals(keep=kept)
+    assert scenes.study().limits == pe.Limits(blind_ground=True, blind_sector=True)
     settings.keep_blind_ground = settings.keep_blind_sector = False
+    assert scenes.study().limits == pe.Limits()
     assert scenes.study().search.goals == Goals()
-    settings.stop_target, settings.stop_gain, settings.stop_over = -1.25, 0.002, 40
+    settings.limit_entropy, settings.keep_entropy = -1.25, True
+    assert scenes.study().limits == pe.Limits(entropy=-1.25)
+    settings.stop_gain, settings.stop_over = 0.002, 40
     bpy.data.objects["roof"].perception_entropy.stays = True
     goals = scenes.study().search.goals
-    assert (goals.stop.target, goals.stop.seconds, goals.stop.over) == (-1.25, None, 40)
+    assert (goals.stop.seconds, goals.stop.over) == (None, 40)
     assert goals.stop.gain == 0.002 and goals.fixed == ("roof",)
     settings.start_variants = True
     assert scenes.study().search.goals.starts == ()

@@ -106,7 +106,7 @@ def test_sensors_on_a_rack_move_as_one(car):
 
 def test_what_every_placement_keeps_to(car):
     settings = car.perception_entropy
-    settings.max_height, settings.max_width, settings.min_distance = 1.9, 1.7, 0.2
+    settings.limit_height, settings.limit_width, settings.limit_distance = 1.9, 1.7, 0.2
     settings.clear_housings = True
     bpy.context.scene.cursor.location = (1.0, 0.0, 1.0)
     assert bpy.ops.pe.add_no_go() == {"FINISHED"}
@@ -114,7 +114,8 @@ def test_what_every_placement_keeps_to(car):
     bpy.context.view_layer.update()
     found = scenes.study().search.mounting.constraints
     area = pe.NoGo("no_go", (0.5, 1.5), (-0.25, 0.25), (0.75, 1.25))
-    assert found == pe.Constraints(1.9, 1.7, 0.2, True, [area])
+    assert found == pe.Constraints(True, [area])
+    assert scenes.study().limits.height == pe.Limit(1.9)
 
 
 def test_a_mount_is_added_of_what_is_selected_or_painted(car):

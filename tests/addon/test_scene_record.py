@@ -71,8 +71,7 @@ def set_what_is_by_default(settings):
     for _, setting, *_ in studies.setting_keys(of_scene=True):
         name = None if setting.panel is None else setting.panel.property
         if name is not None and not settings.is_property_set(name):
-            value = max(getattr(settings, name), 0) if name.startswith("wanted_") else None
-            value = getattr(settings, name) if value is None else value
+            value = getattr(settings, name)
             if studies.is_switch(setting):
                 setattr(settings, name, True)
             elif isinstance(value, bool | int | float):
@@ -83,7 +82,7 @@ def set_what_is_by_default(settings):
 def rich(car):
     """Return a scene in which everything is set that a study can have of one."""
     settings = car.perception_entropy
-    settings.max_height, settings.max_width, settings.min_distance = 2.6, 2.4, 0.1
+    settings.limit_height, settings.limit_width, settings.limit_distance = 2.6, 2.4, 0.1
     settings.clear_housings = True
     assert bpy.ops.pe.add_no_go() == {"FINISHED"}
     bpy.context.object.location = (0.0, 0.0, 9.0)
@@ -107,7 +106,7 @@ def rich(car):
     settings.track_needed, settings.track_window, settings.track_correlation = 2, 4, 0.5
     bpy.ops.pe.add_row(rows="stories", kind="cut_in")
     settings.stories[0].speed_kmh = 50.0
-    settings.max_price, settings.max_sensors, settings.currency = 9000.0, 9, "EUR"
+    settings.limit_price, settings.max_sensors, settings.currency = 9000.0, 9, "EUR"
     scenes.add_mount(car, "cabin", bpy.data.objects["cabin"], standoff=0.04, orientation="normal")
     scenes.paint(bpy.data.objects["cabin"], "top", lambda co: 1.0 if co.z > 0 else 0.0)
     scenes.add_mount(car, "painted", faces="GROUP", group="top")
@@ -140,7 +139,7 @@ def rich(car):
         option.model, option.price = model, price
         option.mass, option.power, option.data_rate = 0.5, 4.0, 300.0
     own.mass, own.power, own.data_rate, own.price = 0.4, 3.0, 250.0, 90.0
-    settings.max_mass, settings.max_power, settings.max_data_rate = 90.0, 900.0, 9000.0
+    settings.limit_mass, settings.limit_power, settings.limit_data_rate = 90.0, 900.0, 9000.0
     own.may_be_left_out = True
     own.stays = True
     settings.front_objectives = {"entropy", "height"}
@@ -187,7 +186,7 @@ def test_a_variant_of_the_four_corners_keeps_mounts_pairs_and_constraints(addon)
     assert bpy.ops.pe.save_variant() == {"FINISHED"}
     study = variant_study(scene, scene.perception_entropy.variants[-1])
     assert len(study.search.mounting.mounts) == len(study.search.mounting.pairs) == 2
-    assert study.search.mounting.constraints.max_height == 2.7
+    assert study.limits.height == pe.Limit(2.7)
     assert differences(study, scenes.study()) == []
 
 
@@ -213,7 +212,7 @@ def test_a_variant_s_study_is_that_of_the_scene_once_it_is_applied(rich):
 
 def test_an_imported_study_becomes_the_record_of_the_scene_that_holds_it(rich, tmp_path):
     settings = rich.perception_entropy  # of a camera's housing nothing is known
-    settings.max_protrusion = settings.max_frontal_area = 0.0
+    settings.limit_protrusion = settings.limit_frontal_area = bridge.NONE
     exported = scenes.study()
     pt.export_study(exported, tmp_path / "study.toml")
     study = pe.load_study(tmp_path / "study.toml")

@@ -34,13 +34,14 @@ def offered(car):
 def test_the_scene_s_choices_are_the_study_s(offered):
     scenes.add_sensor("eye", model="Camera 60 deg")
     offer("eye", ("Camera 30 deg", 1.0), left_out=True)
-    offered.perception_entropy.max_price = 99.2
+    offered.perception_entropy.limit_price = 99.2
     selection = scenes.study().selection
     assert [c.sensors for c in selection.choices] == [("eye",), ("roof",)]
     assert [c.optional for c in selection.choices] == [True, False]
     roof = selection.choices[1].options
     assert [(o.model.name, o.price) for o in roof] == [(LARGE, 99.1), (CAN, 7.3)]
-    assert (selection.max_price, selection.currency) == (99.2, "EUR")
+    assert selection.currency == "EUR"
+    assert scenes.study().limits.price == pe.Limit(99.2)
 
 
 def test_each_design_of_the_front_is_a_variant_and_nothing_moves(offered):

@@ -33,7 +33,15 @@ def can(position=ON_ROOF, name="roof", rotation=(0.0, 0.0, 0.0), model=CAN):
     return pe.Sensor(name, pe.catalog.load(model), pe.Pose.from_degrees(position, rotation))
 
 
-def space(*sensors, mount=None, limits=None, free=("x", "y", "z", "pitch"), vehicle=None, **more):
+def space(
+    *sensors,
+    mount=None,
+    limits=None,
+    free=("x", "y", "z", "pitch"),
+    vehicle=None,
+    figures=None,
+    **more,
+):
     """A search space on the car; sensors named in `mount` are on it."""
     rig = pe.Rig(sensors)
     mounts = {name: each for name, each in (mount or {}).items()}
@@ -42,6 +50,7 @@ def space(*sensors, mount=None, limits=None, free=("x", "y", "z", "pitch"), vehi
         rig,
         vehicle or car(),
         search=pe.Search({s.name: free for s in rig}, limits or {}, mounting=mounting),
+        limits=pe.Limits(**(figures or {})),
     )
     return rig, study.search_space()
 

@@ -20,7 +20,7 @@ CALLS = (
     (pe.Prior, {"model": "road", "classes": PRIOR.classes, "focus": [pe.Focus(2.0)]}),
     (pe.Prior, {"model": "boxes", "boxes": BOXES}),
     (pe.Search, {"mounting": pe.Mounting(), "goals": pe.Goals(), "tolerance": pe.Tolerance()}),
-    (pe.Goals, {"stop": pe.Stop(), "front": pe.Front(), "wanted": pe.Wanted(), "starts": []}),
+    (pe.Goals, {"stop": pe.Stop(), "front": pe.Front(), "starts": []}),
     (pe.Start, {"name": "a", "poses": {"top": TOP.pose}}),
     (pe.SearchSpace, {"bounds": {}, "housings": {}}),
     (pe.Study, {"rig": RIG, "vehicle": CAR, "space": SPACE, "prior": PRIOR}),

@@ -137,39 +137,39 @@ def test_a_sheet_of_the_catalogue_says_its_source_and_has_no_price():
 
 
 LIMITS = (
-    ("max_mass", 1.0, cans((0, 0, 1.8), (1, 0, 1.8))),
-    ("max_power", 15.0, cans((0, 0, 1.8), (1, 0, 1.8))),
-    ("max_data_rate", 7.0, cans((0, 0, 1.8))),
-    ("max_protrusion", 0.01, cans((2.4, 0, 0.6))),
-    ("max_cleaning_reach", 1.5, cans((0, 0, 1.8))),
-    ("max_frontal_area", 0.002, cans((0, 0, 1.8))),
-    ("min_overlap", 31.5, eyes(0, 60)),
+    ("mass", 1.0, cans((0, 0, 1.8), (1, 0, 1.8))),
+    ("power", 15.0, cans((0, 0, 1.8), (1, 0, 1.8))),
+    ("data_rate", 7.0, cans((0, 0, 1.8))),
+    ("protrusion", 0.01, cans((2.4, 0, 0.6))),
+    ("cleaning_reach", 1.5, cans((0, 0, 1.8))),
+    ("frontal_area", 0.002, cans((0, 0, 1.8))),
+    ("overlap", 31.5, eyes(0, 60)),
 )
 
 
 def broken(name, at, sensors):
     """Limits that a rig breaks where one of them is so."""
-    constraints = pe.Mounting(constraints=pe.Constraints(**{name: at}))
     rig = pe.Rig(sensors)
-    space = pe.SearchSpace.on_vehicle(rig, shapes.box_car(), mounting=constraints)
+    limits = pe.Limits(**{name: at})
+    space = pe.SearchSpace.on_vehicle(rig, shapes.box_car(), figure_limits=limits)
     housings = {s.name: h for s in rig if (h := pe.catalog.housing(s.model.name))}
     coding = Parametrization(rig, replace(space, housings=housings))
-    return sorted(text.split(" of ")[0] for text in coding.broken(rig))
+    return sorted(text.split(" of ")[0].removeprefix("limits.") for text in coding.broken(rig))
 
 
 def test_a_limit_is_a_rule_of_each_placement():
     for name, limit, sensors in LIMITS:
-        found = value(name.partition("_")[2], sensors)
-        looser = found * (0.9 if name.startswith("min") else 1.1)
+        found = value(name, sensors)
+        looser = found * (0.9 if name == "overlap" else 1.1)
         told = [broken(name, at, sensors) for at in (limit, found, looser)]
         assert told == [[name], [], []], name
 
 
 def test_a_limit_of_what_is_not_known_is_refused_in_one_line():
-    for name in ("max_mass", "max_protrusion"):
+    for name in ("mass", "protrusion"):
         rig = pe.Rig([*cans((0, 0, 1.8)), shapes.camera(name="eye")])
-        search = pe.Search(mounting=pe.Mounting(constraints=pe.Constraints(**{name: 1.0})))
-        study = pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search)
+        limits = pe.Limits(**{name: 1.0})
+        study = pe.Study(rig, shapes.box_car(), shapes.small_space(), limits=limits)
         with pytest.raises(pe.InputError) as error:
             study.coding()
         assert error.value.field == name and "eye" in error.value.found
@@ -185,18 +185,16 @@ def choice_study(**more):
         shapes.lidar_on_roof(small, (x, 0, 1.8), name=n) for n, x in (("a", -0.5), ("b", 0.5))
     ]
     choices = [pe.Choice(options, ["a"]), pe.Choice(options, ["b"], optional=True)]
-    limits = pe.Mounting(constraints=pe.Constraints(**more))
     goals = Goals(front=Front(("entropy", "mass"), 3))
-    search = pe.Search(
-        {"a": ("z",), "b": ("z",)}, samples=1024, evaluations=24, goals=goals, mounting=limits
-    )
+    search = pe.Search({"a": ("z",), "b": ("z",)}, samples=1024, evaluations=24, goals=goals)
     selection = pe.Selection(choices)
     rig = pe.Rig(sensors)
     given = {"search": search, "samples": 1024, "selection": selection}
+    given["limits"] = pe.Limits(**more)
     return pe.Study(rig, shapes.box_car(), shapes.small_space(), **given)
 
 
-@pytest.mark.parametrize("limits", [{}, {"max_mass": 2.5}, {"max_power": 10.0, "max_mass": 2.0}])
+@pytest.mark.parametrize("limits", [{}, {"mass": 2.5}, {"power": 10.0, "mass": 2.0}])
 def test_designs_within_limits_of_sums_are_those_of_an_exhaustive_search(limits):
     designs = choice_study(**limits).designs()
     found = {picks: [designs.sum(key, picks) for key in SUMS] for picks in designs}
@@ -204,11 +202,11 @@ def test_designs_within_limits_of_sums_are_those_of_an_exhaustive_search(limits)
     plain = {}
     for a, b in itertools.product(range(2), range(3)):
         sums = [own[a] + (own[b] if b < 2 else 0.0) for own in (mass, power, rate, price)]
-        if sums[0] <= limits.get("max_mass", 99) and sums[1] <= limits.get("max_power", 99):
+        if sums[0] <= limits.get("mass", 99) and sums[1] <= limits.get("power", 99):
             plain[a, b] = sums
     assert found == plain
-    with pytest.raises(pe.InputError, match="max_mass"):
-        choice_study(max_mass=0.4).designs()
+    with pytest.raises(pe.InputError, match="mass"):
+        choice_study(mass=0.4).designs()
 
 
 def test_a_score_tells_what_can_be_built_and_of_whom_it_is_not_known(tmp_path, capsys):

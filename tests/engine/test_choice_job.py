@@ -101,8 +101,8 @@ def test_key_figures_of_designs_are_computed_only_where_some_are_wanted(monkeypa
 
     monkeypatch.setattr(KeyFigures, "of_rig", of_rig)
     given = study([pe.Choice(options(), ["roof"])], free=())
-    goals = pe.Goals(keep=keep)
-    found = front_of(replace(given, search=replace(given.search, goals=goals)))
+    limits = pe.Limits(**dict.fromkeys(keep, True))
+    found = front_of(replace(given, limits=limits))
     assert len(found.designs) == 3 and bool(computed) == bool(keep)
 
 
@@ -119,9 +119,7 @@ def test_a_stop_keeps_the_front_so_far():
 def test_a_design_without_a_place_is_reported_and_the_others_stay():
     """The tall can does not fit under a height that the small one keeps to."""
     given = study([pe.Choice(options(["Pandar64", mounting.CAN]), ["roof"])], free=("x",))
-    limits = pe.Constraints(max_height=mounting.ON_ROOF[2] + 0.04)
-    search = replace(given.search, mounting=pe.Mounting(constraints=limits))
-    found = front_of(replace(given, search=search))
+    found = front_of(replace(given, limits=pe.Limits(height=mounting.ON_ROOF[2] + 0.04)))
     assert [d.name for d in found.front] == [mounting.CAN]
     assert "height" in found.refused["Pandar64"]
 
@@ -143,8 +141,8 @@ def test_designs_that_keep_requirements_come_first(tmp_path):
     plain = study([pe.Choice(options(), ["roof"])], free=())
 
     def front(*requirements, keep):
-        search = replace(plain.search, requirements="keep" if keep else None)
-        return front_of(replace(plain, requirements=requirements, search=search))
+        limits = pe.Limits(requirements=True if keep else None)
+        return front_of(replace(plain, requirements=requirements, limits=limits))
 
     told, kept, none = front(many, keep=False), front(many, keep=True), front(many, most, keep=True)
     assert {d.name: d.broken for d in told.designs}[mounting.CAN] == ("many",)
@@ -294,10 +292,14 @@ def test_what_is_read_is_written_again():
         "optional": True,
         "option": [*LIDARS, {"model": own, "price": 0.1}],
     }
-    limits = {"max_price": 30, "max_sensors": 2, "max_of_kind": {"lidar": 2}, "currency": "EUR"}
+    limits = {"max_sensors": 2, "max_of_kind": {"lidar": 2}, "currency": "EUR"}
     sensor = {"name": "held", "model": "Pandar40", "position": [0, 0, 1]}
     first = pe.study_from_dict(
-        {"sensor": [*data()["sensor"], sensor], "selection": {**limits, "choice": [choice]}}
+        {
+            "sensor": [*data()["sensor"], sensor],
+            "selection": {**limits, "choice": [choice]},
+            "limits": {"price": 30},
+        }
     )
     written = pe.study_to_dict(first)
     again = pe.study_from_dict(written)
@@ -328,8 +330,8 @@ REFUSED = [
     ("selection.choice[0].optional", {"choice": [{**ROOF, "optional": 1}]}),
     ("selection.choice[0].pice", {"choice": [{**ROOF, "pice": 1}]}),
     ("selection.max_of_kind.sonar", {"selection": {"max_of_kind": {"sonar": 1}}}),
-    ("selection.max_price", {"selection": {"max_price": float("nan")}}),
-    ("selection: max_price", {"choice": [ROOF], "selection": {"max_price": 4}}),
+    ("limits.price", {"limits": {"price": float("nan")}}),
+    ("selection: price", {"choice": [ROOF], "limits": {"price": 4}}),
     ("selection: max_sensors", {"choice": [ROOF], "selection": {"max_sensors": 1}}),
 ]
 
@@ -341,11 +343,10 @@ def test_what_is_wrong_is_refused():
 def test_limits_that_leave_nothing_together_are_named_together():
     """A second camera is too many, a LiDAR too dear: each limit alone leaves the other."""
     either = [{"model": "Pandar64", "price": 9}, {"model": "Camera 30 deg", "price": 1}]
-    limits = {"max_of_kind": {"camera": 1}, "max_price": 5, "max_sensors": 7}
-    with pytest.raises(
-        pe.InputError, match="selection: max_price and max_of_kind: expected limits"
-    ):
-        pe.study_from_dict(data(choice=[{"sensors": ["roof"], "option": either}], selection=limits))
+    of_kind = {"max_of_kind": {"camera": 1}, "max_sensors": 7}
+    choice = [{"sensors": ["roof"], "option": either}]
+    with pytest.raises(pe.InputError, match="selection: price and max_of_kind: expected limits"):
+        pe.study_from_dict(data(choice=choice, selection=of_kind, limits={"price": 5}))
 
 
 def test_what_leads_a_group_stays():

@@ -20,8 +20,9 @@ def sensor(name, model="Pandar64", position=(0.0, 0.0, 2.0)):
     return pe.Sensor(name, pe.catalog.load(model), pe.Pose(position))
 
 
-def designs(rig, *choices, mounting=None, **limits):
-    return DesignSpace.of(pe.Selection(choices, **limits), rig, mounting or pe.Mounting())
+def designs(rig, *choices, mounting=None, price=None, **limits):
+    selection = pe.Selection(choices, **limits)
+    return DesignSpace.of(selection, rig, mounting or pe.Mounting(), pe.Limits(price=price))
 
 
 RIG = pe.Rig([sensor("a"), sensor("b"), sensor("eye", EYES[0]), sensor("held")])
@@ -32,15 +33,15 @@ CHOICES = (
 )
 
 
-def by_hand(max_price=99, max_sensors=9, lidars=9):
+def by_hand(price=99, max_sensors=9, lidars=9):
     """Model names of every design, from nested loops and sums alone."""
     found = set()
     prices = dict(zip((*MODELS, *EYES, None), (9, 7, 4, 2, 1, 0), strict=True))
     for a, b, eye in itertools.product((*MODELS, None), MODELS[:2], (*EYES, None)):
-        price = prices[a] + prices[b] + prices[eye]
+        cost = prices[a] + prices[b] + prices[eye]
         count = (a is not None) + 1 + (eye is not None) + 1
-        if price <= max_price and count <= max_sensors and (a is not None) + 2 <= lidars:
-            found.add((a, b, eye, price))
+        if cost <= price and count <= max_sensors and (a is not None) + 2 <= lidars:
+            found.add((a, b, eye, cost))
     return found
 
 
@@ -48,10 +49,10 @@ def by_hand(max_price=99, max_sensors=9, lidars=9):
     ("limits", "same"),
     [
         ({}, {}),
-        ({"max_price": 12}, {"max_price": 12}),
+        ({"price": 12}, {"price": 12}),
         ({"max_sensors": 3}, {"max_sensors": 3}),
         ({"max_of_kind": {"lidar": 2}}, {"lidars": 2}),
-        ({"max_price": 10, "max_sensors": 3}, {"max_price": 10, "max_sensors": 3}),
+        ({"price": 10, "max_sensors": 3}, {"price": 10, "max_sensors": 3}),
     ],
 )
 def test_designs_are_those_of_nested_loops(limits, same):
@@ -143,5 +144,5 @@ def test_limits_that_would_be_checked_for_ever_are_refused(monkeypatch):
     models = [pe.Option(pe.catalog.load(n), p) for n, p in ((MODELS[0], 1), (EYES[0], 2))]
     each = [pe.Choice(models, [name]) for name in names]
     with pytest.raises(pe.InputError, match="fewer choices, or limits that are checked on 500"):
-        designs(rig, *each, max_price=59, max_of_kind={"lidar": 20})
-    assert designs(rig, *each, max_price=60, max_of_kind={"lidar": 20}).first(1)
+        designs(rig, *each, price=59, max_of_kind={"lidar": 20})
+    assert designs(rig, *each, price=60, max_of_kind={"lidar": 20}).first(1)

@@ -10,7 +10,7 @@ import pe_core as pe
 import pe_tools as pt
 from pe_core.scoring.requirements import BODIES, Requirement, Zone
 from pe_core.scoring.sampling import CENTERED, HELD_OUT
-from pe_core.search import Front, Goals, Stop
+from pe_core.search import Front, Goals
 from pe_core.search.tolerance import without_each
 from pe_core.study import Conditions, load_study_data, study_from_dict, study_to_dict
 from pe_core.study.condition_table import ExpectedApEvaluator, search_evaluator, study_objective
@@ -39,8 +39,6 @@ def study(goals=None, names=("roof",), **more):
     search = replace(search, goals=goals or Goals())
     targets, space = pe.TargetRule(scenes=8), pe.PerceptionSpace((-40, 40), (-20, 20), (0, 3), 0.5)
     own = {"rig": rig, "targets": targets, "samples": 1024, "search": search} | changes
-    if "keep" in (given.get("requirements") or ""):
-        own["search"] = replace(own["search"], requirements="keep")
     return pe.Study(vehicle=shapes.box_car(), space=space, **own)
 
 
@@ -111,11 +109,11 @@ def test_the_objective_is_in_the_file_and_another_one_is_refused(tmp_path):
 
 def test_a_target_is_an_ap(plain):
     target = -plain.history[-1].entropy - 1e-6
-    outcome = finished(study(Goals(Stop(target=target))))
+    outcome = finished(replace(study(), limits=pe.Limits(ap=target)))
     assert outcome.stop_reason == "target" and -outcome.history[-1].entropy >= target
     assert f"ended at its target of an expected AP of {target:g}" in summary(outcome)
-    with pytest.raises(pe.InputError, match=r"stop\.target: expected.*0.*1"):
-        finished(study(Goals(Stop(target=-1.25))))
+    with pytest.raises(pe.InputError, match=r"limits: ap: .*-1\.25"):
+        pe.Limits(ap=-1.25)
 
 
 def test_the_analysis_is_of_the_ap():
@@ -168,7 +166,7 @@ def test_requirements_come_before_the_ap():
         rig=pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180), (-1.5, 0.0, 1.7))]),
         free={"roof": ("x", "z", "pitch")},
     )
-    given = replace(given, search=replace(given.search, requirements="keep"))
+    given = replace(given, limits=pe.Limits(requirements=True))
     job = pt.OptimizeJob(given, 1)
     texts = [p.value_text for p in job if p.stage == "optimizing"]
     assert [v.met for v in given.verdicts()] == [False]

@@ -17,8 +17,8 @@ from pe_core.scene.data_sheet import DataSheet
 from pe_core.scene.vehicle_description import Reference
 from pe_core.scene.vehicle_state import Motion, State
 from pe_core.scoring.requirements import BODIES, Criterion, Requirement, Zone
+from pe_core.search import Limits
 from pe_core.search.goals import Stop
-from pe_core.search.key_figures import Wanted
 from pe_core.sensors.ultrasonic.kind import Ultrasonic
 from pe_core.sensors.weather import Weather
 from pe_core.study.condition_table import condition_table
@@ -129,7 +129,7 @@ USES = {
         mounting=pe.Mounting(constraints=pe.Constraints(**change))
     ),
     Stop: lambda change: searched(goals=goal(stop=Stop(**change))),
-    Wanted: lambda change: searched(goals=goal(wanted=Wanted(**change))),
+    Limits: lambda change: answers(study(limits=Limits(**change))),
 }
 
 

@@ -200,8 +200,7 @@ def test_a_front_by_an_executor_is_the_same():
     zone = pe.requirements.Zone(x=(4.0, 5.0), y=(-1.0, 1.0))
     body = pe.requirements.Body("post", (0.3, 0.3, 0.5))
     ask = pe.requirements.Requirement("ahead", zone, [body], pe.requirements.Criterion())
-    search = replace(given.search, requirements="keep")
-    given = replace(given, search=search, requirements=(ask,))
+    given = replace(given, limits=pe.Limits(requirements=True), requirements=(ask,))
     with Counted(2) as workers:
         for executor in (None, workers):
             job = FrontJob(given, 1)

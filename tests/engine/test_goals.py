@@ -10,7 +10,7 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_core.scoring.sampling import HELD_OUT
-from pe_core.search import Front, Goals, Start, Stop, Wanted
+from pe_core.search import Front, Goals, Start, Stop
 from pe_core.study import load_study_data, study_to_dict
 from pe_core.study.requirement_search import INFEASIBLE
 from pe_tools.cli.command import with_options
@@ -45,7 +45,7 @@ def plain():
 
 def test_a_search_stops_at_its_target_with_the_steps_of_the_whole_one(plain):
     target = plain.history[2].entropy
-    outcome = finished(study(Goals(Stop(target=target))))
+    outcome = finished(replace(study(), limits=pe.Limits(entropy=target)))
     assert outcome.stop_reason == "target" and not outcome.stopped
     assert outcome.history == plain.history[:3] or [r.entropy for r in outcome.history] == [
         r.entropy for r in plain.history[:3]
@@ -56,29 +56,27 @@ def test_a_search_stops_at_its_target_with_the_steps_of_the_whole_one(plain):
     assert result_dict(outcome)["stop_reason"] == "target"
 
 
-def test_figures_are_kept_by_key_or_option(tmp_path):
+def test_limits_are_set_by_key_or_option(tmp_path):
     path = tmp_path / "study.toml"
-    wanted = Wanted(blind_ground=0.0, blind_sector=20, ap_far=0.3)
-    pt.export_study(study(Goals(keep=("blind_ground",), wanted=wanted)), path)
-    kept = pe.load_study(path)
-    assert kept.search.goals.keep == ("blind_ground",) and kept.search.goals.wanted == wanted
-    for options, keep, far in (
-        (["none"], (), 0.3),
-        (["ap_far=0.4", "reach"], ("blind_ground", "ap_far", "reach"), 0.4),
-        ([], ("blind_ground",), 0.3),
+    limits = pe.Limits(blind_ground=True, blind_sector=20, ap_far={"value": 0.3, "kept": False})
+    pt.export_study(replace(study(), limits=limits), path)
+    known = pe.load_study(path)
+    assert known.limits == limits
+    for options, change in (
+        (["none"], {"blind_ground": None, "blind_sector": None, "ap_far": None}),
+        (["ap_far=0.4", "reach"], {"ap_far": 0.4, "reach": True}),
+        ([], {}),
     ):
-        given = [word for option in options for word in ("--keep", option)]
-        goals = with_options(
-            kept, parser().parse_args(["optimize", str(path), *given])
-        ).search.goals
-        assert goals.keep == keep and goals.wanted == replace(wanted, ap_far=far)
+        given = [word for option in options for word in ("--limit", option)]
+        args = parser().parse_args(["optimize", str(path), *given])
+        assert with_options(known, args).limits == replace(limits, **change)
     with pytest.raises(pe.InputError, match="ap_far"):
-        with_options(kept, parser().parse_args(["optimize", str(path), "--keep", "ap_far=2"]))
-    for option in ("entropy", "reach=far"):
+        with_options(known, parser().parse_args(["optimize", str(path), "--limit", "ap_far=2"]))
+    for option in ("margin", "reach=far"):
         with pytest.raises(SystemExit):
-            parser().parse_args(["optimize", str(path), "--keep", option])
-    path.write_text(path.read_text().replace('"blind_ground"', '"less"'))
-    with pytest.raises(pe.InputError, match=r"keep: expected .*blind_ground.*, found 'less'"):
+            parser().parse_args(["optimize", str(path), "--limit", option])
+    path.write_text(path.read_text().replace("blind_ground =", "blind_grund ="))
+    with pytest.raises(pe.InputError, match=r"limits.*blind_ground.*blind_grund|blind_grund"):
         pe.load_study(path)
 
 
@@ -122,7 +120,8 @@ def test_a_fixed_sensor_keeps_its_slot():
 
 def test_several_starts_share_the_budget_and_the_best_end_is_the_result(plain):
     poses = {"roof": pe.Pose((0.0, 0.0, 2.2))}
-    outcome = finished(study(Goals(starts=[Start("high", poses)], wanted=Wanted(entropy=9.0))))
+    given = study(Goals(starts=[Start("high", poses)]))
+    outcome = finished(replace(given, limits=pe.Limits(entropy=pe.Limit(-9.0))))
     assert [end.name for end in outcome.starts] == ["", "high"]
     assert outcome.evaluations == 60 and outcome.starts[0].evaluations == 30
     halves = [study().evaluator(1024, shift=shift) for shift in HELD_OUT]
@@ -176,7 +175,7 @@ def journal_of(outcome, count):
 
 
 GOALS = Goals(
-    Stop(-1.0, 60.0, 0.001, 50),
+    Stop(60.0, 0.001, 50),
     ("roof",),
     [Start("other", {"front": pe.Pose.from_degrees((0.0, 0.5, 2.0), (0.0, 5.0, 90.0))})],
     Front(("entropy", "height"), 4),
@@ -188,7 +187,7 @@ def test_goals_are_in_the_file_and_nothing_is_written_of_the_default(tmp_path):
     given = replace(given, vehicle=None, search=replace(given.search, goals=GOALS))
     pe.save_study(given, tmp_path / "study.toml")
     table = load_study_data(tmp_path / "study.toml")["optimize"]
-    assert table["stop"] == {"target": -1.0, "seconds": 60.0, "gain": 0.001, "over": 50}
+    assert table["stop"] == {"seconds": 60.0, "gain": 0.001, "over": 50}
     assert table["front"] == {"objectives": ["entropy", "height"], "points": 4}
     again = pe.load_study(tmp_path / "study.toml")
     assert study_to_dict(again) == study_to_dict(given)
@@ -200,11 +199,22 @@ def test_goals_are_in_the_file_and_nothing_is_written_of_the_default(tmp_path):
 def test_options_of_the_command_line_are_the_goals_of_the_study(tmp_path):
     given = replace(study(names=("roof", "front")), vehicle=None)
     pe.save_study(given, tmp_path / "other.toml")
-    line = ["optimize", "study.toml", "--stop-at", "-1.5", "--stop-gain", "0.01", "--fix", "roof"]
+    line = [
+        "optimize",
+        "study.toml",
+        "--limit",
+        "entropy=-1.5",
+        "--stop-gain",
+        "0.01",
+        "--fix",
+        "roof",
+    ]
     line += ["--start", str(tmp_path / "other.toml"), "--front", "entropy,height"]
     args = parser().parse_args(line)
-    goals = with_options(given, args).search.goals
-    assert (goals.stop.target, goals.stop.gain, goals.stop.seconds) == (-1.5, 0.01, None)
+    changed = with_options(given, args)
+    goals = changed.search.goals
+    assert changed.limits == pe.Limits(entropy=-1.5)
+    assert (goals.stop.gain, goals.stop.seconds) == (0.01, None)
     assert goals.fixed == ("roof",) and goals.starts[0].name == "other"
     assert goals.front.objectives == ("entropy", "height")
     plain_args = parser().parse_args(["optimize", "study.toml"])

@@ -12,7 +12,7 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_core.scoring.sampling import CENTERED, HELD_OUT, SEARCHED, draw
-from pe_core.search import Front, Goals, Wanted
+from pe_core.search import Front, Goals
 from pe_core.search.tolerance import FRESH, mounted_off
 from pe_tools.jobs import result_dict
 from tests.engine import shapes
@@ -126,7 +126,7 @@ def test_a_figure_that_a_search_keeps_is_searched_in_other_scenes():
     other = given.sight(SEARCHED).in_traffic(given.rig).ap
     assert own != other
     for wanted, is_met in ((own - 1e-3, True), (own + 1e-3, False)):
-        goals = Goals(keep=["traffic_ap"], wanted=Wanted(traffic_ap=wanted))
-        kept = replace(given, search=replace(given.search, goals=goals, evaluations=1))
+        search = replace(given.search, evaluations=1)
+        kept = replace(given, search=search, limits=pe.Limits(traffic_ap=wanted))
         (first, *_) = finished(pt.OptimizeJob(kept, 1)).history
         assert (first.entropy < 100.0) == is_met

@@ -85,9 +85,6 @@ LIMITS = [
     (pe.Boxes.of, "table", ([BOX],), ([("car", math.nan, *BOX[2:])], [("car", True, *BOX[2:])])),
     (pe.Search, "limits", ({"a": {"x": (0, 1)}},), ({"a": {"x": (0, math.nan)}},)),
     (pe.SurfaceMount, "standoff", (0.0,), (-1.0, math.nan)),
-    (pe.Constraints, "max_height", (1.0, None), (-1.0, math.nan)),
-    (pe.Constraints, "max_width", (1.0, None), (-1.0, math.nan)),
-    (pe.Constraints, "min_distance", (0.0, 1.0), (-1.0, math.nan)),
     (pe.NoGo, "x", ((-1e9, 0.0),), ((-1e9, math.nan), (1.0, 0.0))),
     (pe.Mounting, "groups", ([],), ([1], [["a"]])),
     *((pe.Mounting, key, ({},), (1, math.nan)) for key in ("mounts", "on")),
@@ -122,6 +119,19 @@ def test_limits():
         if is_taken(make, **OTHERS.get(make, {}) | {key: value}) is not taken
     ]
     assert offenders == []
+
+
+FIGURE_LIMITS = (
+    ("height", (1.0, True, None, {"value": 2.0, "kept": False}), (-1.0, False, {"kept": False})),
+    ("entropy", (1.0, {"value": -2.0}), (True, math.nan, {"vale": 1.0}, {"value": 1.0, "kept": 1})),
+    ("requirements", (True, None), (1.0, "keep", False)),
+)
+
+
+@pytest.mark.parametrize(("key", "good", "bad"), FIGURE_LIMITS)
+def test_a_limit_is_a_number_true_or_a_table_of_both(key, good, bad):
+    assert [value for value in good if not is_taken(pe.Limits, **{key: value})] == []
+    assert [value for value in bad if is_taken(pe.Limits, **{key: value})] == []
 
 
 def test_numbers_of_an_array():

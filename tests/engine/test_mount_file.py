@@ -32,7 +32,9 @@ def sensor(name="roof", position=ON_ROOF, **more):
 
 
 def read(folder, *sensors, **optimize):
+    limits = optimize.pop("limits", {})
     data = {"vehicle": {"mesh": "car.npz"}, "sensor": list(sensors), "optimize": optimize}
+    data["limits"] = limits
     return study_from_dict(data, "study.toml", folder)
 
 
@@ -57,9 +59,7 @@ def test_a_file_says_all_that_there_is(folder):
     study = read(
         folder,
         *sensors,
-        max_height=2.6,
-        max_width=1.9,
-        min_distance=0.2,
+        limits={"height": 2.6, "width": 1.9, "distance": 0.2},
         clear_housings=True,
         no_go=[{"name": "hatch", "x": [-0.2, 0.3], "y": [-math.inf, 0]}],
         mount=[AREA | {"orientation": "normal"}, {"name": "rack", "slot": rack}],
@@ -74,9 +74,10 @@ def test_a_file_says_all_that_there_is(folder):
     assert found.pairs == (("left", "right"),)
     assert found.groups == (("on the rack", "beside it"),)
     hatch = pe.NoGo("hatch", (-0.2, 0.3), (-math.inf, 0.0))
-    assert found.constraints == pe.Constraints(2.6, 1.9, 0.2, True, [hatch])
+    assert found.constraints == pe.Constraints(True, [hatch])
+    assert study.limits == pe.Limits(height=2.6, width=1.9, distance=0.2)
     again = study_from_dict(study_to_dict(study), "study.toml", folder)
-    assert again.search == study.search
+    assert (again.search, again.limits) == (study.search, study.limits)
 
 
 def test_the_example_of_the_page_is_a_study(folder):

@@ -24,30 +24,31 @@ def broken(*sensors, **options):
 
 
 def limited(*sensors, **limits):
-    return broken(*sensors, constraints=pe.Constraints(**limits))
+    own = {key: limits.pop(key) for key in ("no_go", "clear_housings") if key in limits}
+    return broken(*sensors, figures=limits, constraints=pe.Constraints(**own))
 
 
 def test_greatest_height_is_of_the_housing_s_top():
     top = 2.0 + HEIGHT - CENTER
     low, high = top - 1e-4, top + 1e-4
-    assert limited(can((0, 0, 2.0)), max_height=high) == []
-    assert limited(can((0, 0, 2.0)), max_height=low) == ["max_height of 'roof'"]
+    assert limited(can((0, 0, 2.0)), height=high) == []
+    assert limited(can((0, 0, 2.0)), height=low) == ["limits.height of 'roof'"]
     eye = shapes.camera(position=(0, 0, 2.0), name="eye")  # of no known size
-    assert limited(eye, max_height=2.0) == []
-    assert limited(eye, max_height=1.9999) == ["max_height of 'eye'"]
+    assert limited(eye, height=2.0) == []
+    assert limited(eye, height=1.9999) == ["limits.height of 'eye'"]
 
 
 def test_greatest_width_is_of_the_housing_s_side_on_either_side():
     for side in (1.0, -1.0):
         sensor = can((0, side * 0.9, FLYING))
-        assert limited(sensor, max_width=2 * (0.9 + 1.03 * RADIUS)) == []
-        assert limited(sensor, max_width=2 * (0.9 + 0.97 * RADIUS)) == ["max_width of 'roof'"]
+        assert limited(sensor, width=2 * (0.9 + 1.03 * RADIUS)) == []
+        assert limited(sensor, width=2 * (0.9 + 0.97 * RADIUS)) == ["limits.width of 'roof'"]
 
 
 def test_least_distance_is_between_any_two_sensors():
     sensors = [can((x, 0, FLYING), f"s{x}") for x in (0, 3, 4)]
-    assert limited(*sensors, min_distance=1.0) == []
-    assert limited(*sensors, min_distance=1.001) == ["min_distance of 's3' and 's4'"]
+    assert limited(*sensors, distance=1.0) == []
+    assert limited(*sensors, distance=1.001) == ["limits.distance of 's3' and 's4'"]
 
 
 def test_a_no_go_box_takes_the_whole_housing_and_an_axis_that_is_not_said_has_no_ends():
@@ -150,13 +151,14 @@ def test_what_does_not_move_is_nobody_s_fault():
     """A fixed sensor in the body is as it is; only what comes between it and others counts."""
     fixed, moving = can((0.0, 0.0, 1.1), "fixed"), can((0.0, 0.0, FLYING), "moving")
     rig = pe.Rig([fixed, moving])
-    limits = pe.Mounting(constraints=pe.Constraints(0.5, 0.01, 2.0, True))
-    search = pe.Search({"fixed": (), "moving": ("x",)}, mounting=limits)
-    coding = pe.Study(rig, mounting.car(), search=search).coding()
+    limits = pe.Limits(height=0.5, width=0.01, distance=2.0)
+    clear = pe.Mounting(constraints=pe.Constraints(clear_housings=True))
+    search = pe.Search({"fixed": (), "moving": ("x",)}, mounting=clear)
+    coding = pe.Study(rig, mounting.car(), search=search, limits=limits).coding()
     assert coding.broken(rig) == {
-        "max_height of 'moving'",
-        "max_width of 'moving'",
-        "min_distance of 'fixed' and 'moving'",
+        "limits.height of 'moving'",
+        "limits.width of 'moving'",
+        "limits.distance of 'fixed' and 'moving'",
     }
 
 
@@ -253,25 +255,25 @@ def few_tries(monkeypatch):
 def test_rules_that_exclude_each_other_are_named_and_no_others(few_tries):
     """A high mount under a low ceiling; least distance and width are innocent."""
     other = can((0.0, 0.0, FLYING), "other")
-    limits = pe.Constraints(max_height=TOP + BASE + HEIGHT - 0.01, max_width=3.0, min_distance=0.1)
-    options = {"mount": {"roof": roof()}, "constraints": limits, "free": ()}
+    limits = {"height": TOP + BASE + HEIGHT - 0.01, "width": 3.0, "distance": 0.1}
+    options = {"mount": {"roof": roof()}, "figures": limits, "free": ()}
     with pytest.raises(pe.InputError) as error:
         feasible_start(Parametrization(*mounting.space(can(), other, **options)))
     assert str(error.value) == (
-        "optimize: max_height of 'roof' leaves no feasible placement: expected a placement that "
+        "optimize: limits.height of 'roof' leaves no feasible placement: expected a placement that "
         "breaks no rule, found none in 201 tried"
     )
 
 
 def test_two_rules_that_leave_no_place_together(few_tries):
     areas = [pe.NoGo("front", x=(-0.5, 3.0)), pe.NoGo("rear", x=(-3.0, -0.4))]
-    limits = pe.Constraints(max_height=3.0, no_go=areas)
+    limits = pe.Constraints(no_go=areas)
     coding = Parametrization(*mounting.space(can(), mount={"roof": roof()}, constraints=limits))
     told = "no_go 'front' for 'roof' and no_go 'rear' for 'roof' exclude each other"
     with pytest.raises(pe.InputError, match=told):
         feasible_start(coding)
     for area in areas:  # either alone leaves some
-        alone = pe.Constraints(max_height=3.0, no_go=[area])
+        alone = pe.Constraints(no_go=[area])
         feasible_start(
             Parametrization(*mounting.space(can(), mount={"roof": roof()}, constraints=alone))
         )

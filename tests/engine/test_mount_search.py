@@ -87,13 +87,10 @@ def study(**limits):
     """A small LiDAR in the air over the box car; up is free."""
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
     search = pe.Search(
-        {"roof": ("z",)},
-        samples=1024,
-        schedule=pe.Schedule(candidates=3),
-        method="random",
-        mounting=pe.Mounting(constraints=pe.Constraints(**limits)),
+        {"roof": ("z",)}, samples=1024, schedule=pe.Schedule(candidates=3), method="random"
     )
-    return pe.Study(rig, mounting.car(), shapes.small_space(), search=search, samples=1024)
+    given = {"search": search, "samples": 1024, "limits": pe.Limits(**limits)}
+    return pe.Study(rig, mounting.car(), shapes.small_space(), **given)
 
 
 def outcome_of(study):
@@ -105,7 +102,7 @@ def outcome_of(study):
 @pytest.mark.usefixtures("few_errors", "no_key_figures")
 def test_a_start_that_breaks_a_rule_is_not_returned_though_it_is_the_best():
     """Under a low ceiling the roof hides much: all that is allowed is worse than the start."""
-    free, under = outcome_of(study()), outcome_of(study(max_height=1.5))
+    free, under = outcome_of(study()), outcome_of(study(height=1.5))
     assert free.after.entropy <= free.before.entropy < under.after.entropy
     assert under.study.rig["roof"].pose.position[2] <= 1.5
     assert all(row.rig["roof"].pose.position[2] <= 1.5 for row in under.history)

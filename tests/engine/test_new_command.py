@@ -128,7 +128,7 @@ def test_most_keys_have_a_comment_and_those_that_are_off_work(tmp_path):
         and not study.vehicle.faces_near(camera.pose.position, 0.02).size
     )
     assert camera.pose.position[2] > find_roof(study.vehicle).level
-    assert study.search.mounting.constraints.max_height > lidar.pose.position[2]
+    assert study.limits.height.value > lidar.pose.position[2]
 
 
 @pytest.mark.parametrize(

@@ -82,8 +82,9 @@ def test_files_lines_and_page_call_it_by_its_name(tmp_path):
 
 
 def test_limits_of_the_study_are_kept_and_larger_figures_are_no_violation():
-    goals = replace(study().search.goals, keep=["blind_ground"])
-    _, job = searched(cable_cost, goals=goals)
+    given = replace(study(), limits=pe.Limits(blind_ground=True))
+    job = pt.OptimizeJob(given, 1, objective=cable_cost)
+    list(job)
     assert job.outcome.own.after < job.outcome.own.before
     start, end = (study().sight().blind_area(r, 0.5) for r in (job.study.rig, job.best.rig))
     assert end <= start
@@ -101,11 +102,10 @@ def test_a_figure_of_any_size_keeps_its_order_below_the_violations(figure):
 
 
 def test_a_target_and_a_gain_are_of_the_function():
-    stop = pe.Stop(target=0.9e5)
-    goals = replace(study().search.goals, stop=stop)
-    _, job = searched(cable_cost, goals=goals, evaluations=400)
+    job = pt.OptimizeJob(study(evaluations=400), 1, objective=cable_cost, target=0.9e5)
+    list(job)
     assert job.outcome.stop_reason == "target" and job.outcome.own.after <= 0.9e5
-    assert "target of 90000 by cable cost" in summary(job.outcome)
+    assert "ended at its target" in summary(job.outcome)
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,7 @@ from pe_core.scoring.requirements import (
     Zone,
 )
 from pe_core.scoring.sight import BLIND_TO_M, Sight
-from pe_core.search import FIGURES, Goals, RigView, Tolerance, Wanted
+from pe_core.search import FIGURES, Goals, RigView, Tolerance
 from pe_core.search.dispatch import value_below
 from pe_core.study.requirement_search import INFEASIBLE, constraints_of, feasible_first
 from pe_core.study.suggestion import BLIND_SPOT, SAMPLES, mended, suggestions, with_blind_spot
@@ -55,9 +55,9 @@ def study(**search):
         search=pe.Search(
             free={name: ("z", "pitch") for name in ("front", "rear", "left")} | {"top": ()},
             samples=2048,
-            requirements="keep",
             **search,
         ),
+        limits=pe.Limits(requirements=True),
     )
 
 
@@ -226,17 +226,18 @@ def test_shortfalls_are_zero_exactly_where_a_verdict_says_met():
 BLIND = ("blind_ground",)
 
 
-def tilted(keep=(), method="portfolio", **wanted):
+def tilted(keep=(), method="portfolio", **limits):
     """A LiDAR at the front, tilted down: level it sees farther, and less of the near ground."""
     van = pe.Vehicle(shapes.box((-2.5, -1.0, 0.25), (2.5, 1.0, 2.0)), clearance=0.0)
     pose = pe.Pose.from_degrees((2.6, 0.0, 1.0), (0.0, 15.0, 0.0))
-    goals = Goals(keep=keep, wanted=Wanted(**wanted))
+    limits = pe.Limits(**dict.fromkeys(keep, True) | limits)
+    goals = Goals()
     search = pe.Search(
         free={"nose": ("pitch",)}, samples=1024, evaluations=24, method=method, goals=goals
     )
     space = pe.PerceptionSpace((-20, 20), (-16, 16), (0, 3), 0.2)
     rig = pe.Rig([pe.Sensor("nose", shapes.small_lidar(16, 180), pose)])
-    return pe.Study(rig, van, space, samples=1024, search=search)
+    return pe.Study(rig, van, space, samples=1024, search=search, limits=limits)
 
 
 @pytest.mark.usefixtures("few_errors")

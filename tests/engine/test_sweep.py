@@ -282,11 +282,11 @@ def test_the_table_has_all_figures_that_were_computed(study, out, capsys):
 
 def test_a_run_that_fails_is_named_and_the_others_are_kept(study, out, capsys):
     """No placement keeps to what the first one asks for; that shows only while it is searched."""
-    argv = ["sweep", str(study), "--optimize", "--set", "optimize.max_height=0.1,9.0"]
+    argv = ["sweep", str(study), "--optimize", "--set", "limits.height=0.1,9.0"]
     assert main([*argv, "-o", str(out), "--workers", "1"]) == 1
     out_text, err = capsys.readouterr()
     (line,) = [line for line in err.splitlines() if line.startswith("pe: ")]
-    assert line.startswith("pe: car,optimize.max_height=0.1: ")
+    assert line.startswith("pe: car,limits.height=0.1: ")
     assert [row["status"] for row in table(out)] == ["failed", "done"]
     assert table(out)[0]["message"] and "failed" in out_text
 

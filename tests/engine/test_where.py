@@ -110,18 +110,18 @@ def test_a_sensor_stands_off_the_surface_upright_and_looks_outward(study):
 
 def test_forbidden_places_have_the_rule_as_reason_and_no_value(study):
     no_go = search.NoGo("windshield", x=(1.0, 9.0), z=(0.8, 9.0))
-    limits = search.Constraints(max_height=1.3, no_go=[no_go])
-    mounting = search.Mounting(constraints=limits)
-    study = replace(study, search=replace(study.search, mounting=mounting))
+    mounting = search.Mounting(constraints=search.Constraints(no_go=[no_go]))
+    searched = replace(study.search, mounting=mounting)
+    study = replace(study, search=searched, limits=search.Limits(height=1.3))
     found = mapped(study, count=120)
-    assert set(found.reasons()) >= {LOW, "no_go 'windshield'", "max_height"}
+    assert set(found.reasons()) >= {LOW, "no_go 'windshield'", "limits.height"}
     for each in found.places:
         x, _, z = each.pose.position
         assert (each.value is None) == bool(each.reason)
         if z < 0.2:
             assert each.reason == LOW
         elif z > 1.3:
-            assert each.reason == "max_height"
+            assert each.reason == "limits.height"
         elif x > 1.0 and z > 0.8:
             assert each.reason == "no_go 'windshield'"
         else:

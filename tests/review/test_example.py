@@ -51,7 +51,7 @@ def test_it_shows_the_verdicts_of_the_example_s_requirements_and_all_are_met(sho
     """The study keeps requirements that its start breaks; the page is of a search that does."""
     study = pe.load_study(ROOT / "blend_assets" / "examples" / "four_corners" / "study.toml")
     names = [each.name for each in study.requirements]
-    assert study.search.requirements == "keep" and len(names) == 8
+    assert study.limits.keeps_requirements and len(names) == 8
     assert tagged_rows(shown) == [(name, ["tag", "met"]) for name in names]
     assert any(each.text.startswith("8 of 8 ") for each in shown.all("b"))
 

@@ -7,7 +7,7 @@ is reached.
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, make_dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from ..base.errors import InputError, shown
 from ..base.setting import FLAG, check_settings, setting
@@ -118,8 +118,8 @@ class FigureLimits:
 
     def changed(self, **limits: Any) -> "Limits":
         """Return these limits with others for some figures; None for no limit."""
-        found: Limits = replace(self, **limits)  # type: ignore[type-var]  # a dataclass, below
-        return found
+        found: Any = replace(self, **limits)  # type: ignore[type-var]  # a dataclass, below
+        return cast(Limits, found)
 
     def __iter__(self) -> Iterator[tuple[str, Limit]]:
         """Yield the limits by name, in the order of `FIGURES`."""

@@ -230,11 +230,11 @@ def of_study(make: Make) -> Callable[[bpy.types.Context], Task]:
     return read
 
 
-def begin(job: JobRow, **asked: Any) -> OperatorResult:
-    """Start a job from another operator, which raises what it reports; `job.asked` is set."""
-    job.asked.update(asked)
+def begin(row: JobRow, **asked: Any) -> OperatorResult:
+    """Start a job from another operator, which raises what it reports; `row.asked` is set."""
+    row.asked.update(asked)
     if running_job.current is None:  # else the operator says why it is not possible
-        PE_OT_run_job.row = job
+        PE_OT_run_job.row = row
     try:
         return bpy.ops.pe.run_job("INVOKE_DEFAULT")
     except RuntimeError as error:

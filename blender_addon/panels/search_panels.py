@@ -115,4 +115,4 @@ def draw_goals(layout: UILayout, settings: PropertyGroup, context: Context) -> N
         draw_front(layout, settings, context)
 
 
-CLASSES = (search, mounts_rows, limits)
+CLASSES = (mounts_rows, search, limits)

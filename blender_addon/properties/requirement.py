@@ -161,8 +161,10 @@ def _bodies_line(table: TableData) -> str:
     tables = [each for each in bodies if not isinstance(each, str)]
     if len(tables) == len(bodies) == 1:
         return bridge.line_of(tables[0])
+    if not tables:
+        return ", ".join(map(str, bodies))
     return ", ".join(
-        f"{{ {bridge.line_of(each)} }}" if each in tables else str(each) for each in bodies
+        f"{{ {bridge.line_of(each)} }}" if each in tables else f'"{each}"' for each in bodies
     )
 
 

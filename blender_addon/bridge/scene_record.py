@@ -43,6 +43,7 @@ from .transform_constraints import unlocked_axes
 from .vehicle import vehicle_from_collection
 
 AnyMount = search.AnyMount  # the record has fields of these names
+Limits = search.Limits
 Requirement = requirements.Requirement
 
 
@@ -64,7 +65,7 @@ class SceneRecord:
     search: pe.Search
     mounts: Mapping[str, AnyMount]
     constraints: pe.Constraints
-    limits: search.Limits
+    limits: Limits
     selection: pe.Selection
     reference: pe.Reference | None
     requirements: tuple[Requirement, ...]

@@ -13,7 +13,6 @@ from pe_core.scoring.sampling import HELD_OUT
 from pe_core.search import Front, Goals, Start, Stop, Wanted
 from pe_core.study import load_study_data, study_to_dict
 from pe_core.study.requirement_search import INFEASIBLE
-from pe_tools.cli.command import with_options
 from pe_tools.cli.terminal import summary
 from pe_tools.cli.verbs import parser
 from pe_tools.jobs import HistoryRow, best_so_far, result_dict, stopping
@@ -63,20 +62,19 @@ def test_figures_are_kept_by_key_or_option(tmp_path):
     kept = pe.load_study(path)
     assert kept.search.goals.keep == ("blind_ground",) and kept.search.goals.wanted == wanted
     for options, keep, far in (
-        (["none"], (), 0.3),
-        (["ap_far=0.4", "reach"], ("blind_ground", "ap_far", "reach"), 0.4),
+        (["optimize.keep=[]"], (), 0.3),
+        (["optimize.wanted.ap_far=0.4", 'optimize.keep=["ap_far"]'], ("ap_far",), 0.4),
         ([], ("blind_ground",), 0.3),
     ):
-        given = [word for option in options for word in ("--keep", option)]
-        goals = with_options(
-            kept, parser().parse_args(["optimize", str(path), *given])
-        ).search.goals
+        goals = typed_study(path, *options).search.goals
         assert goals.keep == keep and goals.wanted == replace(wanted, ap_far=far)
-    with pytest.raises(pe.InputError, match="ap_far"):
-        with_options(kept, parser().parse_args(["optimize", str(path), "--keep", "ap_far=2"]))
-    for option in ("entropy", "reach=far"):
-        with pytest.raises(SystemExit):
-            parser().parse_args(["optimize", str(path), "--keep", option])
+    for option in (
+        "optimize.wanted.ap_far=2",
+        "optimize.keep=entropy",
+        "optimize.wanted.reach=far",
+    ):
+        with pytest.raises(pe.InputError, match=option.partition("=")[0]):
+            typed_study(path, option)
     path.write_text(path.read_text().replace('"blind_ground"', '"less"'))
     with pytest.raises(pe.InputError, match=r"keep: expected .*blind_ground.*, found 'less'"):
         pe.load_study(path)
@@ -197,15 +195,26 @@ def test_goals_are_in_the_file_and_nothing_is_written_of_the_default(tmp_path):
     assert not {"stop", "fixed", "start", "front"} & set(bare["optimize"])
 
 
+def typed_study(path, *changes):
+    """The study that `pe optimize` searches with changes by ``--set``."""
+    line = ["optimize", str(path), *(word for each in changes for word in ("--set", each))]
+    args = parser().parse_args(line)
+    return args.source.study(args)
+
+
 def test_options_of_the_command_line_are_the_goals_of_the_study(tmp_path):
     given = replace(study(names=("roof", "front")), vehicle=None)
-    pe.save_study(given, tmp_path / "other.toml")
-    line = ["optimize", "study.toml", "--stop-at", "-1.5", "--stop-gain", "0.01", "--fix", "roof"]
-    line += ["--start", str(tmp_path / "other.toml"), "--front", "entropy,height"]
-    args = parser().parse_args(line)
-    goals = with_options(given, args).search.goals
+    path = tmp_path / "other.toml"
+    pe.save_study(given, path)
+    changes = (
+        "optimize.stop.target=-1.5",
+        "optimize.stop.gain=0.01",
+        'optimize.fixed=["roof"]',
+        'optimize.front.objectives=["entropy", "height"]',
+    )
+    goals = typed_study(path, *changes).search.goals
     assert (goals.stop.target, goals.stop.gain, goals.stop.seconds) == (-1.5, 0.01, None)
-    assert goals.fixed == ("roof",) and goals.starts[0].name == "other"
-    assert goals.front.objectives == ("entropy", "height")
-    plain_args = parser().parse_args(["optimize", "study.toml"])
-    assert with_options(given, plain_args).search.goals == given.search.goals
+    assert goals.fixed == ("roof",) and goals.front.objectives == ("entropy", "height")
+    assert typed_study(path).search.goals == given.search.goals
+    args = parser().parse_args(["optimize", str(path), "--start", str(path)])
+    assert [start.name for start in args.source.study(args).search.goals.starts] == ["other"]

@@ -127,9 +127,7 @@ BAD = [
     ("roof: bounds of z", MINIMAL + "bounds = {z = [2, 3]}\n"),
     ("sensor[0].bounds.w", MINIMAL + "bounds = {w = [2, 3]}\n"),
     ("optimize.candidates", MINIMAL + f"[optimize]\n{RANDOM}candidates = 0\n"),
-    ("optimize.method", MINIMAL + "[optimize]
-candidates = 9
-"),
+    ("optimize.method", MINIMAL + "[optimize]\ncandidates = 9\n"),
 ]
 
 

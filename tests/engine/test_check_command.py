@@ -1,4 +1,4 @@
-"""`pe check` and `pe requirements`: tables, JSON, CSV, and the exit status."""
+"""`pe check`: tables, JSON, CSV, and the exit status."""
 
 import csv
 import json

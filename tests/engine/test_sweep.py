@@ -75,10 +75,19 @@ def test_several_settings_make_every_combination(study):
     ("setting", "complaint"),
     [
         ("sensr.roof.model=x", "{study} with sensr.roof.model=x: sensr: expected one of"),
-        ("sensor.rof.model=x", "{study}: sensor.rof.model: expected one of roof, found 'rof'"),
+        (
+            "sensor.rof.model=x",
+            "{study} with sensor.rof.model=x: sensor.rof.model: expected one of roof, found 'rof'",
+        ),
         ("samples=1.5", "{study} with samples=1.5: samples: expected a whole number"),
-        ("space.x.0.y=1", "{study}: space.x.0.y: expected a table before the last dot, found -20"),
-        ("space.x.5=1", "{study}: space.x.5: expected an index from 0 to 1, found '5'"),
+        (
+            "space.x.0.y=1",
+            "{study} with space.x.0.y=1: space.x.0.y: expected a table before the last dot, found -20",
+        ),
+        (
+            "space.x.5=1",
+            "{study} with space.x.5=1: space.x.5: expected an index from 0 to 1, found '5'",
+        ),
         ("samples=", "command line: samples: expected a value, found ''"),
         ("samples=0,0", "command line: samples: expected each value once, found 0 twice"),
         ("samples", "command line: expected KEY=VALUE, the key as in a study"),

@@ -163,7 +163,6 @@ def files_of_a_reader(folder, page):
     faces = np.arange(len(points)).reshape(-1, 3)
     trimesh.Trimesh(to_gltf(points), faces).export(folder / "car.glb")
     (folder / "car.stl").write_bytes(stl_binary(triangles=1000.0 * to_gltf(car.triangles)))
-    shutil.copy(ROOT / "studies/paper/data/paper_lidar.csv", folder / "ap_by_points.csv")
     for name in ("robotaxi_sedan", "crossing_child"):
         if not (made := folder / "examples" / name).exists():
             shutil.copytree(ROOT / "examples" / name, made)

@@ -135,7 +135,7 @@ def test_the_snippet_of_a_class_of_objects_is_the_study_s_table():
     fit = fit_ap_curve(ApTable(np.array([1.0, 2.0, 4.0]), np.array([0.2, 0.3, 0.4]), np.ones(3)))
     for name in ("car", "road works \N{CONSTRUCTION SIGN}"):
         table = tomllib.loads(study_snippet(fit, "lidar", name))
-        assert list(table["ap"]["lidar"]["objects"][name]) == ["a", "b"]
+        assert list(table["ap"]["objects"]["lidar"][name]) == ["a", "b"]
 
 
 def test_the_snippet_names_the_table_and_how_many_points_it_used(tmp_path):
@@ -158,12 +158,12 @@ def test_a_table_by_range_gives_the_curve_of_what_the_model_measures(tmp_path):
     def fitted(name):
         of_model = partial(m_by_range, catalog.load(RADAR), class_name=name)
         found = fit_ap_curve(read_ap_table(tmp_path / "radar.csv", of_model))
-        return tomllib.loads(study_snippet(found, "radar", name))["ap"]["radar"]
+        return tomllib.loads(study_snippet(found, "radar", name))["ap"]
 
-    curve = fitted("car")["objects"]["car"]
+    curve = fitted("car")["objects"]["radar"]["car"]
     assert (curve["a"], curve["b"]) == pytest.approx((0.3, 0.1), abs=1e-5)
     times = (4.6 + 1.9) * 1.7 / (2.0 * 0.1**2)
-    assert fitted(None)["b"] == pytest.approx(0.1 + 0.3 * math.log(times), abs=1e-4)
+    assert fitted(None)["radar"]["b"] == pytest.approx(0.1 + 0.3 * math.log(times), abs=1e-4)
 
 
 def test_a_table_by_range_needs_a_model_and_a_class_with_a_size(tmp_path):

@@ -9,7 +9,7 @@ from typing import NoReturn
 
 from pe_core import InputError
 from pe_core.base.input_files import not_noting_inputs
-from pe_tools.cli import Answer, Parser, count_up_to, leave, run
+from pe_tools.cli import Answer, Parser, leave, run, whole
 
 MAX_WORKERS = 1024
 
@@ -31,7 +31,7 @@ def page_parser(
     alternatives.add_argument("--page-only", action="store_true", help=about)
     parser.add_argument("--json", action="store_true", help="print results.json on stdout")
     about = "number of processes (default and maximum: one per processor)"
-    parser.add_argument("--workers", type=count_up_to(MAX_WORKERS), metavar="N", help=about)
+    parser.add_argument("--workers", type=whole(MAX_WORKERS), metavar="N", help=about)
     return parser, alternatives
 
 

@@ -12,7 +12,7 @@ readonly start=$output/start.blend
 readonly scene=tools/demo_scene.py
 # Enough to see it work within a minute; without them a search takes its time.
 readonly OPTIONS=(
-    --evaluations 240 --search-samples 32768 --samples 1048576 --seed 0 --output "$output"
+    --evaluations 240 --set optimize.samples=32768 --samples 1048576 --seed 0 --output "$output"
 )
 
 fail() {

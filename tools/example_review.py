@@ -24,7 +24,7 @@ from tests.review.browser import opened, started  # noqa: E402
 EXAMPLE = Path("blend_assets/examples/four_corners")
 PAGE = ROOT / "docs" / "reviews" / "four_corners.html"
 PICTURE = ROOT / "docs" / "images" / "four_corners_review.png"
-KEPT = ["--limit", "blind_sector", "--limit", "traffic_ap"]
+KEPT = ["--set", "limits.blind_sector=true", "--set", "limits.traffic_ap=true"]
 COMMAND = ["pe", "optimize", str(EXAMPLE / "study.toml"), *KEPT, "-o", "The shuttle's four corners"]
 
 

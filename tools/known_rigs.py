@@ -31,15 +31,15 @@ HEAD = f"""\
 Published rigs and templates, also in Blender: *Variants > Add Rig*.
 
 ```sh
-pe rigs                                        # the list
-pe rigs waymo                                  # its sensors, its source
-pe rigs waymo -o study.toml --mesh car.npz     # stretched onto a vehicle
-pe rigs robotaxi -o study.toml --mesh car.npz  # a template on named places
+pe new --rig                                   # the list
+pe new --rig waymo                             # its sensors, its source
+pe new car.npz --rig waymo -o study.toml       # stretched onto a vehicle
+pe new car.npz --rig robotaxi -o study.toml    # a template on named places
 ```
 
 A template (`robotaxi`, `truck`, `parking`, `shuttle`) is a start, no product: models on places
-found on the mesh: roof, mirrors, grille, bumpers, tailgate. `--on-places` moves known sensors to
-them. In Blender *Named Places* shows them as empties to move first.
+found on the mesh: roof, mirrors, grille, bumpers, tailgate. `--placement places` moves known
+sensors to them. In Blender *Named Places* shows them as empties to move first.
 
 Scored at default settings on {SAMPLES:,} voxels, in the open and on a vehicle of
 `blend_assets`: stretched, or as published where its own vehicle's box is not known.

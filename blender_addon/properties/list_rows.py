@@ -50,7 +50,7 @@ class PE_CurveSettings(ApCurveFields, PropertyGroup):
 
     own: switch(
         "Own",
-        "Use these numbers, for example from pe fit, instead of the default curve",
+        "Use these numbers, for example of your detector, instead of the default curve",
         update=changed,
     )
 

@@ -29,7 +29,9 @@ SHIPPED = {
     "mesh.usdc": "pe_tools.formats.meshes.usd:read_usd",
     "mesh.usdz": "pe_tools.formats.meshes.usd:read_usd",
     "library.picture": "pe_tools.page.pictures.vehicle_picture:picture_output",
-    "verb.review": "pe_tools.page:add_verbs",
+    "page.review": "pe_tools.page:review_studies",
+    "page.search": "pe_tools.page:write_search_page",
+    "page.front": "pe_tools.page:write_front_page",
 }
 """Plugins of this distribution: module and attribute, by the plugin's name."""
 EXTRAS = {

@@ -168,7 +168,7 @@ class PerceptionModel:
         curve = given or fitted.get(name) or own_curves.get(name)
         if curve is None:
             field = f"[ap.objects.{kind}.{name}]"
-            expected = f"a and b of {name!r} as an object (pe fit finds them)"
+            expected = f"a and b of {name!r} as an object (docs/howto/own_detector.md)"
             raise InputError(SOURCE, field, expected, "none")
         return curve
 

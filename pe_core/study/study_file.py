@@ -77,7 +77,9 @@ def read_rig_line(text: str, source: str = "rig") -> Rig:
     """Return the rig of a text of `rig_line`, or of a study file's; all else in it is left out."""
     sensors = load_toml(source, "study", text).get("sensor")
     if not sensors:
-        raise InputError(source, "sensor", "a line as `pe rigs --of STUDY` prints it", shown(text))
+        raise InputError(
+            source, "sensor", "a line as `pe export STUDY --to line` prints it", shown(text)
+        )
     return study_from_dict({"sensor": sensors}, source).rig
 
 

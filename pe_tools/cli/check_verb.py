@@ -1,4 +1,4 @@
-"""`pe check` and `pe requirements`: a study held to its requirements, and the presets."""
+"""`pe check`: a study held to its requirements and stories; presets and shipped stories."""
 
 import argparse
 from collections.abc import Sequence
@@ -9,22 +9,24 @@ from pe_core.base import dump_json
 from pe_core.base.errors import InputError
 from pe_core.base.files import csv_text
 from pe_core.base.table_reader import finite
+from pe_core.motion import stories
 from pe_core.scoring.requirements import Verdict, checkable
-from pe_core.study import Study, load_study
+from pe_core.study import Study
 from pe_core.study.requirement_file import CONFIDENCE, Preset, preset, presets
 from pe_core.study.suggestion import Suggestion
 
 from ..advice import curve_note
 from ..jobs import CheckJob, SuggestJob
 from ..wording import aligned, margin_text, percent, reason_text, unseen_text
-from .command import add_curve_option, with_curves
-from .drive_by_verb import story_lines
 from .interrupts import stop_at_first
 from .run_job import drive, output_file, print_vehicle, save_text
+from .story_text import chosen_stories, story_lines, story_names
+from .study_source import StudyFiles
 from .terminal import DONE, NOT_MET, Answer, tell
 
 STOPPED = "stopped before"  # Why a requirement has no verdict after Ctrl-C
 ALL = "all"
+CSV = ".csv"  # Suffix of a table of verdicts; another file has JSON
 COLUMNS = (
     *("name", "check", "met", "margin_m", "share", "worst_x", "worst_y", "worst_body"),
     *("seen_by", "unseen_by", "breaks_without", "blind_m2", "source"),
@@ -32,56 +34,39 @@ COLUMNS = (
 LONGEST = 34  # Longer names are cut in the table
 
 
-def add_check_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of ``check`` to a parser."""
-    about = "a preset besides the study's requirements (pe requirements lists them); all: each one"
-    parser.add_argument("--preset", action="append", default=[], metavar="ID", help=about)
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    about = "say which small move, or one more sensor, would meet what is not met"
-    parser.add_argument("--suggest", action="store_true", help=about)
-    parser.add_argument("--csv", metavar="FILE", help="write the table to a CSV file")
-    parser.add_argument("--replace", action="store_true", help="replace a table that is there")
-    add_curve_option(parser)
+def check(source: StudyFiles, args: argparse.Namespace) -> Answer:
+    """Hold a study to its requirements and stories; the exit status says whether all are met."""
+    if args.list is not None:
+        return list_checks(args)
+    return check_study(source.study(args), args)
 
 
-def add_requirements_verb(verbs: Any) -> None:
-    """Add ``requirements``: the list of presets, or one of them in full."""
-    parser = verbs.add_parser("requirements", help="list the requirement presets, or show one")
-    parser.add_argument("id", nargs="?", metavar="ID", help="a preset")
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    parser.set_defaults(function=show_requirements)
-
-
-def show_requirements(args: argparse.Namespace) -> Answer:
-    """List the presets, or show one with its table and source."""
-    chosen = [preset(args.id, "presets", "id")] if args.id else list(presets().values())
+def list_checks(args: argparse.Namespace) -> Answer:
+    """List the requirement presets and the shipped stories, or show one preset with its source."""
+    chosen = [preset(args.list, "check", "--list")] if args.list else list(presets().values())
+    shipped = {} if args.list else stories()
     if args.json:
         rows = [{"id": p.id, "confidence": p.confidence, **p.table} for p in chosen]
-        return dump_json(rows), DONE
-    if args.id:
+        told = {name: {"title": s.title, "source": s.source} for name, s in shipped.items()}
+        return dump_json({"requirements": rows, "stories": told}), DONE
+    if args.list:
         return "\n".join(_preset_lines(chosen[0])), DONE
     width = max(len(each.id) for each in chosen)
     lines = [f"{each.id:{width}}  {each.confidence}  {each.check}: {each.name}" for each in chosen]
-    notes = [f"{letter}: {meaning}" for letter, meaning in CONFIDENCE.items()]
-    return "\n".join([*lines, *notes]), DONE
-
-
-def check(args: argparse.Namespace) -> Answer:
-    """Hold a study file to its requirements; the exit status says whether all are met."""
-    study = load_study(args.study)
-    try:
-        return check_study(study, args)
-    except InputError as error:
-        if not error.source.startswith("requirement "):
-            raise
-        raise error.within(args.study) from None
+    lines += [f"{letter}: {meaning}" for letter, meaning in CONFIDENCE.items()]
+    lines += ["", *aligned([[name, s.title, s.source] for name, s in shipped.items()])]
+    return "\n".join(lines), DONE
 
 
 def check_study(study: Study, args: argparse.Namespace) -> Answer:
-    """Hold a study to its requirements and to the presets that are named. After Ctrl-C the verdicts
-    that were found are printed, and written to the CSV file."""
-    table = output_file(args.csv, args)
-    study, unchecked = with_presets(with_curves(study, args), args.preset)
+    """Hold a study to its requirements and stories, and to the presets that are named; with
+    ``--stories`` to stories alone. After Ctrl-C the verdicts that were found are printed, and
+    written to the file."""
+    if args.stories is not None:
+        chosen = chosen_stories(study, story_names(args.stories))
+        study = replace(study, requirements=(), stories=tuple(chosen))
+    output = output_file(args.output, args)
+    study, unchecked = with_presets(study, args.preset)
     if not (study.requirements or study.stories):
         expected = "[[requirement]] or [[story]] in the study, or --preset ID"
         raise InputError("check", "requirements", expected, "none")
@@ -91,26 +76,29 @@ def check_study(study: Study, args: argparse.Namespace) -> Answer:
     job = CheckJob(study)
     with stop_at_first(job.stop) as received:
         drive(job)
-    verdicts, driven = job.verdicts, job.driven
-    unwritten = save_text(table, verdicts_csv(verdicts))
+    verdicts = job.verdicts
+    driven = job.driven
     met = all(v.met for v in verdicts) and all(each.is_met for each in driven)
     status = received.status(DONE if met else NOT_MET)
     unchecked |= dict.fromkeys(job.missing, STOPPED)
     wanted = args.suggest and status == NOT_MET
     suggested = suggested_for(SuggestJob(study)) if wanted else {}
+    data = {
+        "met": sum(v.met for v in verdicts),
+        "requirements": [v.to_dict() for v in verdicts],
+        "unchecked": unchecked,
+        "suggestions": {n: [each.to_dict() for each in own] for n, own in suggested.items()},
+        "stories": [each.to_dict() for each in driven],
+    }
+    text = dump_json(finite(data))
+    is_table = output is not None and output.suffix == CSV
+    status = save_text(output, verdicts_csv(verdicts) if is_table else text) or status
     if args.json:
-        data = {
-            "met": sum(v.met for v in verdicts),
-            "requirements": [v.to_dict() for v in verdicts],
-            "unchecked": unchecked,
-            "suggestions": {n: [each.to_dict() for each in own] for n, own in suggested.items()},
-            "stories": [each.to_dict() for each in driven],
-        }
-        return dump_json(finite(data)), unwritten or status
+        return text, status
     lines = verdict_lines(verdicts, unchecked) if verdicts or unchecked else []
     lines += story_lines(driven) if driven else []
     lines += [line for name, own in suggested.items() for line in suggestion_lines(name, own)]
-    return "\n".join(lines), unwritten or status
+    return "\n".join(lines), status
 
 
 def suggested_for(job: SuggestJob) -> dict[str, list[Suggestion]]:

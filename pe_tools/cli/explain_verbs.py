@@ -4,7 +4,6 @@ import argparse
 import math
 import signal
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,11 +20,12 @@ from pe_core.study import Study
 from .. import advice
 from ..advice import ComparedRow
 from ..jobs import Outcome, ScoreJob, SuggestJob
+from ..sweep import read_changes
 from ..wording import aligned
 from .check_verb import suggested_for, suggestion_lines
-from .command import add_score_options, number
 from .interrupts import Interrupted, stop_at_first
 from .run_job import drive, print_vehicle
+from .study_source import StudyFiles
 from .terminal import DONE, Answer, warned, with_error
 
 BEST = "*"
@@ -59,38 +59,15 @@ COMPARED = ("space", "prior", "model", "targets")
 """Fields that studies must have in common for their scores to be comparable."""
 
 
-def add_explain_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of ``explain`` to a parser."""
-    about = "ask one place instead: x, y and perhaps z (else 0) in metres"
-    parser.add_argument("--at", type=number, nargs="+", metavar=("X Y", "Z"), help=about)
-    about = "with --at: say which small move, or one more sensor, would end the blind ground there"
-    parser.add_argument("--suggest", action="store_true", help=about)
-    about = "with --at: a test body there (child, adult, cyclist, car, pole, cone ...): m by sensor"
-    parser.add_argument("--body", metavar="NAME", help=about)
-    about = "with --body: its heading, to the left (0)"
-    parser.add_argument("--heading", type=number, metavar="DEG", help=about)
-    about = "class whose reach is told (pedestrian)"
-    parser.add_argument("--class", dest="class_name", metavar="NAME", help=about)
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    add_score_options(parser)
-
-
-def add_compare_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of ``compare`` to a parser."""
-    about = "a known rig on the first one's vehicle as a further column"
-    parser.add_argument("--beside", metavar="RIG", help=about)
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    add_score_options(parser)
-
-
-def explain(study: Study, args: argparse.Namespace) -> Answer:
+def explain(source: StudyFiles, args: argparse.Namespace) -> Answer:
     """Describe a study's score and warnings; with ``--at``, query one location instead."""
+    study = source.study(args)
     at, with_body = args.at, args.body is not None
     if at is not None and not (len(at) in (2, 3 - with_body) and all(map(math.isfinite, at))):
         expected = f"X Y{'' if with_body else ', perhaps Z'}: numbers of metres"
         raise InputError("command line", "--at", expected, " ".join(f"{v:g}" for v in at))
     nowhere, turned, of_class = at is None, args.heading is not None, args.class_name is not None
-    sampled = args.samples is not None
+    sampled = any(change.path == ("samples",) for change in read_changes(args.set))
     for option, is_idle, expected, found in (
         ("--suggest", args.suggest and with_body, "--at X Y, a place to mend", "--body"),
         ("--suggest", args.suggest and nowhere, "--at X Y, a place to mend", "none"),
@@ -142,8 +119,9 @@ def _same_body(one: Vehicle | None, other: Vehicle | None) -> bool:
     return bool(np.array_equal(one.triangles, other.triangles))
 
 
-def compare(studies: Mapping[str, Study], args: argparse.Namespace) -> Answer:
+def compare(source: StudyFiles, args: argparse.Namespace) -> Answer:
     """Score studies by name, and print a table that compares them."""
+    studies: Mapping[str, Study] = source.studies(args)
     refuse_different(studies)
     studies = {**studies, **_beside(studies, args.beside)}
     outcomes = {name: scored(study, args.workers) for name, study in studies.items()}
@@ -181,15 +159,6 @@ def _beside(studies: Mapping[str, Study], key: str | None) -> dict[str, Study]:
     known, first = catalog.known_rig(key), next(iter(studies.values()))
     name = key if key not in studies else f"known rig {key}"
     return {name: first.with_other_rig(catalog.rig_on(known, first.vehicle))}
-
-
-def named_by_file(paths: list[str]) -> dict[str, str]:
-    """Return study files by short, different names: the file's, with its folder's if needed."""
-    for depth in (1, 2):
-        names = ["/".join((*Path(p).parts[:-1], Path(p).stem)[-depth:]) for p in paths]
-        if len(set(names)) == len(names):
-            return dict(zip(names, paths, strict=True))
-    return dict(zip(paths, paths, strict=False))
 
 
 def scored(study: Study, workers: int | None) -> Outcome:

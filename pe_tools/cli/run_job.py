@@ -5,13 +5,14 @@ import signal
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple, TextIO
+from typing import Any, NamedTuple, Protocol, TextIO
 
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
 from pe_core.base.files import require_new, write_bytes
 from pe_core.base.input_files import refuse_input
-from pe_core.study import STUDY, Study
+from pe_core.base.plugins import shipped
+from pe_core.study import REVIEW_PAGE, STUDY, Study
 
 from .. import jobs
 from ..advice import Advice
@@ -68,21 +69,28 @@ class More(NamedTuple):
     write: Callable[[Any, Data, Path], None]
 
 
-pages: list[More] = []  # Additional files of a search; packages with further verbs append to it
-front_pages: list[More] = []  # The same of a front
+class Host(Protocol):
+    """The program around a command line: Blender, or none."""
+
+    versions: dict[str, str] | None
+
+    def artifacts(self, study: Study, *, searches: bool) -> Sequence[More]:
+        """Return further files of a run; `InputError` where a result could not be kept."""
+
+    def notes(self) -> tuple[Advice, ...]:
+        """Return warnings about the study."""
 
 
-def run_study(
-    study: Study,
-    args: argparse.Namespace,
-    *,
-    host: dict[str, str] | None = None,
-    more: Sequence[More] = (),
-    notes: tuple[Advice, ...] = (),
-) -> Answer:
+def _page(*, is_front: bool) -> More:
+    """Return the page beside the results of a search, or of a front."""
+    if is_front:
+        return More([jobs.FRONT_PAGE], lambda *given: shipped("page.front")(*given))
+    return More([REVIEW_PAGE], lambda *given: shipped("page.search")(*given))
+
+
+def run_study(study: Study, host: Host, args: argparse.Namespace) -> Answer:
     """Score or optimize a study, as `args.kind` says, and return what is printed. Results go to the
-    folder of ``--output``; with ``--resume`` a search or a front goes on in that folder. `host` has
-    versions of the host program, `more` its files, and `notes` its warnings about the study.
+    folder of ``--output``; with ``--resume`` a search or a front goes on in that folder.
     `InputError`, before the work, where a search has nowhere to keep its result, or a folder cannot
     take the results, or holds the search of another study."""
     searches, folder = args.kind == "optimize", args.output
@@ -90,8 +98,9 @@ def run_study(
         expected = "-o DIR, a folder for what the search finds, or --json"
         raise InputError("command line", "output", expected, "neither")
     is_front = searches and jobs.has_front(study)
+    more = tuple(host.artifacts(study, searches=searches))
     if searches and args.review:
-        more = (*more, *(front_pages if is_front else pages))
+        more = (*more, _page(is_front=is_front))
     job: Runs
     if not searches:
         job = jobs.ScoreJob(study, args.workers)
@@ -101,7 +110,7 @@ def run_study(
             folder = args.resume
             count = jobs.resume(job, Path(folder))
             tell(f"going on after {count:,} placements")
-    job.notes = notes
+    job.notes = host.notes()
     if folder is not None:
         own = jobs.FRONT_NAMES if is_front else jobs.result_names(study, args.kind)
         added = [name for each in more for name in each.names]
@@ -109,7 +118,7 @@ def run_study(
             refuse_input(Path(folder) / name)
         jobs.prepare_folder(folder, [*own, *added])
     output = None if folder is None else Path(folder)
-    return _carried_out(job, output, args, host, more)
+    return _carried_out(job, output, args, host.versions, more)
 
 
 def _carried_out(
@@ -214,11 +223,3 @@ def print_answer(text: str, status: int, out: TextIO | None) -> int:
         return status
     tell(f"output: {getattr(error, 'strerror', None) or error}")
     return status or BAD_INPUT
-
-
-def add_page_option(parser: argparse.ArgumentParser) -> None:
-    """Add the option that leaves the pages out."""
-    names = ", ".join(name for page in pages for name in page.names)
-    parser.add_argument(
-        "--no-review", action="store_false", dest="review", help=f"no {names or 'review'}"
-    )

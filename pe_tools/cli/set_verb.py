@@ -1,7 +1,6 @@
 """`pe set`: change keys of a study file; its comments and its order stay."""
 
 import argparse
-import copy
 import re
 import tomllib
 from collections import Counter
@@ -9,70 +8,51 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from pe_core.base.errors import InputError, shown
+from pe_core.base.errors import InputError
 from pe_core.base.files import decode_text, encode_like, read_bytes, write_bytes
 from pe_core.base.input_files import not_noting_inputs
 from pe_core.base.table_reader import dotted, inline, load_toml
-from pe_core.study import study_from_dict
 
-from ..sweep import read_settings, set_value
+from ..sweep import KeyChange, TomlPath, named_study, read_changes, set_value
+from .study_source import StudyFiles
 from .terminal import DONE, Answer
 
 ARRAY, BEFORE = "[[", re.compile(r"""\s*(?:"[^"]*"|'[^']*'|[^"'=])*=\s*""")
 """Begin of the header of an array's table, and what stands before a value."""
-TomlPath = tuple[str | int, ...]  # Keys of tables, and indices in arrays of tables
-
-
-def add_set_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of ``set`` to a parser."""
-    about = "sensor.roof.model=Pandar64: a value of TOML, or a text without quotes"
-    parser.add_argument("changes", nargs="+", metavar="KEY=VALUE", help=about)
 
 
 @not_noting_inputs()
-def set_keys(args: argparse.Namespace) -> Answer:
+def set_keys(_: StudyFiles, args: argparse.Namespace) -> Answer:
     """Change keys of a study file, all or none; the changed study is checked before it is written.
     `InputError` when a key or a value does not fit the study, or stands where only an editor can
     change it."""
     path = Path(args.study)
     old = read_bytes(path)
-    text = decode_text(old)
-    lines: list[str] = []
-    typed: dict[TomlPath, Sequence[str]] = {}
-    for setting in read_settings(args.changes):
-        if len(setting.values) > 1:
-            raise InputError("set", setting.key, "one value", shown(", ".join(setting.values)))
-        (value,) = setting.values.values()
-        data = load_toml(path, "study", text)
-        wanted = copy.deepcopy(data)
-        where, known = set_value(wanted, setting, value, str(path))
-        text = _changed(text, where, wanted)
-        if _loaded(text) != wanted:
-            of_table = "a key of this table", inline(value)
-            of_line = "a key in a line of its own", "another form"
-            is_table = isinstance(known, dict) or (
-                isinstance(known, list) and dict in map(type, known)
-            )
-            raise InputError(path, setting.key, *(of_table if is_table else of_line))
-        told = "no value" if known is None else inline(known)
-        lines.append(f"{path}: {setting.key}: {told} -> {inline(value)}")
-        typed[where] = [*map(dotted, setting.path)]
-    try:
-        study_from_dict(load_toml(path, "study", text), str(path), path.parent)
-    except InputError as error:
-        field = _as_typed(error.field, typed)
-        raise InputError(error.source, field, error.expected, error.found) from None
+    text, lines = changed_text(decode_text(old), read_changes(args.changes), path)
     write_bytes(path, encode_like(text, old))
     return "\n".join(lines), DONE
 
 
-def _as_typed(field: str, typed: Mapping[TomlPath, Sequence[str]]) -> str:
-    """Return a field of the loader, ``sensor[0].model``, as it was typed: ``sensor.roof.model``."""
-    for path, parts in typed.items():
-        for number, key in enumerate(path):
-            if field.startswith(f"{'.'.join(parts[:number])}[{key}]"):
-                field = field.replace(f"[{key}]", f".{parts[number]}", 1)
-    return field
+def changed_text(text: str, changes: Sequence[KeyChange], path: Path) -> tuple[str, list[str]]:
+    """Return the text of a study file with changes, and a line about each. `InputError` as
+    above."""
+    lines: list[str] = []
+    made: dict[TomlPath, KeyChange] = {}
+    for change in changes:
+        wanted = load_toml(path, "study", text)
+        placed = set_value(wanted, change, str(path))
+        text = _changed(text, placed.path, wanted)
+        if _loaded(text) != wanted:
+            known = placed.before
+            is_rows = isinstance(known, list) and dict in map(type, known)
+            if is_rows or isinstance(known, dict):
+                raise InputError(path, change.key, "a key of this table", inline(change.value))
+            raise InputError(path, change.key, "a key in a line of its own", "another form")
+        before = "no value" if placed.before is None else inline(placed.before)
+        lines.append(f"{path}: {change.key}: {before} -> {inline(change.value)}")
+        made[placed.path] = change
+    named_study(load_toml(path, "study", text), made, str(path), path.parent)
+    return text, lines
 
 
 class _Statement(NamedTuple):

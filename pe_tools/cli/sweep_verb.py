@@ -2,7 +2,7 @@
 
 import argparse
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,48 +14,24 @@ from pe_core.study import SEARCH, STUDY
 
 from .. import jobs
 from ..advice import curve_note, hardware_note
-from ..sweep import RunTask, SweepRun, read_settings, run_all, sweep_runs
+from ..sweep import RunTask, SweepRun, read_tried, run_all, sweep_runs
 from ..sweep import sweep_table as table
 from ..sweep.sweep_table import BEGUN, DONE, UNWRITTEN, WAITING, SweepRow
 from ..wording import percent
 from . import terminal
-from .command import add_executor_option, add_score_options, add_search_options, with_options
 from .executors import workplace
 from .interrupts import Interrupted, Received, stop_at_first
 from .progress_line import Reporter
+from .study_source import StudyFiles, named_by_file, with_options
 from .terminal import is_terminal, one_line, show, tell
 
-MAX_PARTS = 1_000_000
 
-
-def add_sweep_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of ``sweep`` to a parser."""
-    parser.add_argument("-o", "--output", metavar="DIR", required=True, help="folder for all runs")
-    about = "try these values of a key of the study; several: every combination"
-    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE,...", help=about)
-    parser.add_argument("--optimize", action="store_true", help="search in every run; else score")
-    add_executor_option(parser)
-    about = "only these runs, the K-th of N parts, without a table: for array jobs of a cluster"
-    parser.add_argument("--part", type=part_of, metavar="K/N", help=about)
-    parser.add_argument("--json", action="store_true", help=f"print {table.SWEEP_JSON} on stdout")
-    add_score_options(parser, workers="processes")
-    add_search_options(parser)
-
-
-def part_of(text: str) -> tuple[int, int]:
-    """Return K and N of "K/N", 1 to N; `argparse.ArgumentTypeError` for another text."""
-    k, slash, n = text.partition("/")
-    if slash and k.isdecimal() and n.isdecimal() and 1 <= int(k) <= int(n) <= MAX_PARTS:
-        return int(k), int(n)
-    raise argparse.ArgumentTypeError(f"expected K/N, as 3/40, found {text!r}")
-
-
-def sweep(files: Mapping[str, str | Path], args: argparse.Namespace) -> terminal.Answer:
-    """Run study files by name, with every combination of changes; write all results to a folder.
-    Runs whose results are in the folder already are not repeated."""
+def sweep(_: StudyFiles, args: argparse.Namespace) -> terminal.Answer:
+    """Run study files, with every combination of changes; write all results to a folder. Runs
+    whose results are in the folder already are not repeated."""
     kind = "optimize" if args.optimize else "score"
-    settings = read_settings(args.set)
-    runs = sweep_runs(files, settings, lambda study: with_options(study, args))
+    files = named_by_file(args.studies)
+    runs = sweep_runs(files, read_tried(args.set), lambda study: with_options(study, args))
     if args.part is not None:
         runs = runs[args.part[0] - 1 :: args.part[1]]
     names = [table.SWEEP_CSV, table.SWEEP_JSON]

@@ -23,6 +23,14 @@ from ..jobs import Outcome, condition_lines, sureness_lines
 from ..wording import margin_text, percent
 
 DONE, BAD_INPUT, USAGE, NOT_MET, INTERRUPTED = 0, 1, 2, 3, 130
+EXIT_STATUSES = {
+    DONE: "done",
+    BAD_INPUT: "bad input, or a result that could not be written",
+    USAGE: "wrong usage",
+    NOT_MET: "a requirement or a story is not met",
+    INTERRUPTED: "interrupted: 128 plus the signal's number",
+}
+"""What each exit status means."""
 Answer = tuple[str, int]  # What a verb prints on stdout, and its exit status
 ESCAPED = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
 """Unicode categories that control a terminal or the direction of text, or are no characters."""

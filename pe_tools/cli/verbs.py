@@ -1,48 +1,60 @@
-"""The command ``pe``: its verbs, and what each does with study files, without Blender."""
+"""The command ``pe``: a row for each of its verbs. Blender's command has the same rows, with the
+open scene as the source of studies."""
 
 import argparse
 import platform
 import sys
 from collections.abc import Callable, Sequence
-from functools import partial
 from importlib.metadata import EntryPoint
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from pe_core.base.errors import InputError
-from pe_core.base.plugins import call_plugin, find_plugins, load_plugin, plugin_name
+from pe_core.base.plugins import call_plugin, find_plugins, load_plugin, plugin_name, shipped
 from pe_core.search.payload import keep_freed_memory
-from pe_core.study import Study, load_study
 from pe_core.version import __version__
 
-from ..jobs import read_search
-from . import exchange_verbs, run_job
-from .check_verb import add_check_options, add_requirements_verb, check
-from .command import (
-    Parser,
-    add_curves_verb,
-    add_run_options,
-    add_sensors_verb,
-    as_typed,
-    run,
-    with_options,
-)
-from .drive_by_verb import add_list_option, drive_by
-from .explain_verbs import add_compare_options, add_explain_options, compare, explain, named_by_file
-from .new_verb import add_new_verb
-from .set_verb import add_set_options, set_keys
-from .sweep_verb import add_sweep_options, sweep
-from .terminal import Answer, open_missing_streams, tell
-from .where_verb import add_where_options, where
+from .catalog_verb import show_sensors
+from .check_verb import check
+from .command import Parser, as_typed, run
+from .exchange_verbs import export, import_study
+from .explain_verbs import compare, explain
+from .new_verb import new
+from .options import add_options
+from .run_job import run_study
+from .set_verb import set_keys
+from .study_source import FILE, FILES, NONE, ONE, PERHAPS, SOME, StudyFiles
+from .sweep_verb import sweep
+from .terminal import EXIT_STATUSES, Answer, open_missing_streams, tell
+from .where_verb import where
 
-ONE, PERHAPS, SOME = "one", "?", "+"  # How many study files a verb takes
-GROUPS = {
-    "begin": "new set import rigs sensors curves requirements",
-    "score": "score explain check compare drive-by",
-    "place": "where optimize sweep fit",
-    "show": "review export",
-}  # Verbs by their groups in the help; what is in none of them is listed last
+VerbFunction = Callable[[StudyFiles, argparse.Namespace], Answer]
+BEGIN, SCORE, PLACE, SHOW, MORE = "begin", "score", "place", "show", "more"
+"""Groups of verbs in the help; verbs of plugins are in the last one."""
+COMMON = "set samples condition"
+SEARCH = "evaluations seed method"
+
+
+class Verb(NamedTuple):
+    """A verb: its name, its group in the help, its meaning; what it takes (`study_source`), the
+    names of its rows in `options`, what it does."""
+
+    name: str
+    group: str
+    about: str
+    takes: str
+    options: str
+    function: VerbFunction
+
+    def add(self, verbs: Any, source: StudyFiles) -> None:
+        """Add the verb to the parser of a command."""
+        parser = verbs.add_parser(self.name, help=self.about)
+        source.add_arguments(parser, self.takes)
+        add_options(parser, self.options)
+        parser.set_defaults(
+            function=self.function, kind=self.name, source=source, usage_error=parser.error
+        )
 
 
 class _InGroups(argparse.HelpFormatter):
@@ -50,76 +62,61 @@ class _InGroups(argparse.HelpFormatter):
 
     def _iter_indented_subactions(self, action: argparse.Action) -> Any:
         verbs = {verb.dest: verb for verb in getattr(action, "_choices_actions", ())}
-        rest = [name for name in verbs if name not in " ".join(GROUPS.values()).split()]
-        for title, names in {**GROUPS, "more": " ".join(rest)}.items():
-            if found := [verbs[name] for name in names.split() if name in verbs]:
-                yield argparse.Action([], "", metavar=title)
+        groups = {verb.name: verb.group for verb in VERBS}
+        for group in dict.fromkeys([*groups.values(), MORE]):
+            if found := [verb for name, verb in verbs.items() if groups.get(name, MORE) == group]:
+                yield argparse.Action([], "", metavar=group)
                 self._indent()
                 yield from found
                 self._dedent()
 
 
-class Verb(NamedTuple):
-    """A verb of study files."""
-
-    name: str
-    about: str
-    add_options: Callable[[argparse.ArgumentParser], None]
-    studies: str
-    function: Callable[[argparse.Namespace], Answer]
-    usage: str = ""
-
-    def add(self, verbs: Any) -> None:
-        """Add the verb to the parser of the command."""
-        verb = verbs.add_parser(self.name, help=self.about)
-        verb.usage = f"{verb.prog} {self.usage}" if self.usage else None
-        if self.studies:
-            name = "studies" if self.studies == SOME else "study"
-            count = None if self.studies == ONE else self.studies
-            verb.add_argument(name, nargs=count, metavar="STUDY", help="study file (TOML)")
-        self.add_options(verb)
-        verb.set_defaults(function=self.function, kind=self.name, usage_error=verb.error)
-
-
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command and return its exit status. 0: done; 1: bad input, or results that cannot be
-    written; 2: usage; 3: a requirement is not met; 128 plus the number of a signal."""
+    """Run the command and return its exit status (`terminal.EXIT_STATUSES`)."""
     open_missing_streams()
     keep_freed_memory()
+    given = sys.argv[1:] if argv is None else argv
+    return run(lambda: answer(parser().parse_args(given), "pe", given))
 
-    def work() -> Answer:
-        given = sys.argv[1:] if argv is None else argv
-        args = parser().parse_args(given)
-        args.command_line = as_typed("pe", given)
-        answer: Answer = args.function(args)
-        return answer
 
-    return run(work)
+def answer(args: argparse.Namespace, prog: str, argv: Sequence[str]) -> Answer:
+    """Return what the verb of a parsed command line answers."""
+    args.command_line = as_typed(prog, argv)
+    found: Answer
+    if not hasattr(args, "source"):  # a verb of a plugin
+        found = args.function(args)
+        return found
+    with args.source.naming(args):
+        found = args.function(args.source, args)
+    return found
 
 
 def parser() -> argparse.ArgumentParser:
-    """Return the parser of the command line."""
-    top: argparse.ArgumentParser = Parser(
-        prog="pe",
-        description="Perception entropy of vehicle sensors.",
-        formatter_class=_InGroups,
-        epilog="Manual: docs/index.md of the source.",
-    )
+    """Return the parser of ``pe``."""
     about = f"pe {__version__}, NumPy {np.__version__}, Python {platform.python_version()}"
     about += f", {platform.platform()}"
-    top.add_argument("--version", action="version", version=about)
-    verbs = top.add_subparsers(required=True, metavar="VERB")
-    for verb in VERBS:
-        verb.add(verbs)
-    add_sensors_verb(verbs)
-    add_curves_verb(verbs)
-    exchange_verbs.add_rigs_verb(verbs)
-    add_requirements_verb(verbs)
-    add_new_verb(verbs)
+    top, verbs = command_parser("pe", about, VERBS, StudyFiles())
     for plugin in find_plugins("verb"):
         _add_plugin_verbs(plugin, verbs)
-    run_job.add_page_option(verbs.choices["optimize"])
     return top
+
+
+def command_parser(
+    prog: str, version: str, rows: Sequence[Verb], source: StudyFiles
+) -> tuple[argparse.ArgumentParser, Any]:
+    """Return the parser of a command with these verbs, and its action that takes further ones."""
+    statuses = "; ".join(f"{number} {meaning}" for number, meaning in EXIT_STATUSES.items())
+    top: argparse.ArgumentParser = Parser(
+        prog=prog,
+        description="Perception entropy of vehicle sensors.",
+        formatter_class=_InGroups,
+        epilog=f"Exit status: {statuses}. Manual: docs/index.md of the source.",
+    )
+    top.add_argument("--version", action="version", version=version)
+    verbs = top.add_subparsers(required=True, metavar="VERB")
+    for verb in rows:
+        verb.add(verbs, source)
+    return top, verbs
 
 
 def _add_plugin_verbs(point: EntryPoint, verbs: Any) -> None:
@@ -136,91 +133,109 @@ def _add_plugin_verbs(point: EntryPoint, verbs: Any) -> None:
         tell(f"{error}; its verbs are missing")
 
 
-def _study(path: str, args: argparse.Namespace) -> Study:
-    """Read a study, with the changes of the options; what they do not find in it names its file."""
-    study = load_study(path, starts_anywhere=getattr(args, "snap", False))
-    try:
-        return with_options(study, args)
-    except InputError as error:
-        if error.source != "study":
-            raise
-        raise InputError(path, error.field, error.expected, error.found) from None
+def _review(source: StudyFiles, args: argparse.Namespace) -> Answer:
+    page: Answer = shipped("page.review")(source.studies(args), args, source.versions)
+    return page
 
 
-def _run_job(args: argparse.Namespace) -> Answer:
-    resume = getattr(args, "resume", None)
-    if args.study is not None:
-        study = _study(args.study, args)
-    elif resume is not None:
-        study = with_options(read_search(resume).study, args)
-    else:
-        args.usage_error("expected STUDY, or --resume DIR")
-    return run_job.run_study(study, args)
+def _job(source: StudyFiles, args: argparse.Namespace) -> Answer:
+    return run_study(source.study(args), source, args)
 
 
-_add_search_options = partial(add_run_options, search=True)
+def _where(source: StudyFiles, args: argparse.Namespace) -> Answer:
+    return where(source.study(args), args)
+
+
 VERBS = (
-    Verb("score", "score a study's rig", partial(add_run_options, search=False), ONE, _run_job),
-    Verb("optimize", "search for a better placement", _add_search_options, PERHAPS, _run_job),
+    Verb(
+        "new",
+        BEGIN,
+        "write a first study of a vehicle's mesh, or of a known rig",
+        NONE,
+        "mesh_file rig placement set_found study_file replace",
+        new,
+    ),
+    Verb("set", BEGIN, "change keys of a study file; its comments stay", FILE, "changes", set_keys),
+    Verb(
+        "import",
+        BEGIN,
+        "make a study of another program's rig",
+        NONE,
+        "foreign_file from models origin mesh rear_axle study_file replace",
+        import_study,
+    ),
+    Verb(
+        "sensors",
+        BEGIN,
+        "list the catalogue, or show one sensor",
+        NONE,
+        "sensor_name curves",
+        show_sensors,
+    ),
+    Verb("score", SCORE, "score a study's rig", ONE, f"{COMMON} workers folder json", _job),
     Verb(
         "explain",
+        SCORE,
         "a study's score in words, or one place of it",
-        add_explain_options,
         ONE,
-        lambda args: explain(_study(args.study, args), args),
-        "STUDY [--at X Y [Z]] [options]",
+        f"at body heading suggest class {COMMON} workers json",
+        explain,
     ),
     Verb(
         "check",
+        SCORE,
         "hold a study to its requirements; 3: some are not met",
-        add_check_options,
-        ONE,
+        PERHAPS,
+        "preset stories list suggest set file json replace",
         check,
     ),
     Verb(
-        "where",
-        "score one more sensor all over the vehicle's surface",
-        add_where_options,
-        ONE,
-        lambda args: where(load_study(args.study), args),
-    ),
-    Verb(
-        "drive-by",
-        "when tracks of what moves are confirmed; 3: some too late",
-        add_list_option,
-        PERHAPS,
-        drive_by,
-    ),
-    Verb(
         "compare",
+        SCORE,
         "score several studies and put them side by side",
-        add_compare_options,
         SOME,
-        lambda args: compare(
-            {name: _study(path, args) for name, path in named_by_file(args.studies).items()}, args
-        ),
+        f"beside {COMMON} workers json",
+        compare,
+    ),
+    Verb(
+        "where",
+        PLACE,
+        "score one more sensor all over the vehicle's surface",
+        ONE,
+        "model of_part|mount figure places set workers file json replace",
+        _where,
+    ),
+    Verb(
+        "optimize",
+        PLACE,
+        "search for a better placement",
+        PERHAPS,
+        f"{COMMON} {SEARCH} start snap workers executor folder|resume no_review json",
+        _job,
+    ),
+    Verb(
+        "sweep",
+        PLACE,
+        "run many studies, or one with many changes",
+        FILES,
+        "try samples condition evaluations seed method optimize part workers executor "
+        "required_folder json",
+        sweep,
+    ),
+    Verb(
+        "review",
+        SHOW,
+        "write an HTML page that shows a rig and what its sensors see",
+        SOME,
+        f"title author date revision {COMMON} workers required_folder replace",
+        _review,
     ),
     Verb(
         "export",
-        "write a study's rig for another program",
-        exchange_verbs.add_export_options,
+        SHOW,
+        "write a rig or scene for another program, or a copy",
         ONE,
-        lambda args: exchange_verbs.export(load_study(args.study), args),
-    ),
-    Verb(
-        "import",
-        "make a study of another program's rig",
-        exchange_verbs.add_import_options,
-        "",
-        exchange_verbs.import_study,
-    ),
-    Verb("set", "change keys of a study file; its comments stay", add_set_options, ONE, set_keys),
-    Verb(
-        "sweep",
-        "run many studies, or one with many changes",
-        add_sweep_options,
-        SOME,
-        lambda args: sweep(named_by_file(args.studies), args),
-        "STUDY... [--set KEY=VALUE,...]... -o DIR [options]",
+        "to range origin rear_axle set path into replace",
+        export,
     ),
 )

@@ -24,31 +24,23 @@ BELOW = "; the figures are in the table below"
 
 
 @app.noted_when_interrupted(INTERRUPTED)
-def review(args: argparse.Namespace) -> app.Answer:
-    """Score studies and write their page; after Ctrl-C nothing is written."""
-    by_name = {name: pe.load_study(path) for name, path in app.named_by_file(args.studies).items()}
-    return review_studies(by_name, args)
-
-
-@app.noted_when_interrupted(INTERRUPTED)
 def review_studies(
     by_name: Mapping[str, pe.Study],
     args: argparse.Namespace,
     versions: Mapping[str, str] | None = None,
 ) -> app.Answer:
     """Score studies by name and write their page; what is refused is refused before the work.
-    `args` are parsed options of `add_review_options` and of a score; `versions` are those of
-    programs besides the engine's, by name."""
+    `args` are the parsed options of the verb; `versions` are those of programs besides the
+    engine's, by name."""
     if len(by_name) > MAX_STUDIES:
         raise pe.InputError("command line", "STUDY", f"{MAX_STUDIES} at most", len(by_name))
-    requested = {name: app.with_options(study, args) for name, study in by_name.items()}
-    app.refuse_different(requested)
+    app.refuse_different(by_name)
     about = About(args.title, args.author, args.date, args.revision)
     folder = jobs.prepare_folder(args.output, () if args.replace else (PAGE,))
     facts: dict[str, Any] = {"command": args.command_line, "versions": versions or {}}
     contexts = [
         ReportContext(name, app.scored(study, args.workers), folder=folder, **facts)
-        for name, study in requested.items()
+        for name, study in by_name.items()
     ]
     path = write_page(contexts, args.output, replace=args.replace, about=about)
     return str(path), app.DONE

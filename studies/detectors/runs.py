@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from pe_core import InputError
 from pe_core.base import Number, Table, dump_json, write_bytes
-from pe_tools.cli import count_up_to, noted_when_interrupted
+from pe_tools.cli import noted_when_interrupted, whole
 
 from ..results_file import Json, print_progress, read_json
 from .placements import Placement, arm_placements, frames_placements, good_placements, placements
@@ -166,7 +166,7 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `do_runs` to the parser of a study."""
     parser.add_argument("--resume", action="store_true", help="go on where the folder's runs end")
     about = "do at most so many runs now"
-    parser.add_argument("--runs", type=count_up_to(MAX_RUNS), metavar="N", help=about)
+    parser.add_argument("--runs", type=whole(MAX_RUNS), metavar="N", help=about)
 
 
 def do_runs(args: argparse.Namespace, files: RunFiles, layouts: Layouts | None = None) -> None:

@@ -19,7 +19,6 @@ from pe_core.metric import H_BLIND
 from pe_core.scoring import VoxelSample, draw
 from pe_tools.formats import fit_ap_curve, read_ap_table
 from pe_tools.jobs import placements
-from pe_tools.page.fitting import fit_data
 
 from ..results_file import Json, Task, Values
 from .analytic import expected_entropy, max_distance_for, max_unseen_share, min_entropy
@@ -310,7 +309,18 @@ def prior_map(prior: str) -> Json:
 
 def fit(table: str) -> Json:
     """Fit the AP curve to a table of the folder ``data``."""
-    return fit_data(fit_ap_curve(read_ap_table(DATA / f"{table}.csv")))
+    found = fit_ap_curve(read_ap_table(DATA / f"{table}.csv"))
+    return {
+        "a": found.curve.a,
+        "b": found.curve.b,
+        "a_error": found.a_error,
+        "b_error": found.b_error,
+        "rms": found.rms,
+        "m": found.table.m.tolist(),
+        "ap": found.table.ap.tolist(),
+        "n": found.table.n.tolist(),
+        "left_out": list(found.why),
+    }
 
 
 def _score_data(study: pe.Study) -> Json:

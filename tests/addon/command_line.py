@@ -17,8 +17,8 @@ from tests.limits import HANG_S
 
 ROOT = Path(__file__).resolve().parents[2]
 FAST = (
-    *("--samples", "1024", "--search-samples", "1024"),
-    *("--method", "random", "--candidates", "2", "--seed", "3"),
+    *("--samples", "1024", "--set", "optimize.samples=1024"),
+    *("--method", "random", "--set", "optimize.candidates=2", "--seed", "3"),
 )
 
 

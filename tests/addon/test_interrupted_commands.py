@@ -38,7 +38,7 @@ def test_the_same_folder_again_is_one_set(blend, tmp_path, small_pictures):
 @pytest.mark.usefixtures("heeded_signals")
 def test_being_told_to_end_keeps_the_best(blend, tmp_path):
     out, log = tmp_path / "out", tmp_path / "log"
-    arguments = (*FAST[:6], "--candidates", 100_000, "-o", out)
+    arguments = (*FAST[:6], "--set", "optimize.candidates=100000", "-o", out)
     with log.open("w") as stderr:
         process = subprocess.Popen(
             command(blend, "optimize", "--no-review", *arguments),

@@ -36,13 +36,10 @@ def test_the_line_is_a_study_file_and_pe_writes_one_of_it(car, tmp_path):
     line = copied(car)
     (tmp_path / "line.toml").write_text(line)
     assert line_of(pe.load_study(tmp_path / "line.toml").rig) == line
-    assert pe_here("rigs", line, "-o", tmp_path / "study.toml").returncode == 0
+    assert pe_here("new", "--rig", line, "-o", tmp_path / "study.toml").returncode == 0
     assert line_of(pe.load_study(tmp_path / "study.toml").rig) == line
-    assert pe_here("rigs", "--of", tmp_path / "study.toml").stdout.strip() == line
-    for more in (["kitti"], ["-o", tmp_path / "unwritten.toml"]):
-        with pytest.raises(SystemExit):
-            pe_here("rigs", "--of", tmp_path / "study.toml", *more)
-    assert not (tmp_path / "unwritten.toml").exists()
+    export = pe_here("export", tmp_path / "study.toml", "--to", "line")
+    assert export.stdout.strip() == line
 
 
 def test_a_sensor_of_ones_own_travels_with_its_figures(car):

@@ -74,7 +74,8 @@ def test_variants_are_compared(blend):
 
 
 def test_a_search_keeps_its_start_and_its_result_in_the_file_that_it_leaves(blend, tmp_path):
-    fast = (*FEW, "--search-samples", "4096", "--method", "random", "--candidates", "8")
+    changes = ("--set", "optimize.samples=4096", "--set", "optimize.candidates=8")
+    fast = (*FEW, "--method", "random", *changes)
     out = tmp_path / "out"
     answer = run_here(blend, "optimize", "--no-review", *fast, "-o", out)
     assert answer.returncode == 0, answer.stderr

@@ -106,15 +106,15 @@ path = [[-0.3, 0.0, -0.5], [0.0, 0.0, 0.0]]
 def test_a_film_without_a_window_is_that_of_its_drive_by(installed, sedan, tmp_path):
     story, film = tmp_path / "story.toml", tmp_path / "film.webm"
     story.write_text(SHORT_STORY)
-    answer = installed.pe(sedan, "drive-by", story, "-o", film, "--json")
+    answer = installed.pe(sedan, "check", "--stories", story, "-o", film, "--json")
     assert answer.returncode in (0, 3), output_of(answer)
     data = film.read_bytes()
     assert data.startswith(b"\x1a\x45\xdf\xa3") and b"webm" in data[:64]
     (of,) = document_in(answer.stdout)["stories"]
     assert of["name"] == "crossing_child"
     assert b"perception-entropy " in data
-    again = installed.pe(sedan, "drive-by", story, "-o", film)
+    again = installed.pe(sedan, "check", "--stories", story, "-o", film)
     assert again.returncode == 1 and film.read_bytes() == data, output_of(again)
-    other = installed.pe(sedan, "drive-by", story, "-o", tmp_path / "film.mp4")
+    other = installed.pe(sedan, "check", "--stories", story, "-o", tmp_path / "film.mp4")
     assert other.returncode in (0, 3), output_of(other)
     assert b"ftyp" in (tmp_path / "film.mp4").read_bytes()[:16]

@@ -1,4 +1,4 @@
-"""`pe check` and `pe requirements`: tables, JSON, CSV, and the exit status."""
+"""`pe check`: tables, JSON, CSV, and the exit status."""
 
 import csv
 import json
@@ -85,7 +85,7 @@ def test_ctrl_c_keeps_the_verdicts_that_were_found(study, tmp_path, monkeypatch,
     monkeypatch.setattr(pe.Study, "check_steps", interrupted)
     table = tmp_path / "verdicts.csv"
     try:
-        assert main(["check", str(study), "--csv", str(table)]) == 130
+        assert main(["check", str(study), "-o", str(table)]) == 130
     finally:
         ended.set()
     shown = capsys.readouterr()
@@ -105,7 +105,7 @@ def test_a_stopped_check_names_stories_that_were_not_driven_too(study):
 def test_a_table_that_cannot_be_written_is_told_before_the_work_or_takes_no_verdict_along(
     study, tmp_path, monkeypatch, capsys
 ):
-    nowhere = ["check", str(study), "--csv", str(tmp_path / "no" / "table.csv")]
+    nowhere = ["check", str(study), "-o", str(tmp_path / "no" / "table.csv")]
     assert main(nowhere) == 1
     assert "no such folder" in capsys.readouterr().err.splitlines()[-1]
 
@@ -113,7 +113,7 @@ def test_a_table_that_cannot_be_written_is_told_before_the_work_or_takes_no_verd
         raise InputError(path, "file", "a path that can be written", "no space left on device")
 
     monkeypatch.setattr(run_job, "write_bytes", full)
-    assert main(["check", str(study), "--csv", str(tmp_path / "table.csv")]) == 1
+    assert main(["check", str(study), "-o", str(tmp_path / "table.csv")]) == 1
     shown = capsys.readouterr()
     assert "1 of 1 met" in shown.out and "no space left" in shown.err
 
@@ -121,7 +121,7 @@ def test_a_table_that_cannot_be_written_is_told_before_the_work_or_takes_no_verd
 def test_all_presets_are_checked_or_said_why_not(study, tmp_path, capsys):
     """The CSV has a row for each that was checked; no text claims that a rule is complied with."""
     table = tmp_path / "table.csv"
-    status = main(["check", str(study), "--preset", "all", "--csv", str(table)])
+    status = main(["check", str(study), "--preset", "all", "-o", str(table)])
     text = capsys.readouterr().out
     rows = list(csv.DictReader(table.open()))
     assert status == NOT_MET and tuple(rows[0]) == COLUMNS

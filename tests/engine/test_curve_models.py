@@ -131,7 +131,7 @@ def test_curves_of_published_detectors_are_told_with_source_and_span(model, caps
         assert 0.2 < ends[0] < ends[1] < 1.05 and row.rmse < 0.12
     assert chosen.object_curve("lidar", "cone") == own.object_curve("lidar", "cone")
     assert chosen.object_curve("camera", "car") == own.object_curve("camera", "car")
-    assert main(["curves"]) == 0
+    assert main(["sensors", "--curves"]) == 0
     told = capsys.readouterr().out
     assert f"\n{model}: {known.label}, {known.trust}; {known.source}\n" in told
 

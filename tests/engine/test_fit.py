@@ -1,7 +1,8 @@
-"""Fits of the AP curve: a and b, what is left out, bad tables, and the command `pe fit`."""
+"""Fits of the AP curve: a and b, what is left out, bad tables."""
 
 import math
 import tomllib
+from functools import partial
 
 import numpy as np
 import pytest
@@ -9,7 +10,6 @@ import pytest
 import pe_core as pe
 from pe_core import catalog
 from pe_tools.formats import ApTable, fit_ap_curve, m_by_range, read_ap_table, study_snippet
-from tests.engine.processes import pe as command
 from tests.engine.refusals import wrongly_refused
 
 
@@ -135,26 +135,14 @@ def test_the_snippet_of_a_class_of_objects_is_the_study_s_table():
     fit = fit_ap_curve(ApTable(np.array([1.0, 2.0, 4.0]), np.array([0.2, 0.3, 0.4]), np.ones(3)))
     for name in ("car", "road works \N{CONSTRUCTION SIGN}"):
         table = tomllib.loads(study_snippet(fit, "lidar", name))
-        assert list(table["ap"]["lidar"]["objects"][name]) == ["a", "b"]
+        assert list(table["ap"]["objects"]["lidar"][name]) == ["a", "b"]
 
 
-LINE = """m,ap
-0.01,0.001
-1,0.2
-2.718281828459045,0.3
-7.38905609893065,0.5
-"""
-"""AP 0.2, 0.3, 0.5 at ln m = 0, 1, 2, and a point at the clip: the line has a slope of 0.15 and is
-0.55 / 3 at 0. Residuals 1/60, -2/60, 1/60: errors sqrt(1 / 1200) and sqrt(1 / 720)."""
-
-
-def test_it_prints_the_curve_what_was_left_out_and_the_snippet(tmp_path):
-    (tmp_path / "line.csv").write_text(LINE)
-    run = command("fit", tmp_path / "line.csv")
-    assert run.returncode == 0 and not run.stderr
-    assert "a  0.1500 +- 0.0289" in run.stdout and "b  0.1833 +- 0.0373" in run.stdout
-    assert "points  3 of 4; left out: 1 at the clip" in run.stdout
-    assert "[ap.lidar]" in run.stdout
+def test_the_snippet_names_the_table_and_how_many_points_it_used(tmp_path):
+    rows = "m,ap\n0.01,0.001\n1,0.2\n2.718281828459045,0.3\n7.38905609893065,0.5\n"
+    found = fit_ap_curve(read_ap_table(written(tmp_path, rows)))
+    assert found.left_out == {"at the clip": 1}
+    assert "3 of 4 points of ap.csv" in study_snippet(found, "lidar")
 
 
 RADAR, RANGES = "Continental ARS408-21", (60.0, 80.0, 100.0, 120.0)
@@ -166,26 +154,21 @@ def test_a_table_by_range_gives_the_curve_of_what_the_model_measures(tmp_path):
     assert (np.diff(m) < 0.0).all() and m[-1] > 1.0
     rows = [f"{r},{0.3 * math.log(v) + 0.1}" for r, v in zip(RANGES, m.tolist(), strict=True)]
     (tmp_path / "radar.csv").write_text("\n".join(["range_m,ap", *rows]) + "\n")
-    run = command("fit", tmp_path / "radar.csv", "--model", RADAR, "--object", "car")
-    assert run.returncode == 0 and not run.stderr
-    curve = tomllib.loads(run.stdout[run.stdout.index("#") :])["ap"]["radar"]["objects"]["car"]
+
+    def fitted(name):
+        of_model = partial(m_by_range, catalog.load(RADAR), class_name=name)
+        found = fit_ap_curve(read_ap_table(tmp_path / "radar.csv", of_model))
+        return tomllib.loads(study_snippet(found, "radar", name))["ap"]
+
+    curve = fitted("car")["objects"]["radar"]["car"]
     assert (curve["a"], curve["b"]) == pytest.approx((0.3, 0.1), abs=1e-5)
-    plain = command("fit", tmp_path / "radar.csv", "--model", RADAR)
-    of_voxels = tomllib.loads(plain.stdout[plain.stdout.index("#") :])["ap"]["radar"]
     times = (4.6 + 1.9) * 1.7 / (2.0 * 0.1**2)
-    assert of_voxels["b"] == pytest.approx(0.1 + 0.3 * math.log(times), abs=1e-4)
+    assert fitted(None)["radar"]["b"] == pytest.approx(0.1 + 0.3 * math.log(times), abs=1e-4)
 
 
-@pytest.mark.parametrize(
-    ("options", "line"),
-    [
-        ((), "r.csv: line 1: "),
-        (("--model", "no such"), "such as Pandar64"),
-        (("--model", RADAR, "--kind", "camera"), "kind: expected radar, the kind of Continental"),
-        (("--model", RADAR, "--object", "dog"), "object: expected one of car, pedestrian"),
-    ],
-)
-def test_wrong_options_of_a_table_by_range_are_one_line(tmp_path, options, line):
-    (tmp_path / "r.csv").write_text("range_m,ap\n10,0.5\n20,0.4\n30,0.3\n")
-    run = command("fit", tmp_path / "r.csv", *options)
-    assert run.returncode == 1 and line in run.stderr and run.stderr.count("\n") == 1
+def test_a_table_by_range_needs_a_model_and_a_class_with_a_size(tmp_path):
+    path = written(tmp_path, "range_m,ap\n10,0.5\n20,0.4\n30,0.3\n")
+    with pytest.raises(pe.InputError, match="line 1"):
+        read_ap_table(path)
+    with pytest.raises(pe.InputError, match="object: expected one of car"):
+        read_ap_table(path, partial(m_by_range, catalog.load(RADAR), class_name="dog"))

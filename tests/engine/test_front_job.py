@@ -154,7 +154,8 @@ def test_the_command_line_writes_a_front_and_its_page(tmp_path, capsys):
     given = study(())
     few = replace(given, search=replace(given.search, evaluations=40))
     pt.export_study(few, tmp_path / "study.toml")
-    line = ["optimize", str(tmp_path / "study.toml"), "--front", "entropy,height", "--json"]
+    line = ["optimize", str(tmp_path / "study.toml"), "--json"]
+    line += ["--set", 'optimize.front.objectives=["entropy", "height"]']
     assert main([*line, "-o", str(tmp_path / "out"), "--workers", "1"]) == 0
     data = json.loads(capsys.readouterr().out)
     assert data["objectives"] == ["entropy", "height"] and data["front"]

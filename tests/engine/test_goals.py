@@ -13,7 +13,6 @@ from pe_core.scoring.sampling import HELD_OUT
 from pe_core.search import Front, Goals, Start, Stop
 from pe_core.study import load_study_data, study_to_dict
 from pe_core.study.requirement_search import INFEASIBLE
-from pe_tools.cli.command import with_options
 from pe_tools.cli.terminal import summary
 from pe_tools.cli.verbs import parser
 from pe_tools.jobs import HistoryRow, best_so_far, result_dict, stopping
@@ -60,21 +59,16 @@ def test_limits_are_set_by_key_or_option(tmp_path):
     path = tmp_path / "study.toml"
     limits = pe.Limits(blind_ground=True, blind_sector=20, ap_far={"value": 0.3, "kept": False})
     pt.export_study(replace(study(), limits=limits), path)
-    known = pe.load_study(path)
-    assert known.limits == limits
+    assert pe.load_study(path).limits == limits
     for options, change in (
-        (["none"], {"blind_ground": None, "blind_sector": None, "ap_far": None}),
-        (["ap_far=0.4", "reach"], {"ap_far": 0.4, "reach": True}),
+        (["limits.ap_far=0.4", "limits.reach=true"], {"ap_far": 0.4, "reach": True}),
+        (["limits.ap_far.kept=true"], {"ap_far": 0.3}),
         ([], {}),
     ):
-        given = [word for option in options for word in ("--limit", option)]
-        args = parser().parse_args(["optimize", str(path), *given])
-        assert with_options(known, args).limits == replace(limits, **change)
-    with pytest.raises(pe.InputError, match="ap_far"):
-        with_options(known, parser().parse_args(["optimize", str(path), "--limit", "ap_far=2"]))
-    for option in ("margin", "reach=far"):
-        with pytest.raises(SystemExit):
-            parser().parse_args(["optimize", str(path), "--limit", option])
+        assert typed_study(path, *options).limits == replace(limits, **change)
+    for option in ("limits.ap_far=2", "limits.margin=1", "limits.reach=far"):
+        with pytest.raises(pe.InputError, match=option.partition("=")[0]):
+            typed_study(path, option)
     path.write_text(path.read_text().replace("blind_ground =", "blind_grund ="))
     with pytest.raises(pe.InputError, match=r"limits.*blind_ground.*blind_grund|blind_grund"):
         pe.load_study(path)
@@ -196,26 +190,28 @@ def test_goals_are_in_the_file_and_nothing_is_written_of_the_default(tmp_path):
     assert not {"stop", "fixed", "start", "front"} & set(bare["optimize"])
 
 
+def typed_study(path, *changes):
+    """The study that `pe optimize` searches with changes by ``--set``."""
+    line = ["optimize", str(path), *(word for each in changes for word in ("--set", each))]
+    args = parser().parse_args(line)
+    return args.source.study(args)
+
+
 def test_options_of_the_command_line_are_the_goals_of_the_study(tmp_path):
     given = replace(study(names=("roof", "front")), vehicle=None)
-    pe.save_study(given, tmp_path / "other.toml")
-    line = [
-        "optimize",
-        "study.toml",
-        "--limit",
-        "entropy=-1.5",
-        "--stop-gain",
-        "0.01",
-        "--fix",
-        "roof",
-    ]
-    line += ["--start", str(tmp_path / "other.toml"), "--front", "entropy,height"]
-    args = parser().parse_args(line)
-    changed = with_options(given, args)
+    path = tmp_path / "other.toml"
+    pe.save_study(given, path)
+    changes = (
+        "limits.entropy=-1.5",
+        "optimize.stop.gain=0.01",
+        'optimize.fixed=["roof"]',
+        'optimize.front.objectives=["entropy", "height"]',
+    )
+    changed = typed_study(path, *changes)
     goals = changed.search.goals
     assert changed.limits == pe.Limits(entropy=-1.5)
     assert (goals.stop.gain, goals.stop.seconds) == (0.01, None)
-    assert goals.fixed == ("roof",) and goals.starts[0].name == "other"
-    assert goals.front.objectives == ("entropy", "height")
-    plain_args = parser().parse_args(["optimize", "study.toml"])
-    assert with_options(given, plain_args).search.goals == given.search.goals
+    assert goals.fixed == ("roof",) and goals.front.objectives == ("entropy", "height")
+    assert typed_study(path).search.goals == given.search.goals
+    args = parser().parse_args(["optimize", str(path), "--start", str(path)])
+    assert [start.name for start in args.source.study(args).search.goals.starts] == ["other"]

@@ -95,7 +95,7 @@ def test_its_figures_are_those_of_a_fresh_score(page, tool, key):
 
 @pytest.mark.parametrize("key", catalog.known_rigs())
 def test_each_is_a_study_that_reads_back(key, tmp_path, capsys):
-    assert main(["rigs", key, "-o", str(tmp_path / "study.toml")]) == 0
+    assert main(["new", "--rig", key, "-o", str(tmp_path / "study.toml")]) == 0
     assert "as published" in capsys.readouterr().err
     study = pe.load_study(tmp_path / "study.toml")
     found, rig = study.rig, catalog.known_rig(key)

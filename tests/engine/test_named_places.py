@@ -61,7 +61,7 @@ def test_they_lie_on_the_body_and_left_is_where_right_is(name):
 @pytest.mark.parametrize("key", catalog.templates())
 def test_a_template_is_a_study_named_and_coloured_by_place(key, tmp_path, capsys):
     mesh = str(ROOT / "blend_assets" / "sedan.npz")
-    assert main(["rigs", key, "--mesh", mesh, "-o", str(tmp_path / "study.toml")]) == 0
+    assert main(["new", mesh, "--rig", key, "-o", str(tmp_path / "study.toml")]) == 0
     rig = pe.load_study(tmp_path / "study.toml").rig
     places, template = named_places(vehicle()), catalog.templates()[key]
     assert len(rig) == len(template.sensors)
@@ -70,14 +70,15 @@ def test_a_template_is_a_study_named_and_coloured_by_place(key, tmp_path, capsys
         off = math.dist(sensor.pose.position, places[place].point)
         assert 0.02 < off < 0.16 and sensor.pose.rotation_deg[1] == pytest.approx(pitch)
     assert len({sensor.color for sensor in rig}) >= len(rig) - 1
-    shown = main(["rigs", key]), capsys.readouterr().out
+    shown = main(["new", "--rig", key]), capsys.readouterr().out
     assert shown[0] == 0 and template.title in shown[1]
-    assert main(["rigs", key, "-o", str(tmp_path / "other.toml")]) != 0, "no vehicle"
+    assert main(["new", "--rig", key, "-o", str(tmp_path / "other.toml")]) != 0, "no vehicle"
 
 
 def test_a_known_rig_goes_to_the_nearest_places_one_each(tmp_path):
     mesh, output = str(ROOT / "blend_assets" / "sedan.npz"), str(tmp_path / "study.toml")
-    assert main(["rigs", "nuscenes", "--on-places", "--mesh", mesh, "-o", output]) == 0
+    line = ["new", mesh, "--rig", "nuscenes", "--placement", "places", "-o", output]
+    assert main(line) == 0
     rig, places = pe.load_study(output).rig, named_places(vehicle())
     assert rig["LIDAR_TOP"].pose.position == places["roof"].beside(0.15)
     assert rig["CAM_BACK"].pose.rotation_deg[2] == pytest.approx(179.857)

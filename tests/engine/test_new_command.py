@@ -69,7 +69,7 @@ def test_a_study_of_our_vehicles_runs_as_it_is(name, tmp_path, monkeypatch, caps
     study = checked(tmp_path / "study.toml")
     assert set(study.vehicle.glass) >= {"windshield", "windows_left", "rear_window"}
     assert main(["score", "study.toml", *CHEAP]) == 0
-    budget = ["--search-samples", "1024", "--evaluations", "4", "--no-review"]
+    budget = ["--set", "optimize.samples=1024", "--evaluations", "4", "--no-review"]
     assert main(["optimize", "study.toml", "-o", "out", *CHEAP, *budget]) == 0
     moved = pe.load_study(tmp_path / "out" / "study.toml")
     assert moved.search.mounting.on == {"roof": "roof"}
@@ -136,9 +136,12 @@ def test_most_keys_have_a_comment_and_those_that_are_off_work(tmp_path):
     [
         ("none.obj", [], "no such file"),
         ("car.blend", [], "suffix"),
-        ("box.obj", ["--sensor", "Pandar640"], "such as Pandar64, "),
+        ("box.obj", ["--set", "sensor.roof.model=Pandar640"], "such as Pandar64, "),
         ("dot.obj", [], "one point"),
-        ("box.obj", ["--scale", "0.0001"], "a vehicle"),
+        ("box.obj", ["--set", "vehicle.scale=0.0001"], "a vehicle"),
+        ("box.obj", ["--set", "vehicle.up=up"], "vehicle: up: "),
+        ("box.obj", ["--set", "vehicle.scale=1,2"], "one value"),
+        ("box.obj", ["--set", "samples=9"], "expected one of vehicle.up"),
     ],
 )
 def test_what_cannot_be_is_one_line_and_leaves_no_file(name, more, words, tmp_path, capsys):

@@ -19,8 +19,8 @@ from tests.limits import HANG_S
 if sys.platform == "win32":
     pytest.skip("POSIX signals and files", allow_module_level=True)
 pytestmark = pytest.mark.usefixtures("heeded_signals")
-ENDLESS = ("--candidates", 100_000)
-SHORT = ("--candidates", 4)
+ENDLESS = ("--set", "optimize.candidates=100000")
+SHORT = ("--set", "optimize.candidates=4")
 
 
 def result(folder):

@@ -12,7 +12,7 @@ from tests.engine import shapes
 
 LISTING = ".perception-entropy.json"
 NAMES = ("study.toml", "vehicle.npz", "boxes.csv", "history.csv", "result.json")
-SHORT = ("--method", "random", "--candidates", "2", "--search-samples", "2048")
+SHORT = ("--method", "random", "--set", "optimize.candidates=2", "--set", "optimize.samples=2048")
 
 
 def a_study(boxes=True, x=-0.43):

@@ -28,14 +28,14 @@ INFO = """
     rear_overhang: 1.0
 """
 CALLS = {
-    "check": "check car.toml --preset r159_crossing --csv",
-    "drive-by": "drive-by car.toml --story story.toml -o",
+    "check": "check car.toml --preset r159_crossing -o",
+    "stories": "check car.toml --stories story.toml -o",
     "where": "where car.toml --model Pandar40 --places 2 --workers 1 -o",
-    "export a rig": "export car.toml --to csv --vehicle-info info.param.yaml -o",
+    "export a rig": "export car.toml --to csv --rear-axle info.param.yaml -o",
     "export a scene": "export car.toml --to gltf -o",
-    "import": "import rig.csv --from csv --mesh car.npz --vehicle-info info.param.yaml -o",
+    "import": "import rig.csv --from csv --mesh car.npz --rear-axle info.param.yaml -o",
     "new": "new car.npz -o",
-    "rigs": "rigs kitti --mesh car.npz -o",
+    "known rig": "new car.npz --rig kitti -o",
 }
 """Each verb that writes a file of a name that the user chooses; the name comes last."""
 FOLDERS = {
@@ -44,7 +44,7 @@ FOLDERS = {
     "sweep": "sweep {} -o",
 }
 """Verbs that write a folder of results, and where they read a study."""
-ALONE = {"fit", "review"}
+ALONE = {"review"}
 """Verbs that write a folder in which no file has a name that is read."""
 FILES = "car.toml", "car.npz", "rig.csv", "story.toml", "info.param.yaml"
 
@@ -78,7 +78,7 @@ def read_by(call):
 
 def outputs_of(verb):
     """Return the metavars of the options of a verb that name an output."""
-    return {a.metavar for a in verb._actions if {"-o", "--output", "--csv"} & {*a.option_strings}}
+    return {a.metavar for a in verb._actions if "-o" in a.option_strings}
 
 
 def test_every_verb_with_an_output_is_tried():

@@ -20,7 +20,7 @@ from pe_core.search import Journal
 from pe_core.study import SEARCH
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import read_search
-from pe_tools.sweep import RunTask, read_settings, run_all, sweep_runs
+from pe_tools.sweep import RunTask, read_tried, run_all, sweep_runs
 from pe_tools.sweep.parameter_grid import MAX_NAME_LENGTH, folder_names
 from tests.engine import shapes
 from tests.engine.processes import Command
@@ -48,15 +48,16 @@ def table(folder):
 
 def test_values_are_toml_or_else_texts():
     texts = ("a.b=1,2.5,true", "c=HDL-64E,Velodyne VLP-16 Puck", 'd."e f".0=[1, 2],[3,4],"x,y"')
-    first, second, third = read_settings(texts)
-    assert (first.path, second.path, third.path) == (("a", "b"), ("c",), ("d", "e f", "0"))
-    found = [list(each.values.values()) for each in (first, second, third)]
+    first, second, third = read_tried(texts)
+    paths = [changes[0].path for changes in (first, second, third)]
+    assert paths == [("a", "b"), ("c",), ("d", "e f", "0")]
+    found = [[change.value for change in changes] for changes in (first, second, third)]
     assert found[0] == [1, 2.5, True] and found[1] == ["HDL-64E", "Velodyne VLP-16 Puck"]
     assert found[2] == [[1, 2], [3, 4], "x,y"]
 
 
 def test_several_settings_make_every_combination(study):
-    settings = read_settings(
+    settings = read_tried(
         ("sensor.roof.model=Pandar64,HDL-64E", "optimize.seed=1,2", "sensor.0.position.2=1.9")
     )
     runs = sweep_runs({"car": study}, settings)
@@ -74,10 +75,19 @@ def test_several_settings_make_every_combination(study):
     ("setting", "complaint"),
     [
         ("sensr.roof.model=x", "{study} with sensr.roof.model=x: sensr: expected one of"),
-        ("sensor.rof.model=x", "{study}: sensor.rof.model: expected one of roof, found 'rof'"),
+        (
+            "sensor.rof.model=x",
+            "{study} with sensor.rof.model=x: sensor.rof.model: expected one of roof, found 'rof'",
+        ),
         ("samples=1.5", "{study} with samples=1.5: samples: expected a whole number"),
-        ("space.x.0.y=1", "{study}: space.x.0.y: expected a table before the last dot, found -20"),
-        ("space.x.5=1", "{study}: space.x.5: expected an index from 0 to 1, found '5'"),
+        (
+            "space.x.0.y=1",
+            "{study} with space.x.0.y=1: space.x.0.y: expected a table before the last dot",
+        ),
+        (
+            "space.x.5=1",
+            "{study} with space.x.5=1: space.x.5: expected an index from 0 to 1, found '5'",
+        ),
         ("samples=", "command line: samples: expected a value, found ''"),
         ("samples=0,0", "command line: samples: expected each value once, found 0 twice"),
         ("samples", "command line: expected KEY=VALUE, the key as in a study"),

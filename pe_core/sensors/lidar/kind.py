@@ -26,7 +26,7 @@ FITTED = {
     "pedestrian": ApCurve(0.163, -0.306),
     "cyclist": ApCurve(0.143, -0.022),
 }
-"""Fits of AP to the beams of an HDL-64E that end on the box (`pe fit` on docs/objects/*.csv):
+"""Fits of AP to the beams of an HDL-64E that end on the box (`fit_ap_curve` on docs/objects/*.csv):
 PointRCNN's detections in KITTI's tracking sequences (from the public AB3DMOT repository), AP at 40
 recalls by KITTI's overlaps (0.7 for cars, 0.5 for the others). The detector was trained on drives
 that overlap with these, so its AP is rather high."""

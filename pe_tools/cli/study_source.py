@@ -1,0 +1,164 @@
+"""Where a command line's studies come from: from files, or in Blender from the open scene."""
+
+import argparse
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from pe_core.base.errors import InputError, require_name, shown
+from pe_core.base.input_files import not_noting_inputs
+from pe_core.search.goals import Start
+from pe_core.study import STUDY, StateInWeather, Study, load_study, load_study_data
+
+from ..advice import Advice
+from ..jobs import export_study, read_search
+from ..sweep import KeyChange, changed_study, read_changes
+from .run_job import More
+from .terminal import tell
+
+NONE, ONE, PERHAPS, SOME, FILE, FILES = "", "one", "perhaps", "some", "file", "files"
+"""What a verb takes: nothing; a study of the source, one that may be missing, or several; a study
+file, or several, whatever the source is."""
+OF_STUDY, OF_REQUIREMENT = "study", "requirement "
+"""Source of an error that names no file, and the beginning of another."""
+VEHICLE = "vehicle"
+OF_MESH = ("mesh", "axes", "faces", "mesh_notes")
+"""Fields of a study: its vehicle, and how the mesh of that was read."""
+BETWEEN = ", "  # State and weather of a condition
+
+
+class StudyFiles:
+    """Studies by their files, the source of the command ``pe``."""
+
+    versions: dict[str, str] | None = None
+    """Versions of the program around the engine."""
+
+    def add_arguments(self, verb: argparse.ArgumentParser, takes: str) -> None:
+        """Add what names the studies to the parser of a verb."""
+        about = "study file (TOML)"
+        if takes in (ONE, PERHAPS, FILE):
+            count = "?" if takes == PERHAPS else None
+            verb.add_argument("study", nargs=count, metavar="STUDY", help=about)
+        elif takes in (SOME, FILES):
+            verb.add_argument("studies", nargs="+", metavar="STUDY", help=about)
+
+    def study(self, args: argparse.Namespace) -> Study:
+        """Return the study of a command line, with the changes of its options. A search that is
+        resumed has its own."""
+        changes = read_changes(args.set)
+        if args.study is not None:
+            return self._read(args.study, changes, args)
+        if getattr(args, "resume", None) is None:
+            args.usage_error("expected STUDY")
+        study = with_changes(read_search(args.resume).study, changes, args.resume)
+        return with_options(study, args)
+
+    def studies(self, args: argparse.Namespace) -> dict[str, Study]:
+        """Return the studies of a command line by name, with the changes of its options."""
+        changes = read_changes(args.set)
+        files = named_by_file(args.studies)
+        return {name: self._read(path, changes, args) for name, path in files.items()}
+
+    def _read(self, path: str, changes: Sequence[KeyChange], args: argparse.Namespace) -> Study:
+        data = load_study_data(Path(path))
+        anywhere = getattr(args, "snap", False)
+        folder = Path(path).parent
+        study = changed_study(data, changes, path, folder, starts_anywhere=anywhere)
+        with _naming(path):
+            return with_options(study, args)
+
+    @contextmanager
+    def naming(self, args: argparse.Namespace) -> Iterator[None]:
+        """Have errors of the study name its file, within."""
+        with _naming(getattr(args, "study", None)):
+            yield
+
+    def artifacts(self, study: Study, *, searches: bool) -> Sequence[More]:
+        """Return further files of a run; `InputError` where a result could not be kept."""
+        return ()
+
+    def notes(self) -> tuple[Advice, ...]:
+        """Return warnings about the source."""
+        return ()
+
+
+def with_options(study: Study, args: argparse.Namespace) -> Study:
+    """Return a study with the changes of the options that are no keys of it."""
+    if (name := getattr(args, "condition", None)) is not None:
+        study = study.under(_condition(study, name))
+    if getattr(args, "snap", False):
+        study = _on_mounts(study)
+    rigs = [(Path(path).stem, load_study(path).rig) for path in getattr(args, "start", ())]
+    if not rigs:
+        return study
+    starts = [Start(name, {s.name: s.pose for s in rig}) for name, rig in rigs]
+    goals = replace(study.search.goals, starts=(*study.search.goals.starts, *starts))
+    changed = replace(study, search=replace(study.search, goals=goals))
+    changed.coding()  # a start that does not fit is bad input, not a late surprise
+    return changed
+
+
+@contextmanager
+def _naming(path: str | None) -> Iterator[None]:
+    """Have errors of a study name its file, within."""
+    try:
+        yield
+    except InputError as error:
+        if path is None:
+            raise
+        if error.source == OF_STUDY:
+            raise error.at(path) from None
+        if error.source.startswith(OF_REQUIREMENT):
+            raise error.within(path) from None
+        raise
+
+
+def with_changes(study: Study, changes: Sequence[KeyChange], source: str) -> Study:
+    """Return a study that is in memory with changes of its keys: it is written and read again.
+    The vehicle, and how its mesh was read, stay unless a key of [vehicle] is changed."""
+    if not changes:
+        return study
+    with TemporaryDirectory() as name, not_noting_inputs():
+        folder = Path(name)
+        export_study(study, folder / STUDY)
+        data = load_study_data(folder / STUDY)
+        changed = changed_study(data, changes, source, folder, starts_anywhere=True)
+    if any(change.path[0] == VEHICLE for change in changes):
+        return changed
+    kept = {field: getattr(study, field) for field in (VEHICLE, *OF_MESH)}
+    return replace(changed, **kept)
+
+
+def _condition(study: Study, text: str) -> StateInWeather:
+    """Return the condition of the names of a state, a weather, or both; `InputError` for others."""
+    conditions = study.conditions
+    states = [each.name for each in conditions.states]
+    weathers = [each.name for each in conditions.weathers]
+    chosen: dict[str, str] = {}
+    for name in [text] if text in (*states, *weathers) else text.split(BETWEEN):
+        if not (states or weathers):
+            raise InputError(OF_STUDY, "condition", "[[state]] or [[weather]] in it", shown(name))
+        require_name(OF_STUDY, "condition", name, [*states, *weathers])
+        chosen["state" if name in states else "weather"] = name
+    return conditions.one(**chosen)
+
+
+def _on_mounts(study: Study) -> Study:
+    """Return a study with its sensors on their mounts; those that moved are printed."""
+    placed = study.on_mounts()
+    for sensor in placed.rig:
+        if sensor.pose != study.rig[sensor.name].pose:
+            at = ", ".join(f"{value:g}" for value in sensor.pose.position)
+            tell(f"{sensor.name}: put on its mount, at ({at}) m")
+    return placed
+
+
+def named_by_file(paths: Sequence[str]) -> dict[str, str]:
+    """Return study files by short, different names: the file's, with its folder's if needed."""
+    for depth in (1, 2):
+        names = ["/".join((*Path(p).parts[:-1], Path(p).stem)[-depth:]) for p in paths]
+        if len(set(names)) == len(names):
+            return dict(zip(names, paths, strict=True))
+    return dict(zip(paths, paths, strict=False))

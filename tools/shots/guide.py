@@ -161,11 +161,11 @@ def scored(camera: Camera) -> None:
     stage.wait_until(HAS_RESULT, 180)
     stage.rest()
     camera.still("guide_score")
-    stage.do(f"{SETTINGS}settings.wanted_blind_ground, settings.wanted_ap_far = 12.0, 0.4")
+    stage.do(f"{SETTINGS}settings.limit_blind_ground, settings.limit_ap_far = 12.0, 0.4")
     stage.rest()
     camera.still("dashboard", DASHBOARD)
     for name in ("blind_ground", "ap_far"):
-        stage.do(f"{SETTINGS}settings.property_unset('wanted_{name}')")
+        stage.do(f"{SETTINGS}settings.property_unset('limit_{name}')")
 
 
 def asked(camera: Camera) -> None:

@@ -33,4 +33,4 @@ def four_states_in_three_weathers() -> Timing:
     mine = best_of_processor(lambda: condition_table(scored), ROUNDS)
     one = best_of_processor(lambda: study.evaluator().score(study.rig), ROUNDS)
     work = f"{len(states)} states in {len(weathers)} weathers, {SAMPLES:,} samples, processor time"
-    return Timing(work, mine, peak_mb(), "one score", one)
+    return Timing(work, mine, peak_mb(), "one score", yardstick_s=one)

@@ -29,7 +29,9 @@ from .run_files import restore, run_once
 ROOT = Path(__file__).resolve().parent.parent
 STUDIES = ROOT / "blend_assets" / "experiments"
 RUNS = ROOT / "build" / "searches"
-SAMPLES, EVALUATED, SHIFT = 65_536, 262_144, (0.31, 0.62, 0.13)
+SAMPLES = 65_536
+EVALUATED = 262_144
+SHIFT = (0.31, 0.62, 0.13)
 """Voxels a candidate is evaluated on; voxels, others, that tell what the best so far is worth."""
 MARKS_S = (1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 40, 50, 60, 80, 100, 150, 200, 300, 450)
 
@@ -67,9 +69,12 @@ def run(experiment: str, method: str, seed: int, most: float = float("inf")) -> 
     """Search from the paper's placement; return what was found, and the curve of the best."""
     study = pe.load_study(STUDIES / f"{experiment}.toml")
     search = replace(study.search, method=method, seed=seed, samples=SAMPLES)
-    job, bests = pt.OptimizeJob(replace(study, search=search)), []
+    job = pt.OptimizeJob(replace(study, search=search))
+    bests = []
     load = os.getloadavg()[0]
-    searching, ended, begun = None, 0.0, _processor_s()
+    searching = None
+    ended = 0.0
+    begun = _processor_s()
     for progress in job:
         if searching is None and progress.evaluations:
             searching = ended = time.monotonic()

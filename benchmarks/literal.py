@@ -48,7 +48,9 @@ def run(study: pe.Study) -> tuple[float, float] | None:
 
 def _problem(study: pe.Study) -> np.ndarray:
     (sensor,) = study.rig
-    lidar, space, curve = sensor.model, study.space, study.model.lidar
+    lidar = sensor.model
+    space = study.space
+    curve = study.model.lidar
     order = np.argsort(lidar.elevations)
     field = pe.beam_field(sensor, study.vehicle)
     by_channel = (len(order), lidar.azimuth_count)

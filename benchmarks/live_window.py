@@ -28,7 +28,9 @@ from tests.blender.stage import Stage
 
 ROOT = Path(__file__).resolve().parents[1]
 NAME = "bl_ext.user_default.perception_entropy"
-STEPS, STOPS, DONE_S = 40, 3, 900
+STEPS = 40
+STOPS = 3
+DONE_S = 900
 SET_UP = """
 settings, view = window.scene.perception_entropy, window.scene.perception_entropy.view
 for model, name, place, turn in (
@@ -111,6 +113,19 @@ bpy.app.timers.register(load, first_interval=0.1)
 """
 RUNNING = f"__import__('{NAME}.operators.running_job', fromlist=['*']).current"
 SCORE = f"__import__('{NAME}.live.state', fromlist=['*']).live_state(window.scene.name).score"
+LAYERS = ("ground", "beams", "blind")
+WAIT_END = f"""
+import time
+kept["ended"] = None
+
+def look(kept=kept, time=time):
+    if {RUNNING} is None:
+        kept["ended"] = time.time()
+        return None
+    return 0.005
+
+bpy.app.timers.register(look)
+"""
 
 
 def main() -> int:
@@ -136,8 +151,7 @@ def install(suite: str, checkout: Path, folder: Path) -> Installed:
     compiled = {"PYTHONDONTWRITEBYTECODE": ""}  # as for who uses it: not anew at each start
     blender = Blender(said_by(finder), compiled).with_resources(folder / "user")
     built = said_by([sys.executable, checkout / "tools" / "build_extension.py"])
-    command = ("--command", "extension", "install-file", "-r", "user_default", "--enable", built)
-    blender.run(*command)
+    blender.run("--command", "extension", "install-file", "-r", "user_default", "--enable", built)
     return Installed(blender)
 
 
@@ -151,7 +165,8 @@ def measured(installed: Installed, folder: Path, triangles: int) -> dict[str, st
     """Return the figures of one extension."""
     screen = folder / "screen"
     screen.mkdir()
-    stage, found = Stage(screen), dict[str, str]()
+    stage = Stage(screen)
+    found = dict[str, str]()
     try:
         stage.open(installed, ROOT / "blend_assets" / "sedan.blend")
         stage.do(SET_UP + (FINE.format(count=triangles) if triangles else ""))
@@ -220,21 +235,6 @@ def stopped(stage: Stage, presses: int) -> float:
     return ended - begun
 
 
-LAYERS = ("ground", "beams", "blind")
-WAIT_END = f"""
-import time
-kept["ended"] = None
-
-def look(kept=kept, time=time):
-    if {RUNNING} is None:
-        kept["ended"] = time.time()
-        return None
-    return 0.005
-
-bpy.app.timers.register(look)
-"""
-
-
 def walked(stage: Stage) -> list[list[float]]:
     """Move the sensor step by step; return when each began, was read, and was drawn."""
     stage.do(WALK.format(steps=STEPS))
@@ -271,7 +271,9 @@ def told(values: Sequence[float]) -> str:
     """Minimum, median and 9th decile in a line."""
     if not values:
         return "none"
-    least, middle, high = min(values), statistics.median(values), sorted(values)[-len(values) // 10]
+    least = min(values)
+    middle = statistics.median(values)
+    high = sorted(values)[-len(values) // 10]
     return f"least {1e3 * least:7.1f}  median {1e3 * middle:7.1f}  90 % {1e3 * high:7.1f} ms"
 
 

@@ -22,12 +22,13 @@ def full_score_of_many() -> Timing:
 
 def time_against_sensors() -> Timing:
     """A full score of eight sensors, against as many times the share that one of two takes."""
-    ours, few = _study(4, 4), _study(1, 1)
+    ours = _study(4, 4)
+    few = _study(1, 1)
     eight = best_of_processor(_scoring(ours), 2)
     peak = peak_mb()
     two = best_of_processor(_scoring(few), 2)
     work = "full grid score of 4 LiDARs and 4 cameras, processor time"
-    return Timing(work, eight, peak, "four times that of 1 and 1", 4.0 * two)
+    return Timing(work, eight, peak, "four times that of 1 and 1", yardstick_s=4.0 * two)
 
 
 def _full(lidars: int, cameras: int) -> Timing:
@@ -37,7 +38,7 @@ def _full(lidars: int, cameras: int) -> Timing:
     peak = peak_mb()
     theirs = best_of_processor(lambda: evaluator.entropy(study.rig), 2)
     work = f"full grid score, {lidars} LiDARs, {cameras} cameras, vehicle, processor time"
-    return Timing(work, ours, peak, "their entropy alone", theirs)
+    return Timing(work, ours, peak, "their entropy alone", yardstick_s=theirs)
 
 
 def _scoring(study: pe.Study) -> Work:
@@ -50,7 +51,8 @@ def _study(lidars: int, cameras: int) -> pe.Study:
     models = [pe.catalog.load(name) for name in ("Pandar40", "Pandar64", "Camera 60 deg")]
     sensors = []
     for k in range(lidars):
-        x, y = np.cos(2 * np.pi * k / lidars), np.sin(2 * np.pi * k / lidars)
+        x = np.cos(2 * np.pi * k / lidars)
+        y = np.sin(2 * np.pi * k / lidars)
         pose = pe.Pose((1.2 * x - 0.3, 0.6 * y, 1.75))
         sensors.append(pe.Sensor(f"lidar {k}", models[k % 2], pose))
     for k in range(cameras):

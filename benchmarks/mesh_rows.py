@@ -29,14 +29,17 @@ def read_obj() -> Timing:
     def theirs(folder: Path) -> object:
         return np.loadtxt(folder / "table.txt")
 
-    return _row("obj", text, "np.loadtxt of its vertices", theirs, {"table.txt": table.encode()})
+    return _row(
+        "obj", text, "np.loadtxt of its vertices", theirs, beside={"table.txt": table.encode()}
+    )
 
 
 def read_ply() -> Timing:
     """Binary lists of three, against gathering the corners of the triangles."""
     points, corners = _sheet()
     rows = np.empty(len(corners), [("n", "u1"), ("i", "<i4", 3)])
-    rows["n"], rows["i"] = 3, corners
+    rows["n"] = 3
+    rows["i"] = corners
     header = ply_header("binary_little_endian", len(points), len(corners)).encode()
     data = header + points.astype("<f4").tobytes() + rows.tobytes()
     return _row("ply", data, "gathering the corners", lambda _: points[corners])
@@ -49,7 +52,9 @@ def read_glb() -> Timing:
     indices = corners.astype("<u4").tobytes()
     root["meshes"][0]["primitives"][0]["indices"] = 1
     root["accessors"][1] = {
-        **{"bufferView": 1, "componentType": 5125, "type": "SCALAR"},
+        "bufferView": 1,
+        "componentType": 5125,
+        "type": "SCALAR",
         "count": corners.size,
     }
     root["bufferViews"][1]["byteLength"] = len(indices)
@@ -83,4 +88,4 @@ def _row(
         ours = best_of_processor(lambda: pt.read_mesh(path))
         seconds = best_of_processor(lambda: theirs(folder))
     work = f"read {count:,} triangles, .{suffix} of {len(data) / 1e6:.0f} MB, processor time"
-    return Timing(work, ours, peak_mb(), yardstick, seconds)
+    return Timing(work, ours, peak_mb(), yardstick, yardstick_s=seconds)

@@ -11,7 +11,9 @@ from pe_core.sensors import ObjectMeasurementCache
 from .problems import car, four_on_car, moved_a_little, plain_study
 from .timing import Timing, best_of_processor, peak_mb
 
-ALONE, SCENES, IN_A_SCENE = 20_000, 200, 20
+ALONE = 20_000
+SCENES = 200
+IN_A_SCENE = 20
 SAMPLES = 262_144
 A_PART = 100
 MOVES = 8
@@ -19,12 +21,14 @@ MOVES = 8
 
 def objects_free() -> Timing:
     """A Pandar64 moved, against the definition on a hundredth of the objects."""
-    objects, (sensor,) = _objects(ALONE), plain_study(None).rig
+    objects = _objects(ALONE)
+    (sensor,) = plain_study(None).rig
     ours = _after_moves(pe.Rig([sensor]), objects, None, False)
-    peak, some = peak_mb(), objects.some(np.arange(0, ALONE, A_PART))
+    peak = peak_mb()
+    some = objects.some(np.arange(0, ALONE, A_PART))
     theirs = best_of_processor(lambda: pe.measure_objects(sensor, some), 1) * A_PART
     work = f"{ALONE:,} objects after a move, Pandar64, no vehicle, processor time"
-    return Timing(work, ours, peak, "the definition", theirs)
+    return Timing(work, ours, peak, "the definition", yardstick_s=theirs)
 
 
 def objects_on_car() -> Timing:
@@ -35,7 +39,8 @@ def objects_on_car() -> Timing:
 
 def objects_in_traffic() -> Timing:
     """Scenes of objects that hide each other."""
-    study, what = plain_study(car()), f"{SCENES} scenes of {IN_A_SCENE} objects, Pandar64"
+    study = plain_study(car())
+    what = f"{SCENES} scenes of {IN_A_SCENE} objects, Pandar64"
     return _against_samples(study, _scenes(), True, what)
 
 
@@ -55,12 +60,13 @@ def objects_of_a_camera() -> Timing:
 
 def _against_samples(study: pe.Study, objects: pe.Objects, traffic: bool, what: str) -> Timing:
     ours = _after_moves(study.rig, objects, study.vehicle, traffic)
-    peak, evaluator = peak_mb(), study.evaluator(SAMPLES)
+    peak = peak_mb()
+    evaluator = study.evaluator(SAMPLES)
     rigs = iter([moved_a_little(study.rig, along) for along in np.linspace(0.01, 0.05, MOVES)])
     evaluator.entropy(study.rig)
     theirs = best_of_processor(lambda: evaluator.entropy(next(rigs)), MOVES)
     work = f"{what}, vehicle, after a move, processor time"
-    return Timing(work, ours, peak, f"score of {SAMPLES:,} samples", theirs)
+    return Timing(work, ours, peak, f"score of {SAMPLES:,} samples", yardstick_s=theirs)
 
 
 def _after_moves(
@@ -87,7 +93,7 @@ def _objects(count: int, seed: int = 0) -> pe.Objects:
     centers = np.stack([x, y, sizes[:, 2] / 2.0], axis=1)[kept]
     yaws = rng.normal(0.0, 0.2, count)
     names = tuple(c.name for c in ROAD_CLASSES)
-    return pe.Objects(centers, sizes[kept], yaws, labels[kept], names)
+    return pe.Objects(centers, sizes[kept], yaws, labels[kept], class_names=names)
 
 
 def _scenes() -> pe.Objects:
@@ -105,4 +111,11 @@ def _scenes() -> pe.Objects:
     which = np.array(chosen[:SCENES]).reshape(-1)
     some = pool.some(which)
     scenes = np.repeat(np.arange(SCENES), IN_A_SCENE)
-    return pe.Objects(some.centers, some.sizes, some.yaws, some.labels, some.class_names, scenes)
+    return pe.Objects(
+        some.centers,
+        some.sizes,
+        some.yaws,
+        some.labels,
+        class_names=some.class_names,
+        scenes=scenes,
+    )

@@ -78,12 +78,16 @@ def grazing_camera() -> pe.Sensor:
 
 def rays_to_voxels(sensor: pe.Sensor, space: pe.PerceptionSpace) -> np.ndarray:
     """(V, 3) unit directions from a level camera to the voxels in its picture, single precision."""
-    camera, position = sensor.model, sensor.pose.position
-    wide, high = np.tan(camera.hfov / 2.0), np.tan(camera.vfov / 2.0)
+    camera = sensor.model
+    position = sensor.pose.position
+    wide = np.tan(camera.hfov / 2.0)
+    high = np.tan(camera.vfov / 2.0)
     parts = []
     for x in space.centers(0) - position[0]:
-        y, z = space.centers(1) - position[1], space.centers(2) - position[2]
-        y, z = y[np.abs(y) < wide * x], z[np.abs(z) < high * x]
+        y = space.centers(1) - position[1]
+        z = space.centers(2) - position[2]
+        y = y[np.abs(y) < wide * x]
+        z = z[np.abs(z) < high * x]
         grid = np.stack(np.broadcast_arrays(x, *np.meshgrid(y, z)), axis=-1).reshape(-1, 3)
         size = np.sqrt(np.sum(grid * grid, axis=1, keepdims=True))
         parts.append((grid / size).astype(np.float32))
@@ -93,14 +97,18 @@ def rays_to_voxels(sensor: pe.Sensor, space: pe.PerceptionSpace) -> np.ndarray:
 def raw_cast(triangles: np.ndarray, position: object, directions: np.ndarray) -> np.ndarray:
     """Distances by brute force (Moller and Trumbore), a ray at a time."""
     origin = np.asarray(position)
-    a, e1, e2 = triangles[:, 0], *(triangles[:, k] - triangles[:, 0] for k in (1, 2))
-    s, distances = origin - a, np.full(len(directions), np.inf)
+    a = triangles[:, 0]
+    e1 = triangles[:, 1] - a
+    e2 = triangles[:, 2] - a
+    s = origin - a
+    distances = np.full(len(directions), np.inf)
     q = np.cross(s, e1)
     for i, d in enumerate(directions):
         h = np.cross(d, e2)
         det = np.sum(e1 * h, axis=1)
         inverse = 1.0 / np.where(det == 0.0, np.inf, det)  # edge-on: no hit, as t is 0 then
-        u, v = np.sum(s * h, axis=1) * inverse, (q @ d) * inverse
+        u = np.sum(s * h, axis=1) * inverse
+        v = (q @ d) * inverse
         t = np.sum(e2 * q, axis=1) * inverse
         hit = (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0)
         distances[i] = t[hit].min() if hit.any() else np.inf

@@ -13,7 +13,8 @@ from pe_tools.engine_process import EngineProcess
 from .problems import car, four_on_car, moved_a_little
 from .timing import Timing, best_in_turn, peak_mb
 
-SAMPLES, MOVES = 32_768, 12
+SAMPLES = 32_768
+MOVES = 12
 _evaluators: RecentCache[pe.RigEvaluator] = RecentCache()
 
 
@@ -49,7 +50,8 @@ def _asked(*, sent: bool) -> Timing:
     ask(study.rig)
     answered()
     score(study, study.rig)
-    ours, theirs = iter(rigs), iter(rigs)
+    ours = iter(rigs)
+    theirs = iter(rigs)
 
     def work() -> None:
         ask(next(ours))
@@ -65,7 +67,7 @@ def _asked(*, sent: bool) -> Timing:
     engine.stop()
     what = "asked of the engine's process" if sent else "by the engine's process"
     work_text = f"score of {SAMPLES:,} samples after a move, {what}"
-    return Timing(work_text, mine, peak_mb(), "the same score here", other)
+    return Timing(work_text, mine, peak_mb(), "the same score here", yardstick_s=other)
 
 
 def mesh_sent() -> Timing:
@@ -86,4 +88,6 @@ def mesh_sent() -> Timing:
     mine, other = best_in_turn(work, lambda: pe.Vehicle(vehicle.triangles.copy()), 3)
     engine.stop()
     count = f"{len(vehicle.triangles):,} triangles"
-    return Timing(f"send {count} to the engine's process", mine, peak_mb(), "make it here", other)
+    return Timing(
+        f"send {count} to the engine's process", mine, peak_mb(), "make it here", yardstick_s=other
+    )

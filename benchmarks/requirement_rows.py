@@ -14,8 +14,15 @@ from .timing import Timing, best_of_processor, peak_mb
 
 SAMPLES = 262_144
 NINE = (
-    *("r159_crossing", "r159_longitudinal", "r159_annex3", "r151_moving", "r158_camera"),
-    *("r158_detection", "ncap26_forward_child", "ncap26_reverse_static", "perceptor_ground"),
+    "r159_crossing",
+    "r159_longitudinal",
+    "r159_annex3",
+    "r151_moving",
+    "r158_camera",
+    "r158_detection",
+    "ncap26_forward_child",
+    "ncap26_reverse_static",
+    "perceptor_ground",
 )
 TWELVE = (*NINE, "fmvss111_rear", "r151_static_crossing", "ncap26_frontal_pedestrian")
 """Three of them ask for a share of the body."""
@@ -38,7 +45,8 @@ def nine_presets() -> Timing:
 
 
 def _checked(preview: bool, names: Sequence[str] = NINE) -> Callable[[pe.Rig], object]:
-    study, presets = four_on_car(), requirement_file.presets()
+    study = four_on_car()
+    presets = requirement_file.presets()
     requirements = [presets[name].requirement() for name in names]
     checker = pe.requirements.RequirementChecker(requirements, study.vehicle, space=study.space)
     return lambda rig: checker.check(rig, preview=preview)
@@ -51,8 +59,9 @@ def _after_a_move(label: str, look: Callable[[pe.Rig], object]) -> Timing:
     look(study.rig)
     evaluator.entropy(study.rig)
     rigs = [moved_a_little(study.rig, along) for along in np.linspace(0.004, 0.05, 12)]
-    ours, theirs = iter(rigs), iter(rigs)
+    ours = iter(rigs)
+    theirs = iter(rigs)
     mine = best_of_processor(lambda: look(next(ours)), len(rigs))
     yardstick = best_of_processor(lambda: evaluator.entropy(next(theirs)), len(rigs))
     work = f"{label}, one Pandar64 of four sensors moved, processor time"
-    return Timing(work, mine, peak_mb(), f"score of {SAMPLES:,} samples", yardstick)
+    return Timing(work, mine, peak_mb(), f"score of {SAMPLES:,} samples", yardstick_s=yardstick)

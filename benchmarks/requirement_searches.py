@@ -31,7 +31,9 @@ from .requirement_rows import NINE as BENCHED
 ROOT = Path(__file__).resolve().parent.parent
 RUNS = ROOT / "build" / "requirement_searches"
 SUMMARY = Path(__file__).with_name("requirement_searches.json")
-SEEDS, EVALUATIONS, SAMPLES = 10, 200, 4096
+SEEDS = 10
+EVALUATIONS = 200
+SAMPLES = 4096
 NINE = (*BENCHED[:-1], "park_aid_rear")
 """Those of `requirement_rows`, with a park aid instead of blind ground all round."""
 LIMIT_S = 90.0
@@ -44,7 +46,8 @@ CORNERS = {
     "rear_right": (-1, -1),
 }
 """Signs of x and y of the LiDARs."""
-PITCH_DEG, HEIGHTS_M = (-5.0, 60.0), (0.4, 2.4)
+PITCH_DEG = (-5.0, 60.0)
+HEIGHTS_M = (0.4, 2.4)
 """Bounds of all sensors."""
 SIDES = {"ahead": (1, 0), "left": (0, 1), "behind": (-1, 0), "right": (0, -1)}
 """Directions in which the cameras look."""
@@ -57,7 +60,8 @@ def shuttle() -> pe.Study:
     body = pe.load_study(ROOT / "blend_assets" / "examples" / "four_corners" / "study.toml")
     assert body.vehicle is not None
     _, (x, y, _) = (w.tolist() for w in body.vehicle.bounds)
-    lidar, camera = pe.catalog.load("Velodyne VLP-16 Puck"), pe.catalog.load("Camera 120 deg")
+    lidar = pe.catalog.load("Velodyne VLP-16 Puck")
+    camera = pe.catalog.load("Camera 120 deg")
     sensors = []
     for name, (ahead, left) in CORNERS.items():
         place = (x + 0.06) * ahead, (y + 0.06) * left, 2.2
@@ -85,7 +89,8 @@ def shuttle() -> pe.Study:
 def run(seed: int) -> Json:
     """Search from the start with a seed; return what was found, and what it took."""
     study = shuttle()
-    began, used = time.monotonic(), _processor_s()
+    began = time.monotonic()
+    used = _processor_s()
     job = pt.OptimizeJob(replace(study, search=replace(study.search, seed=seed)))
     first = None
     for _ in job:

@@ -69,7 +69,7 @@ def _against_literal(vehicle: pe.Vehicle | None, label: str) -> Timing:
     again, _ = best(lambda: evaluator.entropy(study.rig))
     seconds = theirs and min(theirs[1], literal.run(study)[1])
     work = f"grid score, Pandar64, {label}"
-    return Timing(work, min(ours, again), peak, "literal C++, 2 threads", seconds)
+    return Timing(work, min(ours, again), peak, "literal C++, 2 threads", yardstick_s=seconds)
 
 
 def grid_two_lidars() -> Timing:
@@ -84,21 +84,23 @@ def grid_two_lidars_two_cameras() -> Timing:
 
 def _against_one(several: Callable[[pe.Study], pe.Study], label: str) -> Timing:
     study = plain_study(car())
-    evaluator, rig = study.evaluator(0), several(study).rig
+    evaluator = study.evaluator(0)
+    rig = several(study).rig
     ours, theirs = best_in_turn(
         lambda: evaluator.entropy(rig), lambda: evaluator.entropy(study.rig)
     )
     work = f"grid score, {label}, vehicle"
-    return Timing(work, ours, peak_mb(), "one Pandar64, vehicle", theirs)
+    return Timing(work, ours, peak_mb(), "one Pandar64, vehicle", yardstick_s=theirs)
 
 
 def full_score() -> Timing:
     """All a grid score tells of four sensors (9 rigs' worth), against all it tells of one."""
     study = plain_study(car())
-    evaluator, rig = study.evaluator(0), two_lidars_two_cameras(study).rig
+    evaluator = study.evaluator(0)
+    rig = two_lidars_two_cameras(study).rig
     ours, theirs = best_in_turn(lambda: evaluator.score(rig), lambda: evaluator.score(study.rig), 2)
     work = "score of two Pandar40 and two cameras, each sensor alone and failing, zones, map"
-    return Timing(work, ours, peak_mb(), "the same of one Pandar64", theirs)
+    return Timing(work, ours, peak_mb(), "the same of one Pandar64", yardstick_s=theirs)
 
 
 def samples_free() -> Timing:
@@ -117,7 +119,7 @@ def _after_a_move(vehicle: pe.Vehicle | None, label: str) -> Timing:
     peak = peak_mb()
     grid, _ = best(lambda: study.evaluator(0).entropy(study.rig), 1)
     work = f"262,144 samples after a move, {label}"
-    return Timing(work, ours, peak, "grid score, first", grid)
+    return Timing(work, ours, peak, "grid score, first", yardstick_s=grid)
 
 
 def _moving(study: pe.Study, evaluator: pe.Evaluator) -> Work:
@@ -142,7 +144,7 @@ def rays() -> Timing:
     rate = len(directions) / ours / 1e6
     work = f"first hit of {len(directions):,} rays ({rate:.1f} million a second)"
     seconds = brute * len(directions) / len(some)
-    return Timing(work, ours, peak, "every ray against every triangle", seconds)
+    return Timing(work, ours, peak, "every ray against every triangle", yardstick_s=seconds)
 
 
 def rays_close() -> Timing:
@@ -186,13 +188,18 @@ def _against_embree(vehicle: pe.Vehicle, position: Position, label: str) -> Timi
     embree = Embree.of(vehicle.triangles)
     work = f"first hit of a frame, {len(vehicle.triangles):,} triangles, {label}"
     return _with_embree(
-        work, embree, lambda: vehicle.first_hit(position, directions), position, directions
+        work,
+        embree,
+        lambda: vehicle.first_hit(position, directions),
+        position,
+        directions=directions,
     )
 
 
 def rays_of_a_camera() -> Timing:
     """A grazing camera on the grid, against embree on the rays to the voxels in its picture."""
-    study, vehicle = plain_study(None), car(1_500)
+    study = plain_study(None)
+    vehicle = car(1_500)
     sensor = grazing_camera()
     rig = pe.Rig([sensor])
     evaluator = pe.Evaluator(study.space, study.prior, vehicle)
@@ -200,8 +207,11 @@ def rays_of_a_camera() -> Timing:
     work = (
         f"grid score, camera 5 cm over a roof ({len(directions) / 1e6:.0f} million voxels in view)"
     )
-    embree, position = Embree.of(vehicle.triangles), sensor.pose.position
-    return _with_embree(work, embree, lambda: evaluator.entropy(rig), position, directions)
+    embree = Embree.of(vehicle.triangles)
+    position = sensor.pose.position
+    return _with_embree(
+        work, embree, lambda: evaluator.entropy(rig), position, directions=directions
+    )
 
 
 def _with_embree(
@@ -209,9 +219,9 @@ def _with_embree(
 ) -> Timing:
     yardstick = "embree, one thread, the same rays"
     if embree is None:
-        return Timing(work, best(ours)[0], peak_mb(), yardstick, None)
+        return Timing(work, best(ours)[0], peak_mb(), yardstick, yardstick_s=None)
     mine, theirs = best_in_turn(ours, lambda: embree.first_hit(position, directions))
-    return Timing(work, mine, peak_mb(), yardstick, theirs)
+    return Timing(work, mine, peak_mb(), yardstick, yardstick_s=theirs)
 
 
 ROWS: dict[str, Callable[[], Timing]] = {

@@ -29,7 +29,8 @@ class CountedObjective:
     """
 
     def __init__(self, folder: str, objective: Objective) -> None:
-        self.folder, self.objective = folder, objective
+        self.folder = folder
+        self.objective = objective
 
     def __setstate__(self, state: dict[str, object]) -> None:
         vars(self).update(state)
@@ -44,7 +45,8 @@ class BatchNotes:
     """An objective that notes in this process how many candidates a search asks for at once."""
 
     def __init__(self, objective: Objective, sizes: list[int]) -> None:
-        self._objective, self._sizes = objective, sizes
+        self._objective = objective
+        self._sizes = sizes
 
     def entropy(self, rig: pe.Rig) -> float:
         """Return the entropy of a rig [nats]."""

@@ -24,7 +24,8 @@ def values_over_time(runs: Sequence[Json]) -> tuple[list[float], list[list[float
 def draw_curve(axis: Any, runs: Sequence[Json], colour: str, label: str) -> None:
     """Draw the median of some runs, and the band from the lowest to the highest."""
     times, values = values_over_time(runs)
-    low, high = [min(v) for v in values], [max(v) for v in values]
+    low = [min(v) for v in values]
+    high = [max(v) for v in values]
     axis.fill_between(times, low, high, step="post", color=colour, alpha=0.15, lw=0)
     axis.step(times, list(map(median, values)), where="post", color=colour, label=label)
 

@@ -27,6 +27,14 @@ PUCK = "Velodyne VLP-16 Puck"
 UPRIGHT = (0.0, 0.0, 0.0)
 Vector3 = tuple[float, float, float]
 Limits = dict[str, tuple[float, float]]
+CAR = {
+    "body": ((-2.3, -0.9, 0.2), (2.3, 0.9, 0.9)),
+    "cabin": ((-1.5, -0.7, 0.85), (0.8, 0.7, 1.45)),
+}
+SHUTTLE = {
+    "hull": ((-3.0, -1.0, 0.3), (3.0, 1.0, 2.4)),
+    "pod": ((-0.8, -0.5, 2.35), (0.8, 0.5, 2.6)),
+}
 
 
 def lidar(channels: int = 16, azimuths: int = 180) -> pe.Lidar:
@@ -51,7 +59,9 @@ def body(boxes: Mapping[str, tuple[Vector3, Vector3]]) -> pe.Vehicle:
 
     A part "NAME top", "NAME left", "NAME front" and "NAME rear" is that face of a box.
     """
-    triangles, parts, names = [], [], list[str]()
+    triangles = []
+    parts = []
+    names = list[str]()
     for name, (low, high) in boxes.items():
         some = refined(box(low, high), 1)
         first = len(names)
@@ -61,16 +71,6 @@ def body(boxes: Mapping[str, tuple[Vector3, Vector3]]) -> pe.Vehicle:
         parts.append(np.select(on_face, range(first + 1, first + 5), first).astype(np.int32))
         triangles.append(some)
     return pe.Vehicle(np.concatenate(triangles), np.concatenate(parts), tuple(names))
-
-
-CAR = {
-    "body": ((-2.3, -0.9, 0.2), (2.3, 0.9, 0.9)),
-    "cabin": ((-1.5, -0.7, 0.85), (0.8, 0.7, 1.45)),
-}
-SHUTTLE = {
-    "hull": ((-3.0, -1.0, 0.3), (3.0, 1.0, 2.4)),
-    "pod": ((-0.8, -0.5, 2.35), (0.8, 0.5, 2.6)),
-}
 
 
 def study(
@@ -127,7 +127,7 @@ def car_and_pairs() -> pe.Study:
         "front": {"pitch": (-20.0, 30.0), "yaw": (-60.0, 60.0)},
     }
     free = {name: tuple(axes) for name, axes in limits.items()}
-    return study(sensors, body(CAR), free, limits, mounting)
+    return study(sensors, body(CAR), free, limits, mounting=mounting)
 
 
 def corners_and_rack() -> pe.Study:
@@ -160,7 +160,7 @@ def corners_and_rack() -> pe.Study:
     )
     limits = {name: {"pitch": (-15.0, 15.0), "roll": (-15.0, 15.0)} for name in ("left", "rear")}
     free = {name: ("roll", "pitch") for name in limits}
-    return study(sensors, body(CAR), free, limits, mounting)
+    return study(sensors, body(CAR), free, limits, mounting=mounting)
 
 
 def _around(names: str, models: list[object], far: float, wide: float, z: float) -> list[pe.Sensor]:
@@ -182,16 +182,18 @@ def shuttle_of_eight() -> pe.Study:
         sensor(f"{name}", PUCK, (3.2 * x, 1.2 * y, 1.2))
         for name, (x, y) in zip("abcd", ((1, 1), (1, -1), (-1, 1), (-1, -1)), strict=True)
     ]
-    sensors += [each for each in _around("efgh", [camera(90.0)], 3.1, 1.1, 2.5)]
+    sensors += [each for each in _around("efgh", [camera(90.0)], far=3.1, wide=1.1, z=2.5)]
     limits = {s.name: corner if s.name in "abcd" else edge for s in sensors}
     mounting = pe.Mounting(constraints=pe.Constraints(clear_housings=True))
-    return study(sensors, body(SHUTTLE), dict.fromkeys(limits, tuple(corner)), limits, mounting)
+    return study(
+        sensors, body(SHUTTLE), dict.fromkeys(limits, tuple(corner)), limits, mounting=mounting
+    )
 
 
 def eight_free() -> pe.Study:
     """Four LiDARs and four cameras in boxes, the cameras' yaw free, too; nothing in their way."""
-    sensors = _around("abcd", [lidar()], 2.0, 1.0, 1.6)
-    sensors += _around("efgh", [camera(60.0)], 2.0, 1.0, 1.4)
+    sensors = _around("abcd", [lidar()], far=2.0, wide=1.0, z=1.6)
+    sensors += _around("efgh", [camera(60.0)], far=2.0, wide=1.0, z=1.4)
     limits: dict[str, Limits] = {}
     for each in sensors:
         limits[each.name] = {"x": (-3, 3), "y": (-1.5, 1.5), "z": (0.5, 2.6), "pitch": (-20, 20)}
@@ -215,8 +217,8 @@ def traffic() -> pe.Study:
 
 def sixteen_free() -> pe.Study:
     """Eight LiDARs and eight cameras in boxes, nothing in their way."""
-    sensors = _around("abcdefgh", [lidar(8, 60)], 2.5, 1.0, 1.8)
-    sensors += _around("ijklmnop", [camera(30.0), camera(60.0)], 2.5, 1.0, 1.5)
+    sensors = _around("abcdefgh", [lidar(8, 60)], far=2.5, wide=1.0, z=1.8)
+    sensors += _around("ijklmnop", [camera(30.0), camera(60.0)], far=2.5, wide=1.0, z=1.5)
     limits: dict[str, Limits] = {}
     for each in sensors:
         limits[each.name] = {"x": (-3, 3), "y": (-1.3, 1.3), "z": (0.5, 3.0), "pitch": (-20, 20)}
@@ -266,14 +268,15 @@ def three_on_roof() -> pe.Study:
         on=dict.fromkeys(place, "roof"),
     )
     free = dict.fromkeys(place, ("roll", "pitch"))
-    found = study(sensors, body(SHUTTLE), free, limits, mounting)
+    found = study(sensors, body(SHUTTLE), free, limits, mounting=mounting)
     return replace(found, limits=pe.Limits(distance=0.5))
 
 
 def cameras_around() -> pe.Study:
     """Three pairs of cameras on the sides and the front of a car, which look along the normal."""
     place = {"a": (2.31, 0.4, 0.6, 0.0), "b": (0.5, 0.91, 0.6, 90.0), "c": (-1.5, 0.91, 0.6, 90.0)}
-    sensors, on = [], {}
+    sensors = []
+    on = {}
     for name, (x, y, z, yaw) in place.items():
         sensors.append(sensor(name, camera(90.0), (x, y, z), (0.0, 0.0, yaw)))
         sensors.append(sensor(f"{name} right", camera(90.0), (x, -y, z), (0.0, 0.0, -yaw)))
@@ -284,7 +287,9 @@ def cameras_around() -> pe.Study:
     }
     mounting = pe.Mounting(mounts=mounts, on=on, pairs=[(n, f"{n} right") for n in place])
     limits: dict[str, Limits] = {n: {"pitch": (-30.0, 30.0), "yaw": (-70.0, 70.0)} for n in place}
-    return study(sensors, body(CAR), dict.fromkeys(place, ("pitch", "yaw")), limits, mounting)
+    return study(
+        sensors, body(CAR), dict.fromkeys(place, ("pitch", "yaw")), limits, mounting=mounting
+    )
 
 
 def objects_of_five() -> pe.Study:
@@ -292,7 +297,7 @@ def objects_of_five() -> pe.Study:
     sensors = [
         sensor("a", lidar(32, 240), (3.2, 1.2, 1.0)),
         sensor("b", lidar(), (-3.2, -1.2, 1.0)),
-        *_around("cde", [camera(60.0), camera(90.0)], 3.1, 1.1, 2.5),
+        *_around("cde", [camera(60.0), camera(90.0)], far=3.1, wide=1.1, z=2.5),
     ]
     wide = {"x": (-3.4, 3.4), "y": (-1.4, 1.4), "z": (0.4, 3.0), "pitch": (-15.0, 20.0)}
     free = {name: tuple(wide) for name in "abcde"}
@@ -314,7 +319,7 @@ def corners_in_pairs() -> pe.Study:
     limits |= {n: {"z": (1.2, 1.8), "pitch": (-20.0, 20.0)} for n in ("wide", "narrow")}
     mounting = pe.Mounting(pairs=[(n, f"{n} right") for n in ("front", "rear")])
     free = {name: tuple(axes) for name, axes in limits.items()}
-    return study(sensors, body(CAR), free, limits, mounting)
+    return study(sensors, body(CAR), free, limits, mounting=mounting)
 
 
 def slots_and_ranges() -> pe.Study:
@@ -327,13 +332,17 @@ def slots_and_ranges() -> pe.Study:
     end = {"y": (-1.0, 1.0), "z": (0.5, 2.6), "pitch": (-10.0, 40.0)}
     mounting = pe.Mounting(mounts={"rack": pe.SlotMount(slots)}, on=dict.fromkeys("ab", "rack"))
     return study(
-        sensors, body(SHUTTLE), dict.fromkeys("cd", tuple(end)), dict.fromkeys("cd", end), mounting
+        sensors,
+        body(SHUTTLE),
+        dict.fromkeys("cd", tuple(end)),
+        dict.fromkeys("cd", end),
+        mounting=mounting,
     )
 
 
 def tilted_ring() -> pe.Study:
     """Five LiDARs round a shuttle, all but their places free, what is at its sides double."""
-    sensors = _around("abcde", [lidar(16, 120)], 3.1, 1.2, 2.0)
+    sensors = _around("abcde", [lidar(16, 120)], far=3.1, wide=1.2, z=2.0)
     turns = {"z": (0.5, 3.0), "roll": (-30.0, 30.0), "pitch": (-30.0, 30.0)}
     prior = pe.Prior.road(focus=[pe.Focus(2.0, x=(-3.0, 3.0))])
     free = dict.fromkeys("abcde", tuple(turns))

@@ -24,14 +24,17 @@ FOUND = {
 """Where a search ended (docs/reproduction/results.json, search/4_cameras/road/front/0)."""
 SAMPLES = 32_768
 CANDIDATES = 8
-TRAFFIC_REPEATS, LONGEST_S = 2, 90.0
-SPREAD_M, SPREAD_DEG = 0.03, 0.5
+TRAFFIC_REPEATS = 2
+LONGEST_S = 90.0
+SPREAD_M = 0.03
+SPREAD_DEG = 0.5
 
 
 def candidate() -> Timing:
     """Candidates of experiment 4 near its optimum, against casting their LiDARs' beams alone."""
     study = pe.load_study(EXPERIMENT)
-    evaluator, rigs = study.evaluator(SAMPLES), list(_near_the_optimum(study))
+    evaluator = study.evaluator(SAMPLES)
+    rigs = list(_near_the_optimum(study))
     lidars = [sensor for rig in rigs for sensor in rig if sensor.kind == "lidar"]
 
     def every_beam() -> None:
@@ -40,7 +43,7 @@ def candidate() -> Timing:
 
     ours, theirs = best_in_turn(lambda: evaluate_all(evaluator, rigs), every_beam)
     work = f"{CANDIDATES} candidates near the optimum of experiment 4, {SAMPLES:,} samples"
-    return Timing(work, ours, peak_mb(), "first hits of all their beams", theirs)
+    return Timing(work, ours, peak_mb(), "first hits of all their beams", yardstick_s=theirs)
 
 
 def candidates_in_traffic() -> Timing:
@@ -59,7 +62,7 @@ def candidates_in_traffic() -> Timing:
     )
     work = f"8 candidates by {targets.scenes} scenes of objects in traffic, processor time"
     yardstick = f"by {study.search.samples:,} samples"
-    return Timing(work, ours, peak_mb(), yardstick, theirs)
+    return Timing(work, ours, peak_mb(), yardstick, yardstick_s=theirs)
 
 
 def search_in_traffic() -> Timing:
@@ -68,13 +71,14 @@ def search_in_traffic() -> Timing:
     by_ap = replace(study, search=replace(study.search, objective="expected_ap"))
     seconds, _ = timed(lambda: list(pt.OptimizeJob(by_ap)))
     work = f"`pe optimize` of experiment 4 by expected AP, {study.targets.scenes} scenes in traffic"
-    return Timing(work, seconds, peak_mb(), "what it may take", LONGEST_S)
+    return Timing(work, seconds, peak_mb(), "what it may take", yardstick_s=LONGEST_S)
 
 
 def candidates_in_processes() -> Timing:
     """The same by a process a processor, against this one alone."""
     study = pe.load_study(EXPERIMENT)
-    evaluator, rigs = study.evaluator(SAMPLES), list(_near_the_optimum(study))
+    evaluator = study.evaluator(SAMPLES)
+    rigs = list(_near_the_optimum(study))
     pool = start_processes()
     if pool is None:
         raise SystemExit("no processes can be started")
@@ -84,7 +88,9 @@ def candidates_in_processes() -> Timing:
             lambda: evaluate_all(evaluator, rigs, executor=pool),
             lambda: evaluate_all(evaluator, rigs),
         )
-    return Timing("the same, a process a processor", ours, peak_mb(), "one process", theirs)
+    return Timing(
+        "the same, a process a processor", ours, peak_mb(), "one process", yardstick_s=theirs
+    )
 
 
 def _near_the_optimum(study: pe.Study) -> Iterator[pe.Rig]:

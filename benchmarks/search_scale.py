@@ -43,16 +43,18 @@ from .search_problems import SEDAN, sixteen_free
 SUMMARY = Path(__file__).with_name("search_scale.json")
 TABLE = SUMMARY.with_suffix(".md")
 HEAD = (
-    *(
-        "workers",
-        "evaluations per second",
-        "of the best in this process",
-        "with free processors, computed",
-    ),
-    *("processor ms a candidate, here", "in workers", "loopback bytes a candidate"),
-    *("meshes unpickled by each", "per second in a batch", "load"),
+    "workers",
+    "evaluations per second",
+    "of the best in this process",
+    "with free processors, computed",
+    "processor ms a candidate, here",
+    "in workers",
+    "loopback bytes a candidate",
+    "meshes unpickled by each",
+    "per second in a batch",
+    "load",
 )
-MODELS = (*("Velodyne VLP-16 Puck", "Hesai PandarXT-32 / XT32", "Camera 60 deg", "Camera 120 deg"),)
+MODELS = ("Velodyne VLP-16 Puck", "Hesai PandarXT-32 / XT32", "Camera 60 deg", "Camera 120 deg")
 """The first eight sensors take the first two in turn, the others the last two."""
 SAMPLES = 65_536
 """Voxels of a candidate on the last level: as by default."""
@@ -60,7 +62,8 @@ WARM = 16
 """Candidates that are evaluated on each level before the clock starts."""
 BATCH = 32
 """Candidates of one batch, whose rate is measured apart from the search's."""
-MAX_LOAD, NOT_QUIET = 4.5, "not told"
+MAX_LOAD = 4.5
+NOT_QUIET = "not told"
 """With a higher load at the end something else ran beside it: rates are not told, the rest is."""
 IDLE_S = 2.0
 """The loopback is listened to for so long while a cluster is idle."""
@@ -75,7 +78,8 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument("--runs", type=int, default=3, help="searches of each kind of workers (3)")
     parser.add_argument("--only", nargs="+", choices=WORKERS, help="measure these rows again")
     args = parser.parse_args(arguments)
-    study, known = _study(), json.loads(SUMMARY.read_text("utf-8")) if args.only else {"rows": []}
+    study = _study()
+    known = json.loads(SUMMARY.read_text("utf-8")) if args.only else {"rows": []}
     rows = {row["workers"]: row for row in known["rows"]}
     for name in args.only or WORKERS:
         with WORKERS[name]() as executor:
@@ -158,8 +162,11 @@ def _run(
     """Search once; return its time, what it took, and a digest of all steps."""
     sizes: list[int] = []
     noted = [BatchNotes(each, sizes) for each in objectives]
-    digest, before, used = hashlib.sha256(), loopback_bytes(), processor_s()
-    begun, space = time.perf_counter(), study.search_space()
+    digest = hashlib.sha256()
+    before = loopback_bytes()
+    used = processor_s()
+    begun = time.perf_counter()
+    space = study.search_space()
     for step in pe.optimize(noted, study.rig, space, evaluations=evaluations, executor=executor):
         poses = [(s.name, s.pose.position, s.pose.rpy) for s in step.best]
         digest.update(repr((step.entropy, step.evaluations, poses)).encode())
@@ -282,8 +289,10 @@ def _asked(batches: dict[str, int]) -> str:
 
 
 def _cells(row: Json, first: float) -> list[str]:
-    rate, name = median(row["rates"]), row["workers"]
-    here, there = median(row["processor_ms_here"]), median(row["processor_ms_workers"])
+    rate = median(row["rates"])
+    name = row["workers"]
+    here = median(row["processor_ms_here"])
+    there = median(row["processor_ms_workers"])
     meshes = ", ".join(map(str, row["meshes_by_process"]))
     quiet = row["load"] <= MAX_LOAD
     return [
@@ -308,7 +317,8 @@ def _computed_rate(row: Json) -> float:
     """
     count = int(next(word for word in row["workers"].split() if word.isdigit()))
     sizes = [int(size) for size, times in row["batches"].items() for _ in range(times)]
-    here, there = median(row["processor_ms_here"]), median(row["processor_ms_workers"])
+    here = median(row["processor_ms_here"])
+    there = median(row["processor_ms_workers"])
     return 1e3 / (here + there / ideal_speedup(sizes, count))
 
 

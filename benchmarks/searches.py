@@ -95,13 +95,14 @@ def _ours(
     if method == "random":
         rounds = len(pe.Schedule().scales)
         schedule = pe.Schedule(candidates=max(1, evaluations // rounds))
-    rows, count = list[EvaluatedRow](), 0
+    rows = list[EvaluatedRow]()
+    count = 0
     for step in pe.optimize(
         objectives,
         study.rig,
         study.search_space(),
         seed,
-        schedule,
+        schedule=schedule,
         method=method,
         evaluations=evaluations,
     ):
@@ -115,7 +116,9 @@ def _theirs(
     study: pe.Study, evaluator: pe.RigEvaluator, method: str, seed: int, evaluations: int
 ) -> tuple[list[EvaluatedRow], int, str]:
     """Search by a method of another library."""
-    rows, lowest, count = list[EvaluatedRow](), float("inf"), 0
+    rows = list[EvaluatedRow]()
+    lowest = float("inf")
+    count = 0
 
     def told(rig: pe.Rig, entropy: float) -> None:
         nonlocal lowest, count
@@ -131,7 +134,8 @@ def _theirs(
 
 def _marked(rows: list[EvaluatedRow]) -> Iterator[EvaluatedRow]:
     """Yield the last row in each of `MARKS` spans of time, each 1.5 times the one before."""
-    first, last = rows[0][0], rows[-1][0]
+    first = rows[0][0]
+    last = rows[-1][0]
     ends = [first + (last - first) / 1.5**k for k in reversed(range(MARKS))]
     number = -1
     for end in ends:

@@ -43,19 +43,21 @@ def simplify() -> Timing:
     fresh = pe.Vehicle(vehicle.triangles)
     theirs, _ = best(lambda: fresh.seen_from((0.0, 0.0, 2.0)), 1)
     work = f"simplify {len(vehicle.triangles):,} triangles"
-    return Timing(work, ours, peak, "their tree", theirs)
+    return Timing(work, ours, peak, "their tree", yardstick_s=theirs)
 
 
 def _after_a_move(label: str, look: Callable[[pe.Sight, pe.Rig], object]) -> Timing:
     """Look again after one Pandar64 of four sensors moved."""
     study = four_on_car()
-    view, evaluator = study.sight(), study.evaluator(SAMPLES)
+    view = study.sight()
+    evaluator = study.evaluator(SAMPLES)
     rigs = [moved_a_little(study.rig, along) for along in np.linspace(0.0, 0.05, 12)]
     look(view, study.rig)
     evaluator.entropy(study.rig)
-    ours, theirs = iter(rigs), iter(rigs)
+    ours = iter(rigs)
+    theirs = iter(rigs)
     mine, yardstick = best_in_turn(
         lambda: look(view, next(ours)), lambda: evaluator.entropy(next(theirs)), len(rigs)
     )
     work = f"{label}, one Pandar64 of four sensors moved"
-    return Timing(work, mine, peak_mb(), f"score of {SAMPLES:,} samples", yardstick)
+    return Timing(work, mine, peak_mb(), f"score of {SAMPLES:,} samples", yardstick_s=yardstick)

@@ -23,7 +23,9 @@ from studies.paper.paper import study_of
 
 OFF_DEG = (0.1, 0.3)
 """1 sigma of roll, pitch and yaw."""
-EVALUATED_DRAWS, EVALUATED_SEED, EVALUATED_SAMPLES = 32, 1000, 65_536
+EVALUATED_DRAWS = 32
+EVALUATED_SEED = 1000
+EVALUATED_SAMPLES = 65_536
 OTHER_VOXELS = (0.137, 0.611, 0.293)
 DEARER = 7
 """How many times as many candidates are tried as they stand."""
@@ -43,7 +45,8 @@ class HowToSearch:
 def found(setting: HowToSearch, degrees: float) -> tuple[pe.Rig, float]:
     """Return the best placement of a search from the paper's, and its processor time [s]."""
     tolerance = pe.Tolerance(angle=math.radians(degrees), draws=setting.draws)
-    study, began = study_of("3_front"), time.process_time()
+    study = study_of("3_front")
+    began = time.process_time()
     objective = objective_of(study.evaluator(setting.samples), tolerance, setting.seed)
     tried = setting.candidates * (1 if tolerance.is_on else DEARER)
     schedule = pe.Schedule(tried)
@@ -52,7 +55,7 @@ def found(setting: HowToSearch, degrees: float) -> tuple[pe.Rig, float]:
         study.rig,
         study.search_space(),
         setting.seed,
-        schedule,
+        schedule=schedule,
         method=setting.method,
         evaluations=tried * len(schedule.scales),
     )
@@ -110,8 +113,9 @@ def main() -> None:
     print("| --- " * 6 + "|")
     print(row("the paper's", study_of("3_front").rig, ""), flush=True)
     for seed in told.seeds:
-        how = told.method, told.candidates, told.draws, told.samples
-        for line in rows(HowToSearch(*how, seed)):
+        for line in rows(
+            HowToSearch(told.method, told.candidates, told.draws, told.samples, seed=seed)
+        ):
             print(line, flush=True)
 
 

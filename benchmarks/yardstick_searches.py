@@ -48,7 +48,9 @@ class Landscape:
         self, study: pe.Study, evaluator: pe.RigEvaluator, evaluations: int, told: ReportPlacement
     ) -> None:
         self._coding = Parametrization(study.rig, study.search_space())
-        self._evaluator, self._told, self._left = evaluator, told, evaluations
+        self._evaluator = evaluator
+        self._told = told
+        self._left = evaluations
         self._broken = 0
         each = enumerate(self._coding.variables)
         self._free = {k: v for k, v in each if v.low < v.high}

@@ -40,10 +40,12 @@ def make_materials() -> dict[str, bpy.types.Material]:
         if bpy.app.version < (5, 0):
             material.use_nodes = True
         material.diffuse_color = (*colour, 1.0)
-        material.metallic, material.roughness = metallic, roughness
+        material.metallic = metallic
+        material.roughness = roughness
         shader = material.node_tree.nodes["Principled BSDF"].inputs
         shader["Base Color"].default_value = (*colour, 1.0)
-        shader["Metallic"].default_value, shader["Roughness"].default_value = metallic, roughness
+        shader["Metallic"].default_value = metallic
+        shader["Roughness"].default_value = roughness
         made[name] = material
     return made
 
@@ -101,7 +103,9 @@ def build(
     """
     bpy.ops.wm.read_factory_settings(use_empty=True)
     units = bpy.context.scene.unit_settings
-    units.system, units.scale_length, units.length_unit = "METRIC", 1.0, "METERS"
+    units.system = "METRIC"
+    units.scale_length = 1.0
+    units.length_unit = "METERS"
     collection = bpy.data.collections.new(name)
     bpy.context.scene.collection.children.link(collection)
     materials = make_materials()

@@ -11,15 +11,23 @@ import numpy as np
 from curves import Array
 from panel_lines import Line, ahead, behind, height, inboard, negative, rounded
 
-SIDE, UPRIGHT = 0, 1  # seen along y: x over z; seen along x: y over z
+# seen along y: x over z; seen along x: y over z
+SIDE = 0
+UPRIGHT = 1
 
 # Side windows: a band with round ends, bars across it.
-BAND_X, BAND_Z, BAND_RADIUS = (-2.63, 2.63), (1.06, 2.09), 0.15
-BARS, DOOR_SIDE_BARS = (-1.62, -0.60, 0.42, 1.44), (-1.66, 1.68)
+BAND_X = (-2.63, 2.63)
+BAND_Z = (1.06, 2.09)
+BAND_RADIUS = 0.15
+BARS = (-1.62, -0.60, 0.42, 1.44)
+DOOR_SIDE_BARS = (-1.66, 1.68)
 BAR_HALF = 0.021
 # The double door: two leaves with a pane each.
-DOOR_X, DOOR_Z, DOOR_RADIUS = (-0.66, 0.72), (0.285, 2.17), 0.07
-DOOR_FRAME, PANE_RADIUS = 0.085, 0.07
+DOOR_X = (-0.66, 0.72)
+DOOR_Z = (0.285, 2.17)
+DOOR_RADIUS = 0.07
+DOOR_FRAME = 0.085
+PANE_RADIUS = 0.07
 PANE_Z = (0.55, 2.09)
 
 # Windscreen and rear window, each within a dark mask.
@@ -28,17 +36,23 @@ GLASS_FRONT = (0.845, (0.97, 2.205), 0.18)
 MASK_REAR = (0.865, (1.00, 2.165), 0.18)
 GLASS_REAR = (0.825, (1.04, 2.125), 0.14)
 
-HEADLIGHT_Y, HEADLIGHT_Z, HEADLIGHT_RADIUS = (0.46, 0.865), (0.665, 0.765), 0.045
+HEADLIGHT_Y = (0.46, 0.865)
+HEADLIGHT_Z = (0.665, 0.765)
+HEADLIGHT_RADIUS = 0.045
 LIGHT_STRIP_Z = (0.697, 0.731)  # the bright strip in them
-SLOT_Y, SLOT_Z = 0.47, (0.695, 0.720)
-TAILLIGHT_Y, TAILLIGHT_X, TAILLIGHT_Z = 0.81, -2.86, (0.57, 0.93)
+SLOT_Y = 0.47
+SLOT_Z = (0.695, 0.720)
+TAILLIGHT_Y = 0.81
+TAILLIGHT_X = -2.86
+TAILLIGHT_Z = (0.57, 0.93)
 REAR_BAR_Z = (0.735, 0.765)
 BUMPER_Z = 0.475
 SKIRT_Z = 0.325  # the lowest strip all around is dark
 ROOF_LINE_Z = 2.275
 ARCH_LIP = 0.035
 
-nose, tail = ahead(2.2), behind(-2.2)
+nose = ahead(2.2)
+tail = behind(-2.2)
 
 
 def flank(p: Array) -> Array:
@@ -85,11 +99,14 @@ pane_front = rounded(
 pane_rear = rounded(
     SIDE, (DOOR_X[0] + DOOR_FRAME, sum(DOOR_X) / 2 - DOOR_FRAME / 2), PANE_Z, PANE_RADIUS
 )
-mask_front, glass_front = upright(*MASK_FRONT), upright(*GLASS_FRONT)
-mask_rear, glass_rear = upright(*MASK_REAR), upright(*GLASS_REAR)
+mask_front = upright(*MASK_FRONT)
+glass_front = upright(*GLASS_FRONT)
+mask_rear = upright(*MASK_REAR)
+glass_rear = upright(*GLASS_REAR)
 headlight = rounded(UPRIGHT, HEADLIGHT_Y, HEADLIGHT_Z, HEADLIGHT_RADIUS)
 slot_end = inboard(SLOT_Y)
-taillight_side, taillight_end = negative(inboard(TAILLIGHT_Y)), behind(TAILLIGHT_X)
+taillight_side = negative(inboard(TAILLIGHT_Y))
+taillight_end = behind(TAILLIGHT_X)
 bumper_top = height(BUMPER_Z)
 roof_line = height(ROOF_LINE_Z)
 skirt = negative(height(SKIRT_Z))

@@ -25,7 +25,10 @@ from panel_lines import (
 from skin import Skin, cut, cut_gaps, refine
 
 # Longest edges at wheel openings, in round corners of windows and of doors, in the headlights.
-COARSE, FINE, FINER, LAMP = 0.10, 0.08, 0.05, 0.075
+COARSE = 0.10
+FINE = 0.08
+FINER = 0.05
+LAMP = 0.075
 MARGIN = 0.12  # how far lines are drawn beyond the corners of small fields
 PANES = (lines.pane_front, lines.pane_rear)
 side_glass = both(flank, lines.band)

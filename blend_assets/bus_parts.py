@@ -20,7 +20,9 @@ WHEEL = Wheel(
     segments=30,
 )  # fmt: skip
 
-POD_X, POD_HALF, POD_Z = -0.15, (1.25, 0.64), (2.36, profile.HEIGHT - 0.004)
+POD_X = -0.15
+POD_HALF = (1.25, 0.64)
+POD_Z = (2.36, profile.HEIGHT - 0.004)
 # Share of the half axes, share of the height: outline of the pod, from the roof upwards.
 POD_RINGS = [(1.00, 0.00), (0.985, 0.45), (0.965, 0.70), (0.935, 0.87), (0.895, 0.965),
              (0.84, 1.00)]  # fmt: skip

@@ -10,21 +10,33 @@ from __future__ import annotations
 import numpy as np
 from curves import Array, smooth_max
 
-LENGTH, WIDTH, HEIGHT = 6.06, 2.02, 2.60  # the height is that of the pod on the roof
+# the height is that of the pod on the roof
+LENGTH = 6.06
+WIDTH = 2.02
+HEIGHT = 2.60
 FLOOR_Z = 0.24
 ROOF_Z = 2.43
-ROOF_CROWN, ROOF_ARC = 0.045, 0.030  # drop of the roof at y = 1 m, and at x = 3 m
-CORNER, ROOF_EDGE = 0.36, 0.30  # how far the corners in plan and the roof's edge are rounded
+# drop of the roof at y = 1 m, and at x = 3 m
+ROOF_CROWN = 0.045
+ROOF_ARC = 0.030
+# how far the corners in plan and the roof's edge are rounded
+CORNER = 0.36
+ROOF_EDGE = 0.30
 
-WHEEL_RADIUS, TRACK = 0.38, 1.735
+WHEEL_RADIUS = 0.38
+TRACK = 1.735
 AXLES = {"front": 1.95, "rear": -1.90}  # x of the wheel centres: wheelbase 3.85
-ARCH_RADIUS, ARCH_Z = 0.445, 0.385  # wheel opening: a circle seen from the side
+# wheel opening: a circle seen from the side
+ARCH_RADIUS = 0.445
+ARCH_Z = 0.385
 WELL_Y = 0.60  # inner wall of the wheel housings
 
 UPRIGHT = (0.60, 0.92)  # between these heights sides and ends stand upright
 TUCK = 0.55  # how fast they draw in towards the floor, 1 / m
 LEAN = 0.018  # and the sides towards the roof
-SCREEN_LEAN, TAIL_LEAN = 0.062, 0.030  # and windscreen and rear window
+# and windscreen and rear window
+SCREEN_LEAN = 0.062
+TAIL_LEAN = 0.030
 BOW = 0.055  # how far the ends lie back at y = 1 m
 
 

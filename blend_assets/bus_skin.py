@@ -13,9 +13,16 @@ from curves import Array
 from skin import Skin, from_grids, spread
 from surface import root
 
-INNER_X, INNER_Y = 2.74, 0.72  # corner of that rectangle, about the axis of the body's corner
-LONG_CELLS, CROSS_CELLS, FAN_CELLS = 24, 4, 7  # quads along, across, and around one corner
-WALL_CELLS, EDGE_CELLS = 11, 6  # quads from the floor to the roof's edge, and over it
+# corner of that rectangle, about the axis of the body's corner
+INNER_X = 2.74
+INNER_Y = 0.72
+# quads along, across, and around one corner
+LONG_CELLS = 24
+CROSS_CELLS = 4
+FAN_CELLS = 7
+# quads from the floor to the roof's edge, and over it
+WALL_CELLS = 11
+EDGE_CELLS = 6
 EDGE_START_Z = 2.12
 SPINE_Z = 1.40  # height from which sections are looked for
 FAR = 4.0

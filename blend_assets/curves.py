@@ -18,8 +18,10 @@ class Curve:
         self.second = self._second_derivatives()
 
     def _second_derivatives(self) -> Array:
-        step, n = np.diff(self.x), len(self.x)
-        system, right = np.eye(n), np.zeros(n)
+        step = np.diff(self.x)
+        n = len(self.x)
+        system = np.eye(n)
+        right = np.zeros(n)
         slope = np.diff(self.y) / step
         for i in range(1, n - 1):
             system[i, i - 1 : i + 2] = step[i - 1], 2 * (step[i - 1] + step[i]), step[i]

@@ -15,9 +15,12 @@ from parts import Part, join  # noqa: E402
 from upright import Level, Panel, Place, body, box, within  # noqa: E402
 from wheels import four_wheels, places, scaled  # noqa: E402
 
-LENGTH, WIDTH, HEIGHT = 12.0, 2.55, 3.20
+LENGTH = 12.0
+WIDTH = 2.55
+HEIGHT = 3.20
 AXLES = {"front": 3.3, "rear": -2.6}
-WHEEL_RADIUS, TRACK = 0.48, 2.27
+WHEEL_RADIUS = 0.48
+TRACK = 2.27
 ARCH = 0.56
 """Half the length of the dark field behind a wheel."""
 SIDE_WINDOWS = (
@@ -25,9 +28,16 @@ SIDE_WINDOWS = (
     (2.98, 4.06), (4.14, 5.40),
 )  # fmt: skip
 DOORS = ((0.24, 1.56), (4.14, 5.40))
-WINDOW_Z, SCREEN_Z, TAIL_Z = (1.15, 2.45), (1.15, 2.75), (1.50, 2.45)
-DOOR_Z, ARCH_Z, LAMP_Z, SKIRT_Z = (0.42, 2.45), 1.02, (0.75, 0.92), 0.42
-SCREEN_Y, TAIL_Y, LAMP_Y = 1.10, 0.85, (0.70, 1.10)
+WINDOW_Z = (1.15, 2.45)
+SCREEN_Z = (1.15, 2.75)
+TAIL_Z = (1.50, 2.45)
+DOOR_Z = (0.42, 2.45)
+ARCH_Z = 1.02
+LAMP_Z = (0.75, 0.92)
+SKIRT_Z = 0.42
+SCREEN_Y = 1.10
+TAIL_Y = 0.85
+LAMP_Y = (0.70, 1.10)
 ACROSS = (-0.80, -0.70, 0.70, 0.80)
 LEVELS = [
     Level(0.30, -5.92, 5.90, 1.235, 0.22), Level(0.42, -6.00, 5.99, 1.275, 0.25),

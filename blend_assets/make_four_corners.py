@@ -24,16 +24,24 @@ from blender_addon import bridge  # noqa: E402
 from blender_addon.engine import formats, pe  # noqa: E402
 
 FOLDER = HERE / "examples" / "four_corners"
-LIDAR, CAMERA = "Velodyne VLP-16 Puck", "Camera 120 deg"
-ROOF, BUMPER = "roof corners", "rear bumper"
-BASE_M, RECESS_M = 0.04, 0.01
+LIDAR = "Velodyne VLP-16 Puck"
+CAMERA = "Camera 120 deg"
+ROOF = "roof corners"
+BUMPER = "rear bumper"
+BASE_M = 0.04
+RECESS_M = 0.01
 """A base plate of 40 mm on the roof; a lens 10 mm proud of the bumper."""
 SIDE_M = (0.3, 1.0)
 """Bounds of y of the sensors on the left: each pair has one on either side."""
 
 PRESETS = (
-    *("r159_longitudinal", "r151_static_crossing", "r151_static_parallel"),
-    *("r158_camera", "r158_detection", "ncap26_reverse_static", "ncap26_reverse_moving"),
+    "r159_longitudinal",
+    "r151_static_crossing",
+    "r151_static_parallel",
+    "r158_camera",
+    "r158_detection",
+    "ncap26_reverse_static",
+    "ncap26_reverse_moving",
 )
 METHOD = "portfolio"
 """Of the example's search."""
@@ -64,23 +72,32 @@ def paint(part: str, name: str, chosen: Callable[[Vertex], bool]) -> None:
 def add_mount(name: str, standoff: float, orientation: str) -> None:
     """Add a mount of the faces that are painted under its name."""
     row = bpy.context.scene.perception_entropy.mounts.add()
-    row.name, row.faces, row.group = name, "GROUP", name
-    row.standoff, row.orientation = standoff, orientation
+    row.name = name
+    row.faces = "GROUP"
+    row.group = name
+    row.standoff = standoff
+    row.orientation = orientation
 
 
 def add_pair(name: str, model: str, near: tuple[float, float, float], mount: str) -> None:
     """Add a sensor on the left, on a mount, and its mirror image."""
     bpy.ops.pe.add_sensor(model=model)
     obj = bpy.context.object
-    obj.name, obj.location = f"{name}_left", near
+    obj.name = f"{name}_left"
+    obj.location = near
     bpy.context.view_layer.update()
     bpy.ops.pe.mount_sensor(name=obj.name, mount=mount)
     own = obj.perception_entropy
     own.free = [False, False, False, False, True, mount == BUMPER]
-    own.bounded[1], own.bounds_low[1], own.bounds_high[1] = True, *SIDE_M
+    own.bounded[1] = True
+    own.bounds_low[1], own.bounds_high[1] = SIDE_M
     if mount == BUMPER:
-        own.bounded[5], own.bounds_low[5], own.bounds_high[5] = True, -40.0, 40.0
-    own.bounded[4], own.bounds_low[4], own.bounds_high[4] = True, -20.0, 30.0
+        own.bounded[5] = True
+        own.bounds_low[5] = -40.0
+        own.bounds_high[5] = 40.0
+    own.bounded[4] = True
+    own.bounds_low[4] = -20.0
+    own.bounds_high[4] = 30.0
     bpy.ops.pe.mirror_sensor(name=obj.name, linked=True)
 
 
@@ -92,7 +109,8 @@ def add_requirements() -> None:
     bpy.ops.pe.add_row(rows="requirements", kind="OWN")
     row = settings.requirements[-1]
     row.name = STOPPING
-    row.x_from, row.x_to = "front + 3.7", f"front + {STOPPING_M}"
+    row.x_from = "front + 3.7"
+    row.x_to = f"front + {STOPPING_M}"
     row.one_lost = True
     settings.requirement_index = 0
 

@@ -26,7 +26,8 @@ import pe_core as pe  # noqa: E402
 from blender_addon.housing import housing_mesh  # noqa: E402
 
 FOLDER = HERE.parent / "blender_addon" / "assets"
-BLEND, CATALOGS = "sensors.blend", "blender_assets.cats.txt"
+BLEND = "sensors.blend"
+CATALOGS = "blender_assets.cats.txt"
 HEADER = "# Catalogues of sensors.blend, written by make_sensors.py.\n\nVERSION 1\n\n"
 NAMESPACE = uuid.UUID("8d1f2c1e-6a3b-4b0e-9f0a-5f1c7f3e9a41")
 KINDS = {"lidar": "LiDAR", "camera": "Camera"}
@@ -52,7 +53,8 @@ def main() -> None:
 
 def make_assets() -> set[str]:
     """Make all assets in the open file; return the paths of their catalogues."""
-    paths, studio = set(), Studio()
+    paths = set()
+    studio = Studio()
     for entry in pe.catalog.entries().values():
         if entry.kind in KINDS:
             obj = make_sensor(entry)
@@ -71,7 +73,8 @@ def make_sensor(entry: pe.catalog.Entry) -> bpy.types.Object:
     obj.asset_mark()
     data = obj.asset_data
     data.catalog_id = catalog_id(path_of(entry))
-    data.author, data.license = "perception-entropy contributors", "CC0-1.0"
+    data.author = "perception-entropy contributors"
+    data.license = "CC0-1.0"
     data.description = description(entry)
     for tag in tags(entry):
         data.tags.new(tag, skip_if_exists=True)

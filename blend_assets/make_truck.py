@@ -20,20 +20,31 @@ from parts import Part, join  # noqa: E402
 from upright import Level, Panel, Place, body, box, within  # noqa: E402
 from wheels import four_wheels, places, scaled  # noqa: E402
 
-WHEELBASE, HITCH_AHEAD, KINGPIN_TO_AXLES = 3.60, 0.30, 8.20
-TRAILER_FRONT, TRAILER_REAR, WIDTH = 1.00, 2.80, 2.50
-CAB_FRONT, CAB_LENGTH = 1.40, 2.30
+WHEELBASE = 3.60
+HITCH_AHEAD = 0.30
+KINGPIN_TO_AXLES = 8.20
+TRAILER_FRONT = 1.00
+TRAILER_REAR = 2.80
+WIDTH = 2.50
+CAB_FRONT = 1.40
+CAB_LENGTH = 2.30
 """Front overhang of the tractor, and length of its cab."""
 LENGTH = CAB_FRONT + WHEELBASE - HITCH_AHEAD + KINGPIN_TO_AXLES + TRAILER_REAR
 FRONT = LENGTH / 2
 AXLES = {"front": FRONT - CAB_FRONT, "rear": FRONT - CAB_FRONT - WHEELBASE}
 HITCH_X = AXLES["rear"] + HITCH_AHEAD
 """Where the trailer turns: the kingpin, on the centre line."""
-TRAILER_AXLE, AXLE_APART = HITCH_X - KINGPIN_TO_AXLES, 1.31
+TRAILER_AXLE = HITCH_X - KINGPIN_TO_AXLES
+AXLE_APART = 1.31
 CAB_REAR = FRONT - CAB_LENGTH
 BOX_ENDS = (HITCH_X - KINGPIN_TO_AXLES - TRAILER_REAR, HITCH_X + TRAILER_FRONT)
-BOX_Z, WHEEL_RADIUS, TRACK = (1.15, 3.95), 0.50, 2.20
-SCREEN_Z, SIDE_Z, LAMP_Z, SCREEN_Y = (1.75, 2.70), (1.75, 2.55), (0.80, 1.02), 0.95
+BOX_Z = (1.15, 3.95)
+WHEEL_RADIUS = 0.50
+TRACK = 2.20
+SCREEN_Z = (1.75, 2.70)
+SIDE_Z = (1.75, 2.55)
+LAMP_Z = (0.80, 1.02)
+SCREEN_Y = 0.95
 SIDE_X = (FRONT - 1.45, FRONT - 0.45)
 ARCH = 0.62
 
@@ -87,7 +98,8 @@ def trailer() -> dict[str, Part]:
     low, high = BOX_Z
     levels = [Level(z, *BOX_ENDS, WIDTH / 2, 0.05) for z in (low, 1.28, high - 0.08, high)]
     parts = body(levels, [], [], _trailer_panel, ("trailer", "plate"), ("trailer", "trim"))
-    ahead, behind = HITCH_X - 2.2, TRAILER_AXLE + 2.1
+    ahead = HITCH_X - 2.2
+    behind = TRAILER_AXLE + 2.1
     frame = box((BOX_ENDS[0] + 0.2, -0.5, 0.92), (ahead + 0.6, 0.5, low), "trim")
     legs = [box((ahead, y - 0.07, 0.25), (ahead + 0.14, y + 0.07, low), "rim") for y in (-0.8, 0.8)]
     parts["trailer_chassis"] = join(frame, *legs)

@@ -22,6 +22,8 @@ from blend_file import save  # noqa: E402
 
 import blender_addon  # noqa: E402
 
+SCREENS = ("windshield", "rear_window", "windows_left", "windows_right")
+
 
 class Sensor(NamedTuple):
     """A model of the catalogue, where it stands [m], its pitch [deg], and the axes to search."""
@@ -39,7 +41,6 @@ class Mounting(NamedTuple):
     sensors: dict[str, Sensor]
 
 
-SCREENS = ("windshield", "rear_window", "windows_left", "windows_right")
 MOUNTINGS = {
     "Sedan": Mounting(
         glass=SCREENS,

@@ -15,11 +15,17 @@ QUARTER_LIGHT = Curve((0.90, -1.030), (1.40, -0.900))  # division of the rear si
 SILL_TOP = 0.265  # height of the lower door edge
 SILL_TRIM = 0.205  # height of the dark strip under the doors
 HANDLES = (0.02, -0.87)  # x of the middle of the door handles
-DIFFUSER_TOP, DIFFUSER_SIDE = 0.375, 0.66  # dark lower part of the rear bumper
-SLOT_HALF, CURTAIN_HALF = 0.008, 0.028  # half widths of the slot and the air inlets
+# dark lower part of the rear bumper
+DIFFUSER_TOP = 0.375
+DIFFUSER_SIDE = 0.66
+# half widths of the slot and the air inlets
+SLOT_HALF = 0.008
+CURTAIN_HALF = 0.028
 HEADLIGHT_STRIP = 0.020  # height of the bright strip along the foot of the headlights
 HANDLE_Z = (0.044, 0.066)  # lower and upper edge of the handles above the crease
-PILLAR_HALF, BAR_HALF = 0.035, 0.012  # half widths of the bars across the side windows
+# half widths of the bars across the side windows
+PILLAR_HALF = 0.035
+BAR_HALF = 0.012
 CURTAIN = (0.315, 0.485)  # heights of the air inlets in the front corners
 INTAKE = (0.235, 0.425)  # heights of the lower and upper edge of the front intake
 GLASS_INSET = 0.050  # width of the roof rail and the front pillar, seen from the side

@@ -66,8 +66,11 @@ from sedan_lines import (
 from skin import Skin, cut, cut_gaps
 
 below = negative(above)
-nose, corner, tail = ahead(1.9), ahead(1.7), behind(-1.88)
-slot, curtain = within(slot_line, SLOT_HALF), within(curtain_line, CURTAIN_HALF)
+nose = ahead(1.9)
+corner = ahead(1.7)
+tail = behind(-1.88)
+slot = within(slot_line, SLOT_HALF)
+curtain = within(curtain_line, CURTAIN_HALF)
 HOOD = both(below, hood_side, cowl_edge, hood_nose)
 SIDE_GLASS = both(height(0.9), side_top, side_foot, side_tail)
 WINDSHIELD = both(above, pillar, screen_top)

@@ -27,8 +27,10 @@ def mirror() -> Part:
                 (0.995, 0.644, 1.013, 0.060, 0.058),
                 (1.015, 0.636, 1.013, 0.030, 0.034)]  # fmt: skip
     angle = np.linspace(0, 2 * np.pi, 16, endpoint=False)
-    cos, sin = np.cos(angle), np.sin(angle)
-    cos, sin = np.sign(cos) * np.abs(cos) ** 0.8, np.sign(sin) * np.abs(sin) ** 0.8
+    cos = np.cos(angle)
+    sin = np.sin(angle)
+    cos = np.sign(cos) * np.abs(cos) ** 0.8
+    sin = np.sign(sin) * np.abs(sin) ** 0.8
     rings = [np.column_stack([x + np.maximum(cos * dx, -0.045), np.full(16, y), z + sin * dz])
              for y, x, z, dx, dz in stations]  # fmt: skip
     head = tube(np.array(rings), "paint", (True, True))

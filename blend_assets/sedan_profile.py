@@ -12,11 +12,16 @@ from typing import NamedTuple
 import numpy as np
 from curves import Array, Curve, bump, smooth_max, step
 
-LENGTH, WIDTH, HEIGHT = 4.70, 1.85, 1.45
-WHEEL_RADIUS, TYRE_WIDTH = 0.33, 0.225
+LENGTH = 4.70
+WIDTH = 1.85
+HEIGHT = 1.45
+WHEEL_RADIUS = 0.33
+TYRE_WIDTH = 0.225
 TRACK = 1.58
 AXLES = {"front": 1.49, "rear": -1.31}  # x of the wheel centres: wheelbase 2.80
-ARCH_RADIUS, ARCH_Z = 0.368, 0.338  # wheel opening: a circle seen from the side
+# wheel opening: a circle seen from the side
+ARCH_RADIUS = 0.368
+ARCH_Z = 0.338
 WELL_Y = 0.54  # inner wall of the wheel housings
 SPINE_Z = 0.55  # height of the axis from which cross sections are sampled
 
@@ -48,7 +53,8 @@ TAIL_PLAN = Curve(
 )
 FLOOR = Curve((-2.40, 0.240), (-1.60, 0.170), (0.00, 0.150), (1.60, 0.155), (2.40, 0.190))
 # The shoulder: a crease along the flank, this high (before the wedge) and this proud.
-CREASE_Z, CREASE = 0.705, 0.014
+CREASE_Z = 0.705
+CREASE = 0.014
 
 # --- greenhouse -----------------------------------------------------------------------------
 ROOF = Curve((1.20, 1.230), (0.70, 1.352), (0.20, 1.429), (-0.25, 1.450), (-0.70, 1.432),
@@ -129,7 +135,8 @@ def cabin_side(x: Array, y: Array, z: Array) -> Array:
 def terms(points: Array) -> Terms:
     """All named surfaces at points (n, 3)."""
     x, y, z = points.T
-    side, top = cabin_side(x, y, z), cabin_top(x, y, z)
+    side = cabin_side(x, y, z)
+    top = cabin_top(x, y, z)
     hidden = 0.86 + 0.11 * step(x, -1.1, -1.7) - z  # the cabin ends inside the lower body
     cabin = smooth_max(smooth_max(side, top, 0.07), hidden, 0.02)
     return Terms(lower_body(x, y, z), cabin, side, top)
@@ -137,6 +144,7 @@ def terms(points: Array) -> Terms:
 
 def solid(points: Array) -> Array:
     """Less than zero inside the car; the boot flows out of the rear pillars in a wide fillet."""
-    part, x = terms(points), points[:, 0]
+    part = terms(points)
+    x = points[:, 0]
     fillet = 0.006 + 0.11 * step(x, -0.8, -1.6)
     return -smooth_max(-part.lower, -part.cabin, fillet)

@@ -8,7 +8,9 @@ from curves import Array, Curve
 from skin import Skin, from_grids, spread
 from surface import root
 
-SIDE_CELLS, TOP_CELLS = 17, 9  # quads from the sill to the roof rail, and on to the centre line
+# quads from the sill to the roof rail, and on to the centre line
+SIDE_CELLS = 17
+TOP_CELLS = 9
 STATIONS = np.concatenate(
     [
         np.linspace(-2.235, -1.80, 7)[:-1],
@@ -34,12 +36,14 @@ def section(station: float, count: int = 400) -> tuple[Array, Array]:
     """Dense points of one cross section from below the sill to the centre, and their angles."""
     angle = np.radians(np.linspace(-60, 90, count))
     ray = np.column_stack([np.cos(angle), np.sin(angle)])
-    low, high = np.full(count, 0.02), np.full(count, 1.5)
+    low = np.full(count, 0.02)
+    high = np.full(count, 1.5)
     for _ in range(30):
         middle = (low + high) / 2
         flat = ray * middle[:, None] + [0, profile.SPINE_Z]
         out = profile.solid(onto_sheet(station, flat)) > 0
-        high, low = np.where(out, middle, high), np.where(out, low, middle)
+        high = np.where(out, middle, high)
+        low = np.where(out, low, middle)
     flat = ray * low[:, None] + [0, profile.SPINE_Z]
     return onto_sheet(station, flat), np.degrees(angle)
 
@@ -59,11 +63,13 @@ def ring(station: float) -> Array:
 
 def end_cap(outline: Array, station: float, forward: float) -> Array:
     """Bumper face: fill the last ring with a grid (TOP_CELLS + 1, SIDE_CELLS + 1) of points."""
-    side, top = outline[: SIDE_CELLS + 1], outline[SIDE_CELLS:][::-1]
+    side = outline[: SIDE_CELLS + 1]
+    top = outline[SIDE_CELLS:][::-1]
     u = np.linspace(0, 1, TOP_CELLS + 1)[:, None, None]
     v = np.linspace(0, 1, SIDE_CELLS + 1)[None, :, None]
     flat = u * side[None, :, 1:] + (1 - u) * (v * top[0, 1:] + (1 - v) * side[0, 1:] * [0, 1])
-    flat[:, -1], flat[0, :, 0] = top[:, 1:], 0
+    flat[:, -1] = top[:, 1:]
+    flat[0, :, 0] = 0
     for _ in range(300):  # relax, so that no cell folds in the rounded corner
         ends = (flat[:-2, 1:-1], flat[2:, 1:-1], flat[1:-1, :-2], flat[1:-1, 2:])
         flat[1:-1, 1:-1] = sum(ends) / 4
@@ -71,7 +77,8 @@ def end_cap(outline: Array, station: float, forward: float) -> Array:
     grid = root(profile.solid, start, start + np.array([forward, 0, 0])).reshape(
         TOP_CELLS + 1, SIDE_CELLS + 1, 3
     )
-    grid[-1, :], grid[:, -1] = side, top
+    grid[-1, :] = side
+    grid[:, -1] = top
     return grid
 
 

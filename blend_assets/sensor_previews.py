@@ -75,13 +75,15 @@ class Studio:
 
 
 def _plain_look(scene: bpy.types.Scene) -> None:
-    render, shading = scene.render, scene.display.shading
+    render = scene.render
+    shading = scene.display.shading
     render.engine = "BLENDER_WORKBENCH"
     render.resolution_x = render.resolution_y = PIXELS
     render.film_transparent = True
     scene.display.render_aa = "16"
     scene.view_settings.view_transform = "Standard"
-    shading.light, shading.color_type = "STUDIO", "MATERIAL"
+    shading.light = "STUDIO"
+    shading.color_type = "MATERIAL"
     shading.show_specular_highlight = True
 
 
@@ -113,7 +115,8 @@ def wedge(start: Array, ends: Array) -> Array:
 
 def over(top: Array, under: Array) -> Array:
     """One picture over another, both with straight alpha; as previews are: colour times alpha."""
-    a, b = top[..., 3:], under[..., 3:]
+    a = top[..., 3:]
+    b = under[..., 3:]
     colour = top[..., :3] * a + under[..., :3] * b * (1.0 - a)
     return np.concatenate([colour, a + b * (1.0 - a)], axis=-1)
 

@@ -12,7 +12,9 @@ class Skin:
     """Triangles with points that may no longer move because a panel line runs through them."""
 
     def __init__(self, points: Array, triangles: Array, solid: Solid) -> None:
-        self.points, self.triangles, self.solid = points, triangles, solid
+        self.points = points
+        self.triangles = triangles
+        self.solid = solid
         self.locked = np.zeros(len(points), dtype=bool)
 
     def centres(self) -> Array:
@@ -65,7 +67,9 @@ def weld(points: Array, triangles: Array) -> tuple[Array, Array]:
 
 def from_grids(solid: Solid, *grids: tuple[Array, bool]) -> Skin:
     """Grids of points (rows, columns, 3) as one skin; those with True are turned inside out."""
-    points, triangles, used = [], [], 0
+    points = []
+    triangles = []
+    used = 0
     for grid, flip in grids:
         flat = grid.reshape(-1, 3)
         faces = split_quads(flat, quads(*grid.shape[:2]))
@@ -84,13 +88,16 @@ def edges_of(triangles: Array) -> Array:
 def crossings(skin: Skin, line: Solid, value: Array, edges: Array) -> tuple[Array, Array, Array]:
     """Edges where the line function changes sign, the fraction along them, and the points."""
     edges = edges[value[edges[:, 0]] * value[edges[:, 1]] < 0]
-    start, stop = skin.points[edges[:, 0]], skin.points[edges[:, 1]]
+    start = skin.points[edges[:, 0]]
+    stop = skin.points[edges[:, 1]]
     sign = np.sign(value[edges[:, 0]])
-    low, high = np.zeros(len(edges)), np.ones(len(edges))
+    low = np.zeros(len(edges))
+    high = np.ones(len(edges))
     for _ in range(24):
         middle = (low + high) / 2
         same = line(start + (stop - start) * middle[:, None]) * sign > 0
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
+        low = np.where(same, middle, low)
+        high = np.where(same, high, middle)
     return edges, low, start + (stop - start) * low[:, None]
 
 
@@ -104,7 +111,8 @@ def snap(skin: Skin, line: Solid, value: Array, edges: Array) -> None:
         centre = abs(skin.points[near, 1]) < 1e-6
         free = not skin.locked[near] and (not centre or abs(skin.points[far, 1]) < 1e-6)
         if free and t < best[near]:
-            best[near], value[near] = t, 0
+            best[near] = t
+            value[near] = 0
             skin.points[near] = point
         elif not free and t * size < 0.0015:
             value[near] = 0

@@ -44,17 +44,20 @@ def onto_solid(points: Array, solid: Solid) -> Array:
 
 def root(solid: Solid, inside: Array, outside: Array) -> Array:
     """The point on the skin between pairs of points inside and outside of a solid."""
-    low, high = np.zeros(len(inside)), np.ones(len(inside))
+    low = np.zeros(len(inside))
+    high = np.ones(len(inside))
     for _ in range(30):
         middle = (low + high) / 2
         out = solid(inside + (outside - inside) * middle[:, None]) > 0
-        high, low = np.where(out, middle, high), np.where(out, low, middle)
+        high = np.where(out, middle, high)
+        low = np.where(out, low, middle)
     return inside + (outside - inside) * low[:, None]
 
 
 def surface_x(solid: Solid, point: Array, forward: float) -> float:
     """Where the line along x through this point meets the skin."""
-    low, high = point[0], point[0] + forward
+    low = point[0]
+    high = point[0] + forward
     for _ in range(30):
         middle = (low + high) / 2
         out = solid(np.array([[middle, point[1], point[2]]]))[0] > 0

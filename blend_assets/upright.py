@@ -16,6 +16,8 @@ from parts import Part, fill, join
 
 CORNER_STEPS = 4
 """Faces around an upright corner."""
+Panel = tuple[str, str]
+"""Name of the part, and its material."""
 
 
 class Level(NamedTuple):
@@ -37,10 +39,6 @@ class Place(NamedTuple):
     z: float
 
 
-Panel = tuple[str, str]
-"""Name of the part, and its material."""
-
-
 def outline(level: Level, along: Array, across: Array) -> tuple[Array, list[str]]:
     """Points (N, 2) of an outline from the front's right end on, and the wall after each point.
 
@@ -55,7 +53,8 @@ def outline(level: Level, along: Array, across: Array) -> tuple[Array, list[str]
         "right": (along, lambda x: (x, np.full_like(x, -half))),
     }
     middles = [(front, half), (rear, half), (rear, -half), (front, -half)]
-    points, walls = [], []
+    points = []
+    walls = []
     for turn, (wall, (lines, place)) in enumerate(sides.items()):
         straight = np.column_stack(place(np.asarray(lines, float)))
         x, y = middles[turn]
@@ -81,15 +80,18 @@ def body(
     floor: Panel,
 ) -> dict[str, Part]:
     """Return the parts of a closed body: walls by panel, its roof, its floor."""
-    rings, walls = [], []
+    rings = []
+    walls = []
     for level in levels:
         flat, walls = outline(level, np.array(along), np.array(across))
         rings.append(np.column_stack([flat, np.full(len(flat), level.z)]))
-    points, count = np.vstack(rings), len(rings[0])
+    points = np.vstack(rings)
+    count = len(rings[0])
     found: dict[Panel, list[tuple[int, int, int]]] = {}
     for low in range(len(levels) - 1):
         for j in range(count):
-            a, b = low * count + j, low * count + (j + 1) % count
+            a = low * count + j
+            b = low * count + (j + 1) % count
             wall = walls[j]
             centre = points[[a, b, a + count, b + count]].mean(axis=0)
             kind = panel(Place(wall, *centre))

@@ -41,7 +41,8 @@ def spoke(face: list[tuple[float, float, float]], turn: float) -> Part:
                      (half * 1.25, offset - 0.045)])  # fmt: skip
     flat = np.array(rows)
     radius = np.array([row[0] for row in face])[:, None]
-    cos, sin = np.cos(turn), np.sin(turn)
+    cos = np.cos(turn)
+    sin = np.sin(turn)
     x = radius * cos - flat[..., 0] * sin
     z = radius * sin + flat[..., 0] * cos
     points = np.stack([x, flat[..., 1], z], axis=-1).reshape(-1, 3)
@@ -54,10 +55,10 @@ def wheel(shape: Wheel) -> Part:
     turns = [np.pi / 2 + 2 * np.pi * k / shape.pairs + side * shape.apart
              for k in range(shape.pairs) for side in (-1, 1)]  # fmt: skip
     return join(
-        lathe(shape.tyre, shape.segments, "tyre", True, False),
-        lathe(shape.rim, shape.segments, "rim", False, False),
-        lathe(shape.disc, shape.segments, "trim", False, True),
-        lathe(shape.hub, shape.segments, "rim", False, True),
+        lathe(shape.tyre, shape.segments, "tyre", inner=True, outer=False),
+        lathe(shape.rim, shape.segments, "rim", inner=False, outer=False),
+        lathe(shape.disc, shape.segments, "trim", inner=False, outer=True),
+        lathe(shape.hub, shape.segments, "rim", inner=False, outer=True),
         *[spoke(shape.spoke, turn) for turn in turns],
     )
 

@@ -17,8 +17,13 @@ _sight: text.RecentCache[sight.Sight] = text.RecentCache()
 
 def key_figures(problem: Problem, rigs: Sequence[pe.Rig]) -> list[advice.KeyFigures]:
     """Return expected AP in traffic, blind sectors, blind ground and reach of rigs."""
-    place, how = (problem.space, problem.prior, problem.vehicle), (problem.model, problem.targets)
-    look = _sight.made(problem.key, lambda: sight.Sight(*place, model=how[0], targets=how[1]))
+    how = (problem.model, problem.targets)
+    look = _sight.made(
+        problem.key,
+        lambda: sight.Sight(
+            problem.space, problem.prior, problem.vehicle, model=how[0], targets=how[1]
+        ),
+    )
     return [advice.KeyFigures.of_rig(look, rig) for rig in rigs]
 
 
@@ -46,7 +51,7 @@ def bodies_seen(
     model: pe.PerceptionModel,
 ) -> tuple[advice.BodySight, ...]:
     """Return what a rig sees of test bodies."""
-    return advice.see_bodies(rig, vehicle, bodies, model, _beams.made(vehicle, dict))
+    return advice.see_bodies(rig, vehicle, bodies, model, kernel_caches=_beams.made(vehicle, dict))
 
 
 _layers = LayerCache()

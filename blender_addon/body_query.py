@@ -14,7 +14,8 @@ from .engine import advice, graphics, pe, requirements
 
 TOPIC = f"{engine_process.OVERLAY}test bodies"
 """As a layer of the view: what has been found is taken before the view is drawn."""
-PLACE_DIGITS, HEADING_DIGITS = 5, 4
+PLACE_DIGITS = 5
+HEADING_DIGITS = 4
 MAX_LINES = 4
 SEEN = graphics.with_alpha(graphics.VIEWPORT.words, 1.0)
 UNSEEN = graphics.with_alpha(graphics.VIEWPORT.occluded, 1.0)
@@ -39,7 +40,8 @@ def standing(scene: bpy.types.Scene) -> dict[str, advice.StandingBody]:
 
 def query(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """Ask what the sensors see of the bodies; the answer is delivered when it is there."""
-    name, bodies = scene.name, standing(scene)
+    name = scene.name
+    bodies = standing(scene)
     sensors = bridge.possible_sensors(sensor_cache.sensors(scene), depsgraph) if bodies else []
     if not sensors:
         engine_process.drop(TOPIC)
@@ -62,7 +64,7 @@ def query(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
             analysis_calls.bodies_seen,
             given,
             deliver,
-            fail,
+            fail=fail,
             lane=engine_process.FOLLOWS_MOUSE,
         )
 

@@ -31,7 +31,8 @@ def note_if_changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> N
     kinds = depsgraph.id_type_updated
     if bpy.app.background or not (kinds("OBJECT") or kinds("COLLECTION") or kinds("SCENE")):
         return
-    layer, vehicle = depsgraph.view_layer, scene.perception_entropy.vehicle
+    layer = depsgraph.view_layer
+    vehicle = scene.perception_entropy.vehicle
     sensors = tuple((s.name, s.visible_get(view_layer=layer)) for s in sensor_cache.sensors(scene))
     parts = () if vehicle is None else vehicle_cache.counted_members(vehicle, depsgraph)
     present = sensors, parts, vehicle_cache.shared.version
@@ -74,7 +75,8 @@ def emit_idle() -> float | None:
     by itself. After a redraw longer than `IDLE_S` both timers are due, and Blender calls the one
     that was registered first: `moving` must not come after the last `idle`.
     """
-    left, count = _idle_at - time.monotonic(), _change_count
+    left = _idle_at - time.monotonic()
+    count = _change_count
     if left > 0.0 or bpy.app.timers.is_registered(emit_moving):
         return max(left, 0.0)
     signals.idle.emit()

@@ -15,10 +15,15 @@ AHEAD: Range = (0.0, math.inf)
 BEHIND: Range = (-math.inf, 0.0)
 FAR_M = 40.0
 CUSTOM = "custom"
-ROAD, HIGHWAY, UNIFORM, FROM_BOXES = "road", "highway", "uniform", "boxes"
-ON_SURFACE, ON_SLOTS = "SURFACE", "SLOTS"
+ROAD = "road"
+HIGHWAY = "highway"
+UNIFORM = "uniform"
+FROM_BOXES = "boxes"
+ON_SURFACE = "SURFACE"
+ON_SLOTS = "SLOTS"
 """Kinds of mounts."""
-BY_PARTS, BY_GROUP = "PARTS", "GROUP"
+BY_PARTS = "PARTS"
+BY_GROUP = "GROUP"
 """Which faces a surface is made of."""
 
 PRIORS = (
@@ -30,9 +35,29 @@ PRIORS = (
 """In the form of a Blender menu; a .blend file holds the numbers."""
 
 
-OBJECTS, EXPECTED_AP, RANDOM = "objects", "expected_ap", "random"
+OBJECTS = "objects"
+EXPECTED_AP = "expected_ap"
+RANDOM = "random"
 """Targets of a score, objective of a search, and the method with a schedule, that panels treat in
 another way; all are declared by the engine."""
+NO_BODY = "NONE"
+BODY_ITEMS = (
+    (NO_BODY, "None", "Not a test body"),
+    ("child", "Child", "A pedestrian"),
+    ("adult", "Adult", "A pedestrian"),
+    ("cyclist", "Cyclist", "A cyclist"),
+    ("car", "Car", "A car"),
+    ("pole", "Pole", "A thin post"),
+    ("cone", "Cone", "A traffic cone"),
+)
+"""What an object is: the sensors that see it are written beside it."""
+BEFORE_MOVE = 0
+"""What the live score is compared with; any other number is the key of a variant."""
+SIMPLE = "SIMPLE"
+PANELS = (
+    (SIMPLE, "Simple", "The panels of the first hour, in plain words"),
+    ("ALL", "All", "All panels, with the terms and units of the metric"),
+)
 
 
 @dataclass(frozen=True)
@@ -49,19 +74,25 @@ class Region:
 REGIONS = {
     region.key: region
     for region in (
-        Region("everywhere", "Everywhere", "everywhere", "The whole space", ((ALL, ALL),)),
-        Region("front", "Front", "x > 0", "Everything ahead of the origin", ((AHEAD, ALL),)),
-        Region("rear", "Rear", "x < 0", "Everything behind the origin", ((BEHIND, ALL),)),
-        Region("left", "Left", "y > 0", "Everything to the left of the vehicle", ((ALL, AHEAD),)),
+        Region("everywhere", "Everywhere", "everywhere", "The whole space", areas=((ALL, ALL),)),
+        Region("front", "Front", "x > 0", "Everything ahead of the origin", areas=((AHEAD, ALL),)),
+        Region("rear", "Rear", "x < 0", "Everything behind the origin", areas=((BEHIND, ALL),)),
         Region(
-            "right", "Right", "y < 0", "Everything to the right of the vehicle", ((ALL, BEHIND),)
+            "left", "Left", "y > 0", "Everything to the left of the vehicle", areas=((ALL, AHEAD),)
+        ),
+        Region(
+            "right",
+            "Right",
+            "y < 0",
+            "Everything to the right of the vehicle",
+            areas=((ALL, BEHIND),),
         ),
         Region(
             "far",
             "Far Ahead and Behind",
             f"|x| > {FAR_M:g} m",
             f"Everything more than {FAR_M:g} m ahead or behind",
-            (((-math.inf, -FAR_M), ALL), ((FAR_M, math.inf), ALL)),
+            areas=(((-math.inf, -FAR_M), ALL), ((FAR_M, math.inf), ALL)),
         ),
         Region(CUSTOM, "Custom", "custom", "Bounds that you set"),
     )
@@ -89,31 +120,11 @@ class FocusRegion(NamedTuple):
     classes: tuple[str, ...] | None = None
 
 
-NO_BODY = "NONE"
-BODY_ITEMS = (
-    (NO_BODY, "None", "Not a test body"),
-    ("child", "Child", "A pedestrian"),
-    ("adult", "Adult", "A pedestrian"),
-    ("cyclist", "Cyclist", "A cyclist"),
-    ("car", "Car", "A car"),
-    ("pole", "Pole", "A thin post"),
-    ("cone", "Cone", "A traffic cone"),
-)
-"""What an object is: the sensors that see it are written beside it."""
-BEFORE_MOVE = 0
-"""What the live score is compared with; any other number is the key of a variant."""
-
-
 def free_name(wanted: str, taken: set[str]) -> str:
     """Return a name that is not taken, numbered if necessary: "Idea", "Idea 2"."""
-    name, number = wanted, 2
+    name = wanted
+    number = 2
     while name in taken:
-        name, number = f"{wanted} {number}", number + 1
+        name = f"{wanted} {number}"
+        number = number + 1
     return name
-
-
-SIMPLE = "SIMPLE"
-PANELS = (
-    (SIMPLE, "Simple", "The panels of the first hour, in plain words"),
-    ("ALL", "All", "All panels, with the terms and units of the metric"),
-)

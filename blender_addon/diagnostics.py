@@ -15,7 +15,8 @@ from . import analysis_calls, bridge, engine_process, sensor_cache, signals, veh
 from .engine import advice, jobs, pe
 
 IDLE_DELAY_S = 1.0  # How long the scene has to be idle until the checks run
-WARNINGS, EXPLANATION = "warnings", "words"
+WARNINGS = "warnings"
+EXPLANATION = "words"
 """Topics of requests."""
 
 
@@ -46,7 +47,8 @@ def vehicle_line(scene: bpy.types.Scene) -> str:
 
 def explanation(scene: bpy.types.Scene) -> Explanation | None:
     """Return the words of the scene's result; None until they are known."""
-    found, signature = _explained.get(scene.name), scene.perception_entropy.result_signature
+    found = _explained.get(scene.name)
+    signature = scene.perception_entropy.result_signature
     return found if found is not None and found.signature == signature else None
 
 
@@ -68,7 +70,8 @@ def run_checks() -> None:
     if not bridge.sensor_objects(scene) and scene.perception_entropy.vehicle is None:
         return
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    own, name = bridge.scene_advice(scene), scene.name
+    own = bridge.scene_advice(scene)
+    name = scene.name
     vehicle = vehicle_cache.shared.read(scene, depsgraph).vehicle
     sensors = bridge.possible_sensors(sensor_cache.sensors(scene), depsgraph)
     try:
@@ -87,7 +90,7 @@ def run_checks() -> None:
             signals.view_changed.emit()
 
     given = sensors, vehicle, space
-    engine_process.ask(WARNINGS, analysis_calls.warnings, given, deliver, lambda _: None)
+    engine_process.ask(WARNINGS, analysis_calls.warnings, given, deliver, fail=lambda _: None)
     _explain_stored(scene, depsgraph)
 
 
@@ -131,14 +134,15 @@ def explain_score(scene: bpy.types.Scene, outcome: jobs.Outcome, signature: str)
 
     if not bpy.app.background:
         given = (outcome.study,)
-        engine_process.ask(EXPLANATION, analysis_calls.outlook, given, deliver, lambda _: None)
+        engine_process.ask(EXPLANATION, analysis_calls.outlook, given, deliver, fail=lambda _: None)
 
 
 def _words(
     outcome: jobs.Outcome, signature: str, seen: advice.Outlook | None = None
 ) -> Explanation:
     """Return an outcome in words; without `seen`, not how far its rig sees."""
-    study, score = outcome.study, outcome.after
+    study = outcome.study
+    score = outcome.after
     rows = advice.sensor_rows(score, study.rig, study.vehicle, seen)
     words = advice.rig_words(score, seen, study.rig)
     search = tuple(jobs.sureness_lines(outcome))

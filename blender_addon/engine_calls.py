@@ -17,7 +17,8 @@ SAMPLES = 32_768
 MAX_SCENES = 64  # Scenes of objects that a live score evaluates at most
 HELD_SAMPLES = 16_384
 """Voxels for a sensor that is held under the mouse, and for known rigs."""
-DEFAULT_SPACE, VOXELS = pe.PerceptionSpace(), pe.TargetRule()
+DEFAULT_SPACE = pe.PerceptionSpace()
+VOXELS = pe.TargetRule()
 
 
 def rig_key(rig: pe.Rig) -> Hashable:
@@ -66,12 +67,15 @@ def live_score(scene_name: str, request: ScoreRequest, baseline: pe.Rig | None) 
 
 def make_evaluator(problem: Problem) -> pe.RigEvaluator:
     """Return what scores a problem quickly: on a sample of voxels, or few scenes of objects."""
-    place = problem.space, problem.prior, problem.vehicle
     rule = problem.targets
     if not rule.are_objects:
-        return pe.Evaluator(*place, samples=SAMPLES, model=problem.model)
+        return pe.Evaluator(
+            problem.space, problem.prior, problem.vehicle, samples=SAMPLES, model=problem.model
+        )
     few = replace(rule, scenes=min(rule.scenes, MAX_SCENES))
-    return pe.ObjectEvaluator(*place, targets=few, model=problem.model)
+    return pe.ObjectEvaluator(
+        problem.space, problem.prior, problem.vehicle, targets=few, model=problem.model
+    )
 
 
 class Gain(NamedTuple):
@@ -143,7 +147,9 @@ def checker(
 
 def checker_of_study(study: pe.Study) -> requirements.RequirementChecker:
     """Return what holds rigs to the requirements of a study."""
-    return checker(study.requirements, study.vehicle, study.model, study.reference, study.space)
+    return checker(
+        study.requirements, study.vehicle, study.model, study.reference, space=study.space
+    )
 
 
 def clear() -> None:

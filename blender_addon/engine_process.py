@@ -15,13 +15,17 @@ from . import analysis_calls
 from .engine import catalog, engine_process, jobs, kinds, pe
 from .overlay.request import ViewRequest
 
-FOLLOWS_MOUSE, BEHIND, JOB = engine_process.FOLLOWS_MOUSE, engine_process.BEHIND, "job"
+FOLLOWS_MOUSE = engine_process.FOLLOWS_MOUSE
+BEHIND = engine_process.BEHIND
+JOB = "job"
 """Lanes: what follows the mouse waits for nothing else, and a job keeps nothing waiting."""
 POLL_S = 0.005  # How often the timer looks for results, while one is awaited
 MAX_MODELS = 256
-LIVE_SCORE, OVERLAY = "live score of ", "overlay "
+LIVE_SCORE = "live score of "
+OVERLAY = "overlay "
 VIEW_TOPICS = LIVE_SCORE, OVERLAY
 """How topics begin whose results are drawn, and write nothing into Blender's data."""
+_PACKAGES = (__package__, f"{__package__}.overlay")
 
 
 def shared_types() -> dict[type, int]:
@@ -35,7 +39,6 @@ def _setup() -> engine_process.EngineCall:
     return catalog.replace_added, (catalog.added(),)
 
 
-_PACKAGES = (__package__, f"{__package__}.overlay")
 _engine = engine_process.EngineProcess(shared_types, _setup, _PACKAGES)
 
 
@@ -51,7 +54,7 @@ def ask(
 ) -> None:
     """Have a function of a module without Blender called: see `EngineProcess.ask`."""
     if bpy.app.background:
-        engine_process.call_here(function, arguments, deliver, fail, step)
+        engine_process.call_here(function, arguments, deliver, fail, step=step)
         return
     _engine.ask(topic, function, arguments, deliver, fail, step=step, lane=lane)
     if not bpy.app.timers.is_registered(deliver_all):
@@ -70,7 +73,7 @@ def begin(*_: object) -> None:
     """After a file was opened: start the process where there are sensors, while Blender draws."""
     sensors = (each.perception_entropy.is_sensor for each in bpy.data.objects)
     if not bpy.app.background and any(sensors):
-        ask("begin", analysis_calls.clear, (), _ignore, _ignore)
+        ask("begin", analysis_calls.clear, arguments=(), deliver=_ignore, fail=_ignore)
 
 
 def _ignore(_: object) -> None:
@@ -86,7 +89,9 @@ def deliver_all() -> float | None:
         return POLL_S
 
 
-cancel, drop, busy = _engine.cancel, _engine.drop, _engine.busy
+cancel = _engine.cancel
+drop = _engine.drop
+busy = _engine.busy
 
 
 def stop(*_: object) -> None:

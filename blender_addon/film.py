@@ -25,12 +25,25 @@ FORMATS = {WEBM: ("WEBM", "WEBM"), ".mp4": ("MPEG4", "H264")}
 SIZE_PX = 1280, 720
 ENGINE = "BLENDER_WORKBENCH"
 SHOWN = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "LIGHT"}
-BACK, GROUND, DASH = (0.055, 0.06, 0.066, 1.0), (0.12, 0.125, 0.135, 1.0), (0.42, 0.43, 0.45, 1.0)
-INK, FAINT, PLATE = (0.9, 0.9, 0.9, 1.0), (0.7, 0.7, 0.7, 1.0), (0.08, 0.085, 0.09, 1.0)
-HIDES_ALPHA, RAY_M, POST_M = 0.45, 0.035, 0.06
-DASH_M, GAP_M, LANE_M, FAR_M = 3.0, 6.0, 1.75, 240.0
-FOV, SHIFT = math.radians(50.0), -0.13
-SIDE, BASE, ROW, LETTER = 0.93, -0.5, 0.033, 0.024
+BACK = (0.055, 0.06, 0.066, 1.0)
+GROUND = (0.12, 0.125, 0.135, 1.0)
+DASH = (0.42, 0.43, 0.45, 1.0)
+INK = (0.9, 0.9, 0.9, 1.0)
+FAINT = (0.7, 0.7, 0.7, 1.0)
+PLATE = (0.08, 0.085, 0.09, 1.0)
+HIDES_ALPHA = 0.45
+RAY_M = 0.035
+POST_M = 0.06
+DASH_M = 3.0
+GAP_M = 6.0
+LANE_M = 1.75
+FAR_M = 240.0
+FOV = math.radians(50.0)
+SHIFT = -0.13
+SIDE = 0.93
+BASE = -0.5
+ROW = 0.033
+LETTER = 0.024
 """Of the strip: half its width, its lower edge, the height of a row and of letters, as shares of
 half the picture's width."""
 EXPOSURE = 1.3
@@ -57,7 +70,8 @@ def write_film(scene: bpy.types.Scene, study: pe.Study, story: motion.Story, pat
 
 def film_scene(scene: bpy.types.Scene, study: pe.Study, story: motion.Story) -> bpy.types.Scene:
     """Return a new scene that shows a story as the rig of a study sees it."""
-    driven, render = study.drive_by(story), scene.render
+    driven = study.drive_by(story)
+    render = scene.render
     moving = graphics.BodiesInTime.of(driven, study.vehicle, render.fps / render.fps_base)
     film = bpy.data.scenes.new(f"Drive-by {story.name}")
     for obj in scene.objects:
@@ -71,7 +85,7 @@ def film_scene(scene: bpy.types.Scene, study: pe.Study, story: motion.Story) -> 
     _street(stage, story)
     places = {sensor.name: Vector(sensor.pose.position) for sensor in study.rig}
     for body in moving.bodies:
-        _body(stage, camera, moving, body, places)
+        _body(stage, camera, moving, body, places=places)
     _strip(stage, camera, graphics.time_strip(driven), moving.times)
     return film
 
@@ -80,23 +94,31 @@ def _set_up(
     film: bpy.types.Scene, scene: bpy.types.Scene, driven: motion.DriveBy, count: int
 ) -> None:
     """Set how a film is rendered: by Workbench, with what identifies the drive-by in the file."""
-    render, shading = film.render, film.display.shading
-    render.engine, render.fps = ENGINE, scene.render.fps
+    render = film.render
+    shading = film.display.shading
+    render.engine = ENGINE
+    render.fps = scene.render.fps
     render.fps_base = scene.render.fps_base
     render.resolution_x, render.resolution_y = SIZE_PX
-    film.frame_start, film.frame_end = scene.frame_start, scene.frame_start + count - 1
+    film.frame_end = scene.frame_start + count - 1
+    film.frame_start = scene.frame_start
     if hasattr(render.image_settings, "media_type"):  # since 5.0
         render.image_settings.media_type = "VIDEO"
     render.image_settings.file_format = "FFMPEG"
-    render.ffmpeg.constant_rate_factor, render.ffmpeg.gopsize = "HIGH", GOP
-    film.view_settings.view_transform, film.view_settings.exposure = "Standard", EXPOSURE
+    render.ffmpeg.constant_rate_factor = "HIGH"
+    render.ffmpeg.gopsize = GOP
+    film.view_settings.view_transform = "Standard"
+    film.view_settings.exposure = EXPOSURE
     film.display.render_aa = "FXAA"  # samples take four times as long in software
-    shading.light, shading.color_type = "STUDIO", "MATERIAL"
-    shading.show_shadows, shading.shadow_intensity = True, 0.35
+    shading.light = "STUDIO"
+    shading.color_type = "MATERIAL"
+    shading.show_shadows = True
+    shading.shadow_intensity = 0.35
     shading.show_specular_highlight = False
     film.world = bpy.data.worlds.new("Film")
     film.world.color = BACK[:3]
-    render.use_stamp_note, render.stamp_note_text = True, graphics.digest(driven)
+    render.use_stamp_note = True
+    render.stamp_note_text = graphics.digest(driven)
 
 
 class _Stage(NamedTuple):
@@ -125,7 +147,9 @@ class _Stage(NamedTuple):
     ) -> bpy.types.Object:
         """Return a line of text."""
         curve = bpy.data.curves.new(words, "FONT")
-        curve.body, curve.size, curve.align_x = words, size, align
+        curve.body = words
+        curve.size = size
+        curve.align_x = align
         curve.materials.append(_material(words, color))
         return self._add(words, curve)
 
@@ -155,7 +179,8 @@ class _Stage(NamedTuple):
             self.film.camera = own
             return own
         data = bpy.data.cameras.new("Film")
-        data.angle, data.clip_start = FOV, 0.05
+        data.angle = FOV
+        data.clip_start = 0.05
         way = -1.0 if driven.story.speed < 0.0 else 1.0
         seen = [body.positions for body in moving.bodies if body.seen is not None]
         side = -1.0 if float(np.mean([at[:, 1].mean() for at in seen])) > 0.0 else 1.0
@@ -205,9 +230,11 @@ def _body(
 ) -> None:
     """Add a body, lines from the sensors that see it, its name and its moments."""
     alpha = HIDES_ALPHA if body.seen is None else 1.0
-    name, middle = body.actor.name, body.height
+    name = body.actor.name
+    middle = body.height
     box = stage.box(name, graphics.UNSEEN)
-    box.scale, box.display.show_shadows = body.actor.box, True
+    box.scale = body.actor.box
+    box.display.show_shadows = True
     centers = [Vector((float(x), float(y), middle)) for x, y in body.positions]
     stage.keys(box, "location", centers)
     stage.keys(box, "rotation_euler", [(0.0, 0.0, float(turn)) for turn in body.headings])
@@ -215,15 +242,18 @@ def _body(
     stage.keys(box.data.materials[0], "diffuse_color", shades)
     if body.seen is None:
         return
-    eye, turn = camera.matrix_world.translation, camera.matrix_world.to_euler()
-    label, above = stage.words(name, NEAR_TO, INK, "CENTER"), Vector((0.0, 0.0, middle + 0.3))
+    eye = camera.matrix_world.translation
+    turn = camera.matrix_world.to_euler()
+    label = stage.words(name, NEAR_TO, INK, "CENTER")
+    above = Vector((0.0, 0.0, middle + 0.3))
     label.rotation_euler = turn
     stage.keys(label, "location", [center + above for center in centers])
     stage.keys(label, "scale", [[(center - eye).length] * 3 for center in centers])
     for sensor, found in body.by_sensor.items():
         if not found.any():
             continue
-        ray, start = stage.box(f"{sensor} {name}", graphics.UNSEEN), places[sensor]
+        ray = stage.box(f"{sensor} {name}", graphics.UNSEEN)
+        start = places[sensor]
         ray.rotation_mode = "QUATERNION"
         ways = [center - start for center in centers]
         stage.keys(ray, "location", [start + way / 2.0 for way in ways])
@@ -240,7 +270,8 @@ def _body(
         words = stage.words(mark.text, NEAR_TO, mark.color, "CENTER")
         away = (centers[k] - eye).length
         words.location = centers[k] + 1.6 * above + Vector((0.0, 0.0, 1.5 * NEAR_TO * away * row))
-        words.rotation_euler, words.scale = turn, [away] * 3
+        words.rotation_euler = turn
+        words.scale = [away] * 3
 
 
 def _strip(
@@ -248,10 +279,14 @@ def _strip(
 ) -> None:
     """Add the strip in front of the camera, 1 m away; `times` (K,) are those of its cursor [s]."""
     half = math.tan(camera.data.angle / 2.0)
-    aside, up = 2.0 * camera.data.shift_x, 2.0 * camera.data.shift_y
+    aside = 2.0 * camera.data.shift_x
+    up = 2.0 * camera.data.shift_y
     rows = len(strip.names)
-    low, high = BASE + 2.6 * ROW, BASE + (2.6 + rows) * ROW
-    left, right, plate_z = -SIDE + 0.36, SIDE - 0.02, -1.001
+    low = BASE + 2.6 * ROW
+    high = BASE + (2.6 + rows) * ROW
+    left = -SIDE + 0.36
+    right = SIDE - 0.02
+    plate_z = -1.001
 
     def placed(obj: bpy.types.Object, x: float = 0.0, y: float = 0.0, z: float = -0.999) -> None:
         obj.parent = camera

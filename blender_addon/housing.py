@@ -21,6 +21,17 @@ BODY, TRIM, GLASS, MARK = range(4)
 """What a face is made of."""
 CIRCLE_POINTS = 48  # Points of a circle
 MARK_M = 0.001  # How far the arrow that says where ahead is stands out
+KEY = "pe_housing"  # A mesh's own property: the model whose housing it is
+CREASE_RAD = math.radians(30.0)
+Look = tuple[tuple[float, float, float], float, float]
+"""Colour (linear RGB), metallic and roughness."""
+MATERIALS: dict[str, Look] = {
+    "PE housing": ((0.50, 0.52, 0.55), 0.4, 0.45),
+    "PE trim": ((0.035, 0.037, 0.04), 0.0, 0.5),
+    "PE window": ((0.012, 0.016, 0.03), 0.0, 0.08),
+    "PE ahead": ((0.02, 0.42, 0.46), 0.0, 0.5),
+}
+"""In the order of `shapes`."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +73,8 @@ def surface_of(housing: pe.Housing, has_lens: bool) -> Surface:
 
 def can(size: Sequence[float], center: float) -> Surface:
     """An upright can, its window round the optical centre; its base is in z = 0."""
-    radius, top = size[0] / 2.0, size[2] - MARK_M
+    radius = size[0] / 2.0
+    top = size[2] - MARK_M
     half = min(0.26 * size[2], 0.9 * center, 0.9 * (top - center))
     bands = ((0.0, BODY), (center - half, GLASS), (center + half, BODY), (top, BODY))
     rings = [Ring(_circle(radius, z), made_of) for z, made_of in bands]
@@ -71,7 +83,8 @@ def can(size: Sequence[float], center: float) -> Surface:
 
 def box(size: Sequence[float], face: float, front: int = GLASS) -> Surface:
     """A box to the place x of its front, which is made of that; its base is in z = 0."""
-    half, high = size[1] / 2.0, size[2] - MARK_M
+    half = size[1] / 2.0
+    high = size[2] - MARK_M
     corners = np.array([(half, high), (-half, high), (-half, 0.0), (half, 0.0)])
     rings = [(-size[0] / 2.0, BODY), (face, front)]
     made = [Ring(np.column_stack([np.full(4, x), corners]), made_of) for x, made_of in rings]
@@ -80,8 +93,10 @@ def box(size: Sequence[float], face: float, front: int = GLASS) -> Surface:
 
 def camera(size: Sequence[float]) -> Surface:
     """A small box with a lens ahead; its base is in z = 0."""
-    front, face = size[0] / 2.0, 0.15 * size[0]
-    radius, high = 0.36 * min(size[1], size[2]), size[2] - MARK_M
+    front = size[0] / 2.0
+    face = 0.15 * size[0]
+    radius = 0.36 * min(size[1], size[2])
+    high = size[2] - MARK_M
     profile = [(radius, face, TRIM), (radius, front, TRIM), (0.8 * radius, front, GLASS)]
     rings = [Ring(_circle(r, x)[:, [2, 0, 1]], made_of) for r, x, made_of in profile]
     return box(size, face, BODY) + loft(rings).moved(np.array([0.0, 0.0, high / 2.0]))
@@ -89,7 +104,8 @@ def camera(size: Sequence[float]) -> Surface:
 
 def arrow(x: float, z: float, length: float) -> Surface:
     """A flat arrow on top that points ahead."""
-    tip, wing = x + length, 0.45 * length
+    tip = x + length
+    wing = 0.45 * length
     corners = [(tip, 0.0), (x, wing), (x + 0.25 * length, 0.0), (x, -wing)]
     rings = [
         Ring(np.array([(*each, height) for each in corners]), MARK) for height in (z, z + MARK_M)
@@ -119,19 +135,6 @@ def _circle(radius: float, height: float) -> Floats:
     angle = np.arange(CIRCLE_POINTS) * (2.0 * np.pi / CIRCLE_POINTS)
     flat = radius * np.cos(angle), radius * np.sin(angle)
     return np.stack([*flat, np.full(CIRCLE_POINTS, height)], axis=1)
-
-
-KEY = "pe_housing"  # A mesh's own property: the model whose housing it is
-CREASE_RAD = math.radians(30.0)
-Look = tuple[tuple[float, float, float], float, float]
-"""Colour (linear RGB), metallic and roughness."""
-MATERIALS: dict[str, Look] = {
-    "PE housing": ((0.50, 0.52, 0.55), 0.4, 0.45),
-    "PE trim": ((0.035, 0.037, 0.04), 0.0, 0.5),
-    "PE window": ((0.012, 0.016, 0.03), 0.0, 0.08),
-    "PE ahead": ((0.02, 0.42, 0.46), 0.0, 0.5),
-}
-"""In the order of `shapes`."""
 
 
 def measured_housing(model: str) -> bpy.types.Mesh | None:
@@ -181,10 +184,12 @@ def housing_material(name: str, look: Look | None = None) -> bpy.types.Material:
     if bpy.app.version < (5, 0):
         material.use_nodes = True
     material.diffuse_color = (*colour, 1.0)
-    material.metallic, material.roughness = metallic, roughness
+    material.metallic = metallic
+    material.roughness = roughness
     shader = material.node_tree.nodes["Principled BSDF"].inputs
     shader["Base Color"].default_value = (*colour, 1.0)
-    shader["Metallic"].default_value, shader["Roughness"].default_value = metallic, roughness
+    shader["Metallic"].default_value = metallic
+    shader["Roughness"].default_value = roughness
     return material
 
 

@@ -34,7 +34,8 @@ def query(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, point: Queried
     sensors = bridge.possible_sensors(sensor_cache.sensors(scene), depsgraph)
     settings = scene.perception_entropy
     try:
-        space, model = bridge.space_of(settings), bridge.perception_of(settings)
+        space = bridge.space_of(settings)
+        model = bridge.perception_of(settings)
         prior = bridge.prior_from_scene(scene)
         rig = pe.Rig(sensors)
     except pe.InputError as error:
@@ -48,7 +49,7 @@ def query(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, point: Queried
         store_answer(name, LocationAnswer(point, (str(error),)))
 
     given = rig, space, prior, vehicle, point, model
-    engine_process.ask(TOPIC, advice.ask_place, given, deliver, fail)
+    engine_process.ask(TOPIC, advice.ask_place, given, deliver, fail=fail)
 
 
 def store_answer(scene_name: str, answer: LocationAnswer) -> None:

@@ -12,6 +12,9 @@ OnProgress = Callable[[float], None]
 SCORED_SHARE = 0.25
 """About which share of an export is done after the score."""
 FIGURES_SHARE = 0.1  # About which share of a score's time its key figures take
+PICTURE_PX = (320, 200)
+PICTURE_TRIANGLES = 20_000
+"""Of the picture of a variant: width and height, and triangles of its vehicle at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,11 +48,15 @@ class ExportJob(jobs.Job):
         scored: bool = False,
     ) -> None:
         super().__init__(study)
-        self._stage, self._make, self._write, self._scored = stage, make, write, scored
+        self._stage = stage
+        self._make = make
+        self._write = write
+        self._scored = scored
         self.written: WrittenFiles | None = None
 
     def __iter__(self) -> Iterator[jobs.Progress]:
-        score, begin = jobs.ScoreJob(self.study), SCORED_SHARE if self._scored else 0.0
+        score = jobs.ScoreJob(self.study)
+        begin = SCORED_SHARE if self._scored else 0.0
         for step in score if self._scored else ():
             if self.stopped:
                 score.drop()
@@ -125,10 +132,6 @@ def _write_one(path: Path, made: bytes) -> WrittenFiles:
     return WrittenFiles((path,))
 
 
-PICTURE_PX, PICTURE_TRIANGLES = (320, 200), 20_000
-"""Of the picture of a variant: width and height, and triangles of its vehicle at most."""
-
-
 class PendingVariant(NamedTuple):
     """A variant without a valid score, or without key figures."""
 
@@ -172,7 +175,8 @@ class CompareJob(jobs.Job):
                     yield self._progress(name, len(compared), step)
                 if job.outcome is None:
                     break
-                score, known = job.outcome.after, job.outcome.figures_after
+                score = job.outcome.after
+                known = job.outcome.figures_after
             if self.stopped and score is None:
                 break
             looking = jobs.Progress("seeing", 1.0 - FIGURES_SHARE)

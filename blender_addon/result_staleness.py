@@ -78,7 +78,8 @@ def update_result() -> None:
         stale = settings.has_result and now.text != settings.result_signature
         changed = driven and bridge.clear_stale_stories(settings, now.text)
         if stale != settings.result_stale:
-            settings.result_stale, changed = stale, True
+            settings.result_stale = stale
+            changed = True
         if changed:
             signals.view_changed.emit()  # a timer that sets a property does not redraw panels
 

@@ -15,6 +15,18 @@ from .engine import catalog, kinds, pe, studies
 DEFAULT_MODEL = "Pandar64"
 LONGEST_LINE = 4096
 """Letters of a line with the keys of a table."""
+METRES = studies.Number(0.0, unit="m")
+PIXELS = studies.Whole(1)
+LINE = studies.Name(max_length=LONGEST_LINE)
+ELEVATION = studies.Number(-90.0, 90.0)
+AZIMUTH = studies.Number(-360.0, 360.0)
+CAN = pe.Housing("cylinder", (0.1, 0.1, 0.09), (0.0, 0.0, 0.045), "typical size")
+VISOR = pe.Housing("box", (0.1, 0.13, 0.05), (0.05, 0.0, 0.025), "typical size")
+SMALL_BOX = pe.Housing("box", (0.045, 0.03, 0.03), (0.0225, 0.0, 0.0145), "typical size")
+RADAR_BOX = pe.Housing("box", (0.03, 0.13, 0.09), (0.015, 0.0, 0.0), "typical size")
+MEMBRANE = pe.Housing("box", (0.02, 0.03, 0.03), (0.01, 0.0, 0.0), "typical size")
+CAN_FOV = math.radians(200.0)
+"""A LiDAR that looks around less than this has its back to something: no window all round."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,14 +49,6 @@ class Mount:
 
 def _figure(default: Any, rule: Any, label: str, text: str, **panel: Any) -> Any:
     return studies.setting(default, rule, text, studies.Panel("", label, **panel), scored=True)
-
-
-METRES, PIXELS, LINE = (
-    studies.Number(0.0, unit="m"),
-    studies.Whole(1),
-    studies.Name(max_length=LONGEST_LINE),
-)
-ELEVATION, AZIMUTH = studies.Number(-90.0, 90.0), studies.Number(-360.0, 360.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,15 +114,6 @@ class KindRow:
     """From a model to the camera for Blender's view; None without a view."""
 
 
-CAN = pe.Housing("cylinder", (0.1, 0.1, 0.09), (0.0, 0.0, 0.045), "typical size")
-VISOR = pe.Housing("box", (0.1, 0.13, 0.05), (0.05, 0.0, 0.025), "typical size")
-SMALL_BOX = pe.Housing("box", (0.045, 0.03, 0.03), (0.0225, 0.0, 0.0145), "typical size")
-RADAR_BOX = pe.Housing("box", (0.03, 0.13, 0.09), (0.015, 0.0, 0.0), "typical size")
-MEMBRANE = pe.Housing("box", (0.02, 0.03, 0.03), (0.01, 0.0, 0.0), "typical size")
-CAN_FOV = math.radians(200.0)
-"""A LiDAR that looks around less than this has its back to something: no window all round."""
-
-
 def _lidar_housing(model: pe.Lidar) -> pe.Housing:
     low, high = model.horizontal_fov
     return CAN if high - low > CAN_FOV else VISOR
@@ -126,13 +121,13 @@ def _lidar_housing(model: pe.Lidar) -> pe.Housing:
 
 ROWS = {
     "lidar": KindRow(
-        Mount(DEFAULT_MODEL, False, 1.8, "SPHERE", 0.12),
+        Mount(DEFAULT_MODEL, at_front=False, height_m=1.8, display="SPHERE", size_m=0.12),
         _lidar_housing,
         own_about="Beams of channels that are evenly spread",
         own_fields=tuple(studies.settings_of(OwnLidar)),
     ),
     "camera": KindRow(
-        Mount("Camera 90 deg", True, 1.5, "ARROWS", 0.25),
+        Mount("Camera 90 deg", at_front=True, height_m=1.5, display="ARROWS", size_m=0.25),
         lambda _model: SMALL_BOX,
         own_about="A pinhole camera with square pixels, or one with a lens of its own",
         own_fields=tuple(studies.settings_of(OwnCamera)),
@@ -140,17 +135,20 @@ ROWS = {
         camera=lambda model: model,
     ),
     "radar": KindRow(
-        Mount("Continental ARS408-21", True, 0.5, "CONE", 0.12),
+        Mount("Continental ARS408-21", at_front=True, height_m=0.5, display="CONE", size_m=0.12),
         lambda _model: RADAR_BOX,
         own_about="Modes with their azimuths and ranges, as a study's table has them",
     ),
     "ultrasonic": KindRow(
-        Mount("Bosch Ultrasonic 3.1", True, 0.5, "CIRCLE", 0.05),
+        Mount("Bosch Ultrasonic 3.1", at_front=True, height_m=0.5, display="CIRCLE", size_m=0.05),
         lambda _model: MEMBRANE,
         own_about="A cone and a range, as a study's table has them",
     ),
 }
-OTHER = KindRow(Mount(None, True, 1.5, "ARROWS", 0.25), lambda _model: SMALL_BOX)
+OTHER = KindRow(
+    Mount(usual=None, at_front=True, height_m=1.5, display="ARROWS", size_m=0.25),
+    lambda _model: SMALL_BOX,
+)
 """Of a kind that has no row."""
 
 
@@ -169,7 +167,8 @@ def has_view(model: str) -> bool:
 
 def mount_of(kind: str) -> Mount:
     """Return how sensors of a kind are added."""
-    mount, known = row_of(kind).mount, kinds.KINDS.get(kind)
+    mount = row_of(kind).mount
+    known = kinds.KINDS.get(kind)
     return mount if known is None else replace(mount, stand_off_m=known.stand_off_m)
 
 

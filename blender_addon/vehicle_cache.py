@@ -129,7 +129,8 @@ def vehicle_updated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> b
 def _objects_with_instances(collection: bpy.types.Collection) -> set[bpy.types.Object]:
     """Objects of a collection, and of those that it holds instances of."""
     objects: set[bpy.types.Object] = set()
-    waiting, seen = [collection], {collection}
+    waiting = [collection]
+    seen = {collection}
     while waiting:
         members = set(waiting.pop().all_objects)
         objects |= members

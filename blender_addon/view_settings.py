@@ -11,16 +11,24 @@ from .engine import studies
 
 DEFAULT_CLASS = "pedestrian"
 AVERAGE = "AVERAGE"
-FITTED, WHOLE = "FITTED", "WHOLE"
+FITTED = "FITTED"
+WHOLE = "WHOLE"
 """The range of values that the colours of the ground map cover."""
-SELECTED, ALL, RIG = "SELECTED", "ALL", "RIG"
-BY_STATE, BY_SENSOR, BY_CHANNEL = "STATE", "SENSOR", "CHANNEL"
+SELECTED = "SELECTED"
+ALL = "ALL"
+RIG = "RIG"
+BY_STATE = "STATE"
+BY_SENSOR = "SENSOR"
+BY_CHANNEL = "CHANNEL"
 HEIGHTS_M = {AVERAGE: None, "H0": 0.0, "H50": 0.5, "H100": 1.0, "H150": 1.5}
 MIN_LENGTH_M = 0.1
 
-OPACITY, SHARE = studies.Number(0.05, 1.0), studies.Number(0.0, 1.0)
-METRES, LENGTH = studies.Number(0.5, unit="m"), studies.Number(MIN_LENGTH_M, unit="m")
-COUNT, KEY = studies.Whole(1), studies.Whole(0)
+OPACITY = studies.Number(0.05, 1.0)
+SHARE = studies.Number(0.0, 1.0)
+METRES = studies.Number(0.5, unit="m")
+LENGTH = studies.Number(MIN_LENGTH_M, unit="m")
+COUNT = studies.Whole(1)
+KEY = studies.Whole(0)
 
 
 def _switch(default: bool, label: str, text: str) -> bool:

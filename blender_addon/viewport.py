@@ -25,7 +25,8 @@ VIEW = bpy.types.SpaceView3D
 FONT = 0
 SMALL = 11.0
 """Size of most text, in pixels of an interface at scale 1; so are all lengths of drawers."""
-MARGIN, HUD_ROW = 14.0, 30.0
+MARGIN = 14.0
+HUD_ROW = 30.0
 """From the toolbar to a plate, and the height of the panel of the last operation."""
 INK: Rgba = (0.95, 0.95, 0.95, 1.0)
 FAINT: Rgba = (0.74, 0.74, 0.74, 1.0)
@@ -36,6 +37,9 @@ _square: list[gpu.types.GPUBatch] = []
 _gradients: dict[tuple[Rgba, ...], gpu.types.GPUBatch] = {}
 """Uploaded once, in the unit square, and drawn at any place and size."""
 _plates: dict[int, dict[str, PlateBox]] = {}
+STRIP = "strip"
+CAMERAS = "cameras"
+"""Plates along the lower edge, from below: those in the corners stand above them."""
 
 
 def redraw_editors() -> None:
@@ -111,7 +115,8 @@ def fill_box(box: PlateBox, color: Rgba) -> None:
 
 def fill_gradient(box: PlateBox, colors: Sequence[Rgba]) -> None:
     """Fill a box with a row of colours that run into each other, from left to right."""
-    smooth, row = shader("SMOOTH_COLOR"), tuple(colors)
+    smooth = shader("SMOOTH_COLOR")
+    row = tuple(colors)
     if row not in _gradients:
         corners = [(i / (len(row) - 1), y, 0.0) for i in range(len(row)) for y in (0.0, 1.0)]
         shades = [color for color in row for _ in range(2)]
@@ -189,15 +194,12 @@ def is_lower_left(context: bpy.types.Context) -> bool:
 
 def beside_toolbar(context: bpy.types.Context) -> float:
     """Return where a plate in the lower left corner begins, from the left: clear of the toolbar."""
-    region, left = context.region, 0.0
+    region = context.region
+    left = 0.0
     for other in context.area.regions:
         if other.type == "TOOLS" and other.x < region.x + region.width / 2:
             left = max(left, other.x + other.width - region.x)
     return left + MARGIN * ui_scale()
-
-
-STRIP, CAMERAS = "strip", "cameras"
-"""Plates along the lower edge, from below: those in the corners stand above them."""
 
 
 def sidebar_left(context: bpy.types.Context) -> float:

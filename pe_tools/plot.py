@@ -32,10 +32,13 @@ QUANTITY_KEYS = {"entropy": ENTROPY, "coverage": COVERAGE}
 VIEWS = {"top": (0, 1, 2, 1.0), "side": (0, 2, 1, -1.0), "front": (1, 2, 0, 1.0)}
 """Axes to the right and up, the one towards the reader, and its sign, by view."""
 LABELS = ("x, forward [m]", "y, to the left [m]", "z, up [m]")
-LIGHT, DARK = 0.93, 0.55  # Grey of a surface that faces the reader, and of one seen from its edge
+# Grey of a surface that faces the reader, and of one seen from its edge
+LIGHT = 0.93
+DARK = 0.55
 BORESIGHT_M = 0.5  # Length of the line in which a sensor looks
 MOST_BEAMS = 60_000
-SKY, GREY = "#56B4E9", "#8A8A8A"
+SKY = "#56B4E9"
+GREY = "#8A8A8A"
 PALETTE = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7")
 """Of Okabe and Ito, safe for colour-blind readers."""
 COLORS = (*PALETTE, SKY, GREY)
@@ -70,7 +73,8 @@ def ground(
     axes = _axes(axes, (8.0, 4.4))
     rig = study.rig if rig is None else rig
     seen = study.sight().ground(rig, height, step)
-    values, (dark, bright) = getattr(seen, quantity), fitted_bounds(seen, key)
+    values = getattr(seen, quantity)
+    dark, bright = fitted_bounds(seen, key)
     colors = "viridis" if quantity == "entropy" else "cividis"
     half = seen.step / 2.0
     image = axes.imshow(
@@ -139,7 +143,8 @@ def beams(study: Study, sensor: str | Sensor, *, axes: Axes | None = None) -> Ax
     found = cast(sensor, study.vehicle, MOST_BEAMS)
     axes = _axes(axes, (8.0, 3.6))
     x, y, z = found.directions.T
-    azimuth, elevation = np.degrees(np.arctan2(y, x)), np.degrees(np.arcsin(z))
+    azimuth = np.degrees(np.arctan2(y, x))
+    elevation = np.degrees(np.arcsin(z))
     part = np.full(len(found.face), -1)
     if study.vehicle is not None:
         part[found.occluded] = np.asarray(study.vehicle.parts)[found.face[found.occluded]]
@@ -188,7 +193,8 @@ def compare(scores: Mapping[str, Score], *, axes: Axes | None = None) -> Axes:
     axes = _axes(axes, (8.0, 0.9 + 0.27 * len(names)))
     rows = np.arange(len(names))
     values = np.array([[table.get(name, np.nan) for name in names] for table in tables])
-    low, high = np.nanmin(values, axis=0), np.nanmax(values, axis=0)
+    low = np.nanmin(values, axis=0)
+    high = np.nanmax(values, axis=0)
     axes.hlines(rows, low, high, color=GREY, lw=1.5, alpha=0.6, zorder=1)
     for number, (name, row) in enumerate(zip(scores, values, strict=True)):
         color = PALETTE[number % len(PALETTE)]

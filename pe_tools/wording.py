@@ -9,6 +9,13 @@ from pe_core.base.values import shown_share
 from pe_core.scoring.requirements import Reason, VerdictSummary
 from pe_core.scoring.sight import shown_end
 
+PARTS_NAMED = 3  # So many parts of the vehicle are named in a warning
+REASONS = {
+    "too few": "too few on it",
+    "in part": "seen in part at most",
+    "not counted": "of a kind that does not count",
+}  # Texts of the codes that are not their own text
+
 
 def percent(share: float, digits: int | None = None) -> str:
     """Return a share, 0 to 1, in percent with `digits` decimals: "81.4%"; less than 1 is less than
@@ -125,7 +132,6 @@ def _not_centred(_part: str | None, axis: str, off: float) -> str:
     return f"not centred: its axis is {side}; mirror images of sensors would be off the vehicle"
 
 
-PARTS_NAMED = 3  # So many parts of the vehicle are named in a warning
 WARNINGS: Mapping[str, Callable[..., str]] = {
     "fragile": lambda _, rise, position, angle, tolerant: (
         f"{off_by(position, angle)} (1 sigma) it is {rise:.2f} nats worse on average"
@@ -206,13 +212,6 @@ WARNINGS: Mapping[str, Callable[..., str]] = {
 }  # How warnings are said, by code: of the part of the vehicle and the warning's values
 
 
-REASONS = {
-    "too few": "too few on it",
-    "in part": "seen in part at most",
-    "not counted": "of a kind that does not count",
-}  # Texts of the codes that are not their own text
-
-
 def reason_text(reason: Reason) -> str:
     """Say why a sensor does not see a body: a part of the vehicle, or "out of view", ..."""
     return reason.part or REASONS.get(reason.code, reason.code)
@@ -232,7 +231,8 @@ def margin_text(verdict: VerdictSummary, noun: str = "") -> str:
     parts = [] if verdict.blind_m2 is None else [f"blind {verdict.blind_m2:.2f} m2"]
     if verdict.margin_m is not None:
         at_least = "at least " if verdict.margin_at_least else ""
-        grows, fails = f"{noun}{at_least}{verdict.margin_m:.2f} m", f"{-verdict.margin_m:.2f} m"
+        grows = f"{noun}{at_least}{verdict.margin_m:.2f} m"
+        fails = f"{-verdict.margin_m:.2f} m"
         parts.append(grows if verdict.met else f"fails {fails} inside")
     elif verdict.blind_m2 is None and not verdict.met:
         parts.append(f"fails at {verdict.failing:,} of {verdict.samples:,} places")

@@ -59,7 +59,8 @@ def main(
             with not_noting_inputs():  # a study reads results of its own to go on from them
                 return study(args, folder)
         except ImportError as error:
-            hint, found = "pip install -e '.[studies]'", " ".join(str(error).split())
+            hint = "pip install -e '.[studies]'"
+            found = " ".join(str(error).split())
             raise InputError("studies", "package", hint, found) from error
 
     leave(run(answer))

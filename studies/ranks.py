@@ -26,6 +26,13 @@ MAX_PLACEMENTS = 9
 """9! permutations are 360 thousand; one more placement would make 3.6 million."""
 SAME = 1e-9
 """Correlations that differ by less than this are equal."""
+MIN_GROUP = 3
+"""A group of fewer placements has no rank correlation worth the name."""
+STUDENT = {2: 4.302653, 3: 3.182446, 5: 2.570582}
+"""Student's quantile at 0.975 by degrees of freedom."""
+PERMUTED_AT_ONCE = 500
+AT_ONCE = 2_000_000
+"""Comparisons that are done at once, to limit memory."""
 
 
 def midranks(values: ArrayLike) -> Floats:
@@ -52,7 +59,8 @@ def standard_ranks(values: ArrayLike) -> Floats:
 
 def spearman(first: ArrayLike, second: ArrayLike) -> float | None:
     """Return Spearman's rho; None where all values of one of the two are equal."""
-    a, b = standard_ranks(first), standard_ranks(second)
+    a = standard_ranks(first)
+    b = standard_ranks(second)
     return float((a * b).sum()) if a.any() and b.any() else None
 
 
@@ -116,7 +124,8 @@ def min_significant_rho(count: int, significance: float = 0.05) -> float | None:
 def holm(p_values: Sequence[float]) -> list[float]:
     """Return Holm's adjusted p values, in the same order."""
     count = len(p_values)
-    adjusted, highest = [0.0] * count, 0.0
+    adjusted = [0.0] * count
+    highest = 0.0
     for rank, index in enumerate(sorted(range(count), key=lambda i: p_values[i])):
         highest = max(highest, min(1.0, (count - rank) * p_values[index]))
         adjusted[index] = highest
@@ -136,14 +145,6 @@ def agreement(aps: Sequence[Sequence[float]]) -> float | None:
 
 
 # Placements in groups, with seeds.
-
-MIN_GROUP = 3
-"""A group of fewer placements has no rank correlation worth the name."""
-STUDENT = {2: 4.302653, 3: 3.182446, 5: 2.570582}
-"""Student's quantile at 0.975 by degrees of freedom."""
-PERMUTED_AT_ONCE = 500
-AT_ONCE = 2_000_000
-"""Comparisons that are done at once, to limit memory."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,7 +228,9 @@ def partial_rho(score: Floats, ap: Floats, given: Floats, members: Sequence[Ints
     parts = []
     for index in members:
         x, y, z = (standard_ranks(w[..., index]) for w in (score, ap, given))
-        xy, xz, yz = (x * y).sum(axis=-1), (x * z).sum(axis=-1), (y * z).sum(axis=-1)
+        xy = (x * y).sum(axis=-1)
+        xz = (x * z).sum(axis=-1)
+        yz = (y * z).sum(axis=-1)
         free = np.sqrt(np.maximum((1.0 - xz**2) * (1.0 - yz**2), 0.0))
         parts.append(np.where(free > SAME, (xy - xz * yz) / np.maximum(free, SAME), 0.0))
     return np.mean(parts, axis=0)
@@ -251,7 +254,8 @@ def permutation_p_beyond(
 ) -> float:
     """Return the two-sided p of the partial rho, given a third, as `permutation_p`."""
     observed = abs(float(rho_statistic(score, samples, given)(samples.whole)))
-    rng, extreme = np.random.default_rng([seed, 2]), 0
+    rng = np.random.default_rng([seed, 2])
+    extreme = 0
     for block in blocks(rule.permutations, PERMUTED_AT_ONCE):
         count = block.stop - block.start
         ap = np.tile(samples.ap, (count, 1))
@@ -272,7 +276,8 @@ def permutation_p(score: Floats, samples: PlacementSamples, rule: Any, seed: int
     rng = np.random.default_rng([seed, 2])
     total = np.zeros(rule.permutations)
     for index in samples.members:
-        fixed, moved = standard_ranks(score[index]), standard_ranks(samples.ap[index])
+        fixed = standard_ranks(score[index])
+        moved = standard_ranks(samples.ap[index])
         tiled = np.broadcast_to(moved, (rule.permutations, len(index)))
         total += (rng.permuted(tiled, axis=1) * fixed).sum(axis=1)
     extreme = np.abs(total / len(samples.members)) >= abs(observed) - SAME
@@ -310,7 +315,8 @@ def bca_interval(
     BCa: Efron, Better bootstrap confidence intervals, JASA 82 (1987). The bootstraps are those of
     `interval`; the acceleration is the jackknife's, a placement left out at a time.
     """
-    statistic, every = rho_statistic(values, samples, given), np.arange(len(values))
+    statistic = rho_statistic(values, samples, given)
+    every = np.arange(len(values))
     rhos = np.concatenate([statistic(portion) for portion in resamples(samples, rule, seed)])
     rho = float(statistic(samples.whole))
     normal = NormalDist()

@@ -96,7 +96,8 @@ def compute(
                 total = results.loaded + len(tasks)
                 futures = {pool.submit(_timed, task): task.name for task in tasks}
                 for future in as_completed(futures):
-                    name, (value, seconds) = futures[future], future.result()
+                    name = futures[future]
+                    value, seconds = future.result()
                     results.add(name, value, seconds)
                     print_progress(f"[{len(results.entries)}/{total}] {name}  {seconds:.1f} s")
         except BaseException:  # Ctrl-C and SIGTERM end the workers in the middle of a task

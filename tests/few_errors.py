@@ -15,7 +15,8 @@ from pe_core.study import suggestion
 
 ROBUSTNESS = importlib.import_module("pe_core.search.tolerance")
 """The module: its package has a function of this name."""
-WORKSHOP, OBJECTS = ROBUSTNESS.WORKSHOP, sight.ObjectEvaluator
+WORKSHOP = ROBUSTNESS.WORKSHOP
+OBJECTS = sight.ObjectEvaluator
 HEIGHTS = sight.SECTOR_HEIGHTS_M
 FEW_SCENES = 16
 FEW_PLACES = {"HELP_PLACES": 8, "ADD_PLACES": 24, "ADD_COMPARED": 2}

@@ -22,7 +22,8 @@ def pairs(first: Iterable, second: Iterable) -> list[tuple]:
     The default is a diagonal: as many combinations as the longer parameter has values. Thorough
     tests take two, the second a step beside the first.
     """
-    rows, columns = list(first), list(second)
+    rows = list(first)
+    columns = list(second)
     if len(rows) < len(columns):
         return [(row, column) for column, row in pairs(columns, rows)]
     beside = range(min(2, len(columns)) if THOROUGH else 1)

@@ -210,7 +210,8 @@ def build() -> Path:
     archive.parent.mkdir(exist_ok=True)
     command = extension_command()
     with tempfile.TemporaryDirectory(prefix="pe-extension-") as scratch:
-        staged, built = Path(scratch, "perception_entropy"), Path(scratch, "built.zip")
+        staged = Path(scratch, "perception_entropy")
+        built = Path(scratch, "built.zip")
         stage(staged)
         run_tool(command, "validate", str(staged))
         run_tool(command, "build", f"--source-dir={staged}", f"--output-filepath={built}")

@@ -15,7 +15,9 @@ import bpy
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.append(str(ROOT))
 VEHICLE = ROOT / "blend_assets" / "sedan.blend"
-LIDAR, CAMERA, CAMERA_MODEL = "roof_lidar", "front_camera", "Camera 60 deg"
+LIDAR = "roof_lidar"
+CAMERA = "front_camera"
+CAMERA_MODEL = "Camera 60 deg"
 ABOVE_ROOF_M = 0.1
 """Height of a sensor's optical centre above the surface that it is mounted on."""
 ASIDE_M = 0.35
@@ -29,11 +31,13 @@ def make(start: Path) -> None:
     bpy.ops.wm.open_mainfile(filepath=str(VEHICLE), load_ui=False)
     settings = bpy.context.scene.perception_entropy
     bpy.ops.pe.add_sensor(model=CAMERA_MODEL)
-    camera, lidar = bpy.context.object, bpy.data.objects[LIDAR]
+    camera = bpy.context.object
+    lidar = bpy.data.objects[LIDAR]
     camera.name = CAMERA
     lidar.location = (camera.location.x, ASIDE_M, camera.location.z)
     roof = settings.mounts.add()
-    roof.name, roof.standoff = "roof", ABOVE_ROOF_M
+    roof.name = "roof"
+    roof.standoff = ABOVE_ROOF_M
     roof.parts.add().part = bpy.data.objects["roof"]
     for sensor in (lidar, camera):
         bpy.ops.pe.mount_sensor(name=sensor.name, mount=roof.name)

@@ -35,7 +35,8 @@ from pe_tools.page.pictures.sight_plans import requirement_plan  # noqa: E402
 from pe_tools.page.pictures.vehicle_picture import vehicle_picture  # noqa: E402
 from pe_tools.wording import verdict_text  # noqa: E402
 
-FOLDER, PAGES = ROOT / "examples", ROOT / "docs" / "examples"
+FOLDER = ROOT / "examples"
+PAGES = ROOT / "docs" / "examples"
 IMAGES = ROOT / "docs" / "images"
 SHOWN = {
     "robotaxi_sedan": "child beside the doors",
@@ -45,7 +46,9 @@ SHOWN = {
 }
 """The projects, and the requirement whose plan is on the page, before and after."""
 PICTURE_PX = (960, 480)
-DECIDED, FIGURES, RESULT = "decided.toml", "figures.json", "review.html"
+DECIDED = "decided.toml"
+FIGURES = "figures.json"
+RESULT = "review.html"
 CLASS = "pedestrian"
 MARK = re.compile(r"(<!--=([\w., ]+)-->)(.*?)(<!--/-->)", re.DOTALL)
 Values = dict[str, str]
@@ -115,7 +118,8 @@ def write_decided(name: str, study: pe.Study) -> None:
 
 def figures_of(result: Result) -> Values:
     """Return the figures of a study as the page has them, by name."""
-    score, study = result.outcome.after, result.study
+    score = result.outcome.after
+    study = result.study
     sight = study.sight()
     key = advice.KeyFigures.of_rig(sight, study.rig)
     values = {
@@ -196,7 +200,8 @@ def plan(study: pe.Study, name: str) -> str:
 
 def draw(name: str) -> None:
     """Write the pictures of a project's page."""
-    last, first = (pe.load_study(FOLDER / name / DECIDED), pe.load_study(tried(name)[0]))
+    last = pe.load_study(FOLDER / name / DECIDED)
+    first = pe.load_study(tried(name)[0])
     png = vehicle_picture(last.vehicle, last.rig, PICTURE_PX)
     (IMAGES / f"example_{name}.png").write_bytes(png)
     for which, study in (("before", first), ("after", last)):

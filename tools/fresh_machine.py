@@ -64,7 +64,8 @@ class Machine:
     """A Debian folder that lines are typed into."""
 
     def __init__(self, folder: Path, user: str = "root") -> None:
-        self.folder, self.user = folder, user
+        self.folder = folder
+        self.user = user
         self.home = "/root" if user == "root" else f"/home/{user}"
         self.env = {"PATH": BARE_PATH, "LC_ALL": "C.UTF-8", "DEBIAN_FRONTEND": "noninteractive"}
         self.env |= self._lent_certificates()
@@ -110,15 +111,17 @@ class Machine:
         """
         activated = ""
         for line in lines:
-            begin, before = time.monotonic(), self.megabytes()
+            begin = time.monotonic()
+            before = self.megabytes()
             failed = False
             try:
                 as_root = line.startswith("apt-get")
                 printed = self.type(activated + line, where=where, as_root=as_root)
             except Failed as failure:
-                printed, failed = failure.args[1], True
+                printed = failure.args[1]
+                failed = True
             seconds = time.monotonic() - begin
-            yield Step(line, seconds, self.megabytes() - before, printed, failed)
+            yield Step(line, seconds, self.megabytes() - before, printed, failed=failed)
             if failed:
                 return
             if found := re.search(r"(^|&& )(\. \S+/activate)$", line):
@@ -215,7 +218,9 @@ def instructions(text: str) -> Iterator[tuple[str, str]]:
 
 def follow_dockerfile(path: Path, folder: Path) -> list[Step]:
     """Build the image of a Dockerfile in a folder, and run its command with --version."""
-    steps, where, machine = [], "/", None
+    steps = []
+    where = "/"
+    machine = None
     for name, rest in instructions(path.read_text("utf-8")):
         if name == "FROM":
             suite = rest.removeprefix("debian:").removesuffix("-slim")

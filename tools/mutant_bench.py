@@ -38,9 +38,11 @@ PRELOADED = ("numpy", "numpy.testing", "pytest", "xdist.scheduler", "concurrent.
 
 MEMORY_BYTES = 6 << 30
 """What a mutant may ask for: some ask for all there is."""
-MIN_CPU_S, CPU_FACTOR = 20.0, 4.0
+MIN_CPU_S = 20.0
+CPU_FACTOR = 4.0
 """A mutant that computes this many times as long as no mutant, and this at least, does not end."""
-WALL_FACTOR, MIN_WALL_S = 15.0, 240.0
+WALL_FACTOR = 15.0
+MIN_WALL_S = 240.0
 """A mutant that waits for ever computes nothing; a busy machine must not look like that."""
 BASELINE_CPU_S = 900.0
 

@@ -33,7 +33,10 @@ from mutant_bench import ROOT, Bench, Reached, by_function, function_at, recorde
 
 SETTINGS = ROOT / "tests" / "mutants.toml"
 
-KILLED, SURVIVED, TIMED_OUT, SAME = "killed", "survived", "timed out", "equivalent"
+KILLED = "killed"
+SURVIVED = "survived"
+TIMED_OUT = "timed out"
+SAME = "equivalent"
 QUICK_FILES = 2
 UNKNOWN_TEST = (4, 5)
 """Pytest's exit statuses when it does not find a test by its name."""
@@ -114,7 +117,8 @@ class Drawing:
 def _places(file: str) -> Iterator[tuple[str, Way]]:
     """Yield all that could be changed in a file, by a name of the place."""
     source = (ROOT / file).read_text("utf-8")
-    nodes, lines = list(ast_nodes(get_ast(source))), source.splitlines()
+    nodes = list(ast_nodes(get_ast(source)))
+    lines = source.splitlines()
     unread = _unread(source)
     for name in sorted(operator_names()):
         operator = get_operator(name)
@@ -158,10 +162,19 @@ def _first_line(node: ast.AST) -> int:
 def _made(room: str, way: Way) -> Mutant:
     source = (ROOT / way.file).read_text("utf-8")
     code = mutate_code(source, get_operator(way.operator)(), way.occurrence)
-    old, new = source.splitlines(), code.splitlines()
+    old = source.splitlines()
+    new = code.splitlines()
     becomes = new[way.number - 1].strip() if len(old) == len(new) else REMOVED
     function = function_at(source, way.number)
-    return Mutant(room, way.file, way.number, old[way.number - 1].strip(), becomes, code, function)
+    return Mutant(
+        room,
+        way.file,
+        way.number,
+        old[way.number - 1].strip(),
+        becomes=becomes,
+        code=code,
+        function=function,
+    )
 
 
 def slips(table: list[dict[str, str]], rooms: list[Room]) -> list[Mutant]:
@@ -250,7 +263,8 @@ class Results:
     """
 
     def __init__(self, path: Path | None, tests: str) -> None:
-        self._path, self._tests = path, tests
+        self._path = path
+        self._tests = tests
         self._lock = threading.Lock()
         self._stored = json.loads(path.read_text("utf-8")) if path and path.exists() else {}
 
@@ -377,7 +391,8 @@ def main() -> int:
     parser.add_argument("--resume", type=Path, metavar="FOLDER", help="keep results there, go on")
     args = parser.parse_args()
     settings = tomllib.loads(SETTINGS.read_text("utf-8"))
-    rooms, drawing = _rooms(settings["room"], args.rooms), Drawing(settings["seed"])
+    rooms = _rooms(settings["room"], args.rooms)
+    drawing = Drawing(settings["seed"])
     mutants = [m for room in rooms for m in drawing.of(room)[: args.most]]
     mutants += slips(settings["slip"], rooms)
     if args.list:

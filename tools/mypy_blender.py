@@ -39,8 +39,15 @@ WITH_SETTINGS = {f"{BLENDER}{name}" for name in ("Scene", "Object")}
 SUBCLASSED = {
     f"{BLENDER}{name}"
     for name in (
-        *("AddonPreferences", "Attribute", "Curve", "NodeSocket", "Operator"),
-        *("OperatorProperties", "Property", "PropertyGroup", "Space"),
+        "AddonPreferences",
+        "Attribute",
+        "Curve",
+        "NodeSocket",
+        "Operator",
+        "OperatorProperties",
+        "Property",
+        "PropertyGroup",
+        "Space",
     )
 }
 """Classes of whose objects one reads what a subclass has."""

@@ -168,7 +168,11 @@ def repack_sdist(path: Path, time: int) -> None:
     made = io.BytesIO()
     with tarfile.open(path) as old, tarfile.open(fileobj=made, mode="w") as new:
         for entry in sorted(old.getmembers(), key=lambda entry: entry.name):
-            entry.mtime, entry.uid, entry.gid, entry.uname, entry.gname = time, 0, 0, "", ""
+            entry.mtime = time
+            entry.uid = 0
+            entry.gid = 0
+            entry.uname = ""
+            entry.gname = ""
             entry.mode = 0o755 if entry.isdir() else 0o644
             entry.pax_headers = {}
             new.addfile(entry, old.extractfile(entry) if entry.isfile() else None)
@@ -191,17 +195,28 @@ def try_wheel(wheel: Path, extra: str = "") -> None:
         said = run(binaries / "pe", "--version", cwd=Path(scratch))
         if agreed_version() not in said:
             raise BuildError(f"the installed command says {said.strip()!r}")
-        options = ("--samples", "4096", "-o", "scored")
-        run(binaries / "pe", "score", EXAMPLE, *options, cwd=Path(scratch))
+        run(
+            binaries / "pe",
+            "score",
+            EXAMPLE,
+            "--samples",
+            "4096",
+            "-o",
+            "scored",
+            cwd=Path(scratch),
+        )
 
 
 def build_repository(archive: Path, folder: Path) -> None:
     """Make the folder that a server offers to Blender: the zip, ``index.json`` and a page."""
     folder.mkdir()
     shutil.copyfile(archive, folder / archive.name)
-    page = ("--html", f"--html-template={PAGE}")
     build_extension.run_tool(
-        build_extension.extension_command(), "server-generate", f"--repo-dir={folder}", *page
+        build_extension.extension_command(),
+        "server-generate",
+        f"--repo-dir={folder}",
+        "--html",
+        f"--html-template={PAGE}",
     )
 
 

@@ -47,7 +47,8 @@ def study_schema() -> dict[str, Any]:
 
 def of_type(hint: Any) -> dict[str, Any]:
     """Return the schema of a dataclass's field as `to_dict` writes it."""
-    origin, inner = typing.get_origin(hint), typing.get_args(hint)
+    origin = typing.get_origin(hint)
+    inner = typing.get_args(hint)
     if is_dataclass(hint):
         hints = typing.get_type_hints(hint)
         keys = {each.name: of_type(hints[each.name]) for each in fields(hint)}
@@ -71,7 +72,8 @@ def score_schema() -> dict[str, Any]:
 
 def result_schema() -> dict[str, Any]:
     """Return the schema of result.json."""
-    score, pose = {"$ref": "#/$defs/score"}, {"$ref": "#/$defs/placements"}
+    score = {"$ref": "#/$defs/score"}
+    pose = {"$ref": "#/$defs/placements"}
     both = {"type": "object", "required": ["before", "after"]}
     some = {"type": "object"}
     rows = {"type": "array", "items": some}
@@ -84,7 +86,8 @@ def result_schema() -> dict[str, Any]:
         "seed": {"type": "integer"},
         "entropy": {"description": "Of the result [nats]; lower is better", **NUMBER},
         "coverage": {"description": "Of the result, 0 to 1", **NUMBER},
-        **{"before": score, "after": score},
+        "before": score,
+        "after": score,
         "placements": {**both, "properties": {"before": pose, "after": pose}},
         "mounts": some,
         "method": {"type": ["string", "null"]},
@@ -93,30 +96,38 @@ def result_schema() -> dict[str, Any]:
         "returns": TEXT,
         "evaluations": {"type": "integer", "minimum": 0},
         "stopped": SWITCH,
-        **{"warnings": rows, "history": history},
+        "warnings": rows,
+        "history": history,
         "inputs": {"type": "object", "properties": inputs, "required": list(inputs)},
         "run": {"type": "object", "properties": {"seconds": NUMBER}, "required": ["seconds"]},
     }
     at_times = {
-        **{"robustness": some, "requirements": rows, "conditions": some, "starts": rows},
-        **{"objective": TEXT, "expected_ap": some, "figures": both, "cost": TEXT},
-        **{
-            "flatness": {"type": ["object", "null"]},
-            "stop_reason": {"type": ["string", "null"]},
-            "seed_scatter": {"type": ["number", "null"]},
-        },
+        "robustness": some,
+        "requirements": rows,
+        "conditions": some,
+        "starts": rows,
+        "objective": TEXT,
+        "expected_ap": some,
+        "figures": both,
+        "cost": TEXT,
+        "flatness": {"type": ["object", "null"]},
+        "stop_reason": {"type": ["string", "null"]},
+        "seed_scatter": {"type": ["number", "null"]},
     }
     place = {"position": numbers(3), "rotation": numbers(3)}
     placed = {"type": "object", "properties": place, "required": list(place)}
     placements = {
         "description": "Position [m] and roll, pitch, yaw [deg] by sensor, ground frame",
-        **{"type": "object", "additionalProperties": placed},
+        "type": "object",
+        "additionalProperties": placed,
     }
     return {
         "$schema": DRAFT,
         "$id": f"urn:perception-entropy:result:{SCHEMA}",
         "title": "A result of perception entropy: result.json",
-        **{"type": "object", "properties": {**always, **at_times}, "required": list(always)},
+        "type": "object",
+        "properties": {**always, **at_times},
+        "required": list(always),
         "$defs": {"score": score_schema(), "placements": placements},
     }
 

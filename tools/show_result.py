@@ -10,8 +10,11 @@ from pathlib import Path
 
 WAYS = (("forward", "back"), ("to the left", "to the right"), ("up", "down"))
 """Directions of x, y and z: of positive and of negative values."""
-SMALLEST_M, SMALLEST_DEG = 0.01, 0.1
-PAGE, SCENE, RESULT = "review.html", "optimized.blend", "result.json"
+SMALLEST_M = 0.01
+SMALLEST_DEG = 0.1
+PAGE = "review.html"
+SCENE = "optimized.blend"
+RESULT = "result.json"
 
 
 def moved(placements: dict) -> str:
@@ -33,7 +36,8 @@ def moved(placements: dict) -> str:
 
 def better(result: dict) -> str:
     """Return how much better the sensors see, and what that costs."""
-    before, after = result["before"], result["after"]
+    before = result["before"]
+    after = result["after"]
     unseen = [100.0 * (1.0 - score["coverage"]) for score in (before, after)]
     return (
         f"of the places where cars, people and obstacles are expected {unseen[0]:.1f}% were"

@@ -78,7 +78,8 @@ def shown_collection(scene: Scene) -> Collection:
 def _new_sensor(scene: Scene, record: SensorRecord) -> Object:
     obj = bpy.data.objects.new(record.name, None)
     shown_collection(scene).objects.link(obj)
-    obj.empty_display_type, obj.empty_display_size = record.display, record.size_m
+    obj.empty_display_type = record.display
+    obj.empty_display_size = record.size_m
     return obj
 
 
@@ -90,10 +91,13 @@ def _write_settings(obj: Object, record: SensorRecord) -> None:
     if settings.fusion != record.fusion:
         settings.fusion = record.fusion
     put_curve(settings, record.curve)
-    settings.free, settings.bounded = record.free, record.bounded
-    settings.bounds_low, settings.bounds_high = record.low, record.high
+    settings.free = record.free
+    settings.bounded = record.bounded
+    settings.bounds_low = record.low
+    settings.bounds_high = record.high
     settings.rack = record.rack
-    settings.stays, settings.order = record.stays, record.order
+    settings.stays = record.stays
+    settings.order = record.order
     write_values(settings, record.sheet)
     if record.color is not None and record.color != color_of(obj):
         settings.color = graphics.rgb_of(record.color)
@@ -130,7 +134,8 @@ def deactivate(scene: Scene, obj: Object) -> None:
         aside.objects.link(member)
         for collection in collections:
             collection.objects.unlink(member)
-    obj.perception_entropy.is_sensor, obj.perception_entropy.is_parked = False, True
+    obj.perception_entropy.is_sensor = False
+    obj.perception_entropy.is_parked = True
 
 
 def reactivate(scene: Scene, obj: Object) -> None:
@@ -143,7 +148,8 @@ def reactivate(scene: Scene, obj: Object) -> None:
             collection.objects.link(member)
         aside.objects.unlink(member)
         member.perception_entropy.parked_from = ""
-    obj.perception_entropy.is_sensor, obj.perception_entropy.is_parked = True, False
+    obj.perception_entropy.is_sensor = True
+    obj.perception_entropy.is_parked = False
 
 
 def inactive_sensors(scene: Scene) -> dict[str, Object]:

@@ -21,11 +21,14 @@ from .rig import pose_of_matrix, sensor_objects, view_layer_of
 from .scene_settings import as_typed, values_of, write_values
 from .vehicle import vehicle_from_collection
 
-LENGTH_DIGITS, ANGLE_DIGITS = 5, 4
+LENGTH_DIGITS = 5
+ANGLE_DIGITS = 4
 """Decimals of a motion: 0.01 mm and 0.0001 degrees."""
-STILL_M, BENT_M = 2e-5, 2e-3
+STILL_M = 2e-5
+BENT_M = 2e-3
 """A part that moves less than the one stays; one that differs more than the other bends [m]."""
-SAME_M, SAME_RAD = 1e-3, 1e-4
+SAME_M = 1e-3
+SAME_RAD = 1e-4
 """A sensor that moves as a part within these moves with the part."""
 
 
@@ -58,7 +61,8 @@ def shown_state(scene: Scene) -> str:
 
 
 def _shown_row(scene: Scene) -> PropertyGroup | None:
-    settings, shown = scene.perception_entropy, scene.frame_current
+    settings = scene.perception_entropy
+    shown = scene.frame_current
     if shown == settings.drawn_frame:
         return None
     return next((row for row in settings.states if row.frame == shown), None)
@@ -117,7 +121,8 @@ def write_conditions(settings: PropertyGroup, conditions: pe.Conditions) -> None
 def write_state(row: PropertyGroup, state: geometry.State) -> None:
     """Write a state to a row."""
     table = studies.write(state)
-    row.name, row.weight = state.name, state.weight
+    row.name = state.name
+    row.weight = state.weight
     row.frame = -1 if state.frame is None else state.frame
     row.table = json.dumps({k: v for k, v in table.items() if k not in ("name", "weight", "frame")})
 
@@ -150,7 +155,8 @@ def read_states(scene: Scene) -> list[str]:
     rows = [row for row in scene.perception_entropy.states if row.frame >= 0]
     if not rows:
         return []
-    shown, drawn_frame = scene.frame_current, scene.perception_entropy.drawn_frame
+    shown = scene.frame_current
+    drawn_frame = scene.perception_entropy.drawn_frame
     changed = []
     try:
         drawn = _shown_at(scene, drawn_frame)
@@ -219,7 +225,8 @@ def rigid_motion(before: np.ndarray, after: np.ndarray) -> Rigid | None:
     rotation with the least squares: Kabsch, Acta Crystallographica A32 (1976) 922."""
     if float(np.abs(after - before).max()) <= STILL_M:
         return STILL
-    first, last = before.mean(axis=0), after.mean(axis=0)
+    first = before.mean(axis=0)
+    last = after.mean(axis=0)
     left, _, right = np.linalg.svd((before - first).T @ (after - last))
     sign = np.sign(np.linalg.det(right.T @ left.T))
     matrix = right.T @ np.diag([1.0, 1.0, sign]) @ left.T

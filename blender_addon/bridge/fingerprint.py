@@ -47,7 +47,8 @@ def fingerprint(
 ) -> Fingerprint:
     """Return the fingerprint of a scene. `shape` is a cache key of the vehicle's geometry;
     `sensors` are the scene's sensors by name, if the caller has already read them."""
-    settings, layer = scene.perception_entropy, view_layer_of(scene)
+    settings = scene.perception_entropy
+    layer = view_layer_of(scene)
     objects = sensor_objects(scene) if sensors is None else sensors
     states = {obj.name: _sensor_state(obj, obj.visible_get(view_layer=layer)) for obj in objects}
     more = [*settings_signature(settings), *own_sensors_signature(scene)]
@@ -59,7 +60,8 @@ def fingerprint(
 def _sensor_state(obj: Object, visible: bool) -> SensorState:
     if not visible:
         return ()
-    settings, placement = obj.perception_entropy, np.array(obj.matrix_world, dtype=float)
+    settings = obj.perception_entropy
+    placement = np.array(obj.matrix_world, dtype=float)
     try:
         held = last_written_pose(obj, placement)
         where: object = _numbers(pose_of_matrix(placement) if held is None else held)

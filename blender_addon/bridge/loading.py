@@ -97,7 +97,8 @@ def differences(
 ) -> list[str]:
     """Return the keys in which two studies differ; names of other files are left out. `renamed` has
     the names that sensors of the first study have in the second."""
-    one, other = _comparable(study, renamed), _comparable(held)
+    one = _comparable(study, renamed)
+    other = _comparable(held)
     keys = sorted(key for key in {*one, *other} if one.get(key) != other.get(key))
     if not same_body(study.vehicle, held.vehicle):
         keys.append("vehicle.mesh")
@@ -142,7 +143,8 @@ def _sensor_records(study: pe.Study) -> tuple[SensorRecord, ...]:
         if model is None or catalog.to_table(model) != catalog.to_table(sensor.model):
             field = f"sensor {sensor.name!r}: model"
             raise pe.InputError("study", field, "one of the catalogue's", repr(sensor.model.name))
-        name, free = sensor.name, study.search.free[sensor.name]
+        name = sensor.name
+        free = study.search.free[sensor.name]
         mount = mounting.on.get(name, "")
         records.append(
             SensorRecord(
@@ -175,17 +177,22 @@ def _options(selection: pe.Selection, name: str, mount: str) -> dict[str, Any]:
 
 def _bounds(limits: Mapping[str, tuple[float, float]]) -> dict[str, Any]:
     """Return bounds in the units of a record: metres and degrees."""
-    bounded, low, high = list(NO_BOUNDS), list(ZEROS), list(ZEROS)
+    bounded = list(NO_BOUNDS)
+    low = list(ZEROS)
+    high = list(ZEROS)
     for number, axis in enumerate(search.AXES):
         if axis in limits:
             is_length = axis in search.POSITION_AXES
             ends = limits[axis] if is_length else tuple(map(math.degrees, limits[axis]))
-            bounded[number], (low[number], high[number]) = True, ends
+            bounded[number] = True
+            low[number], high[number] = ends
     return {"bounded": tuple(bounded), "low": tuple(low), "high": tuple(high)}
 
 
 def _write_vehicle(scene: Scene, vehicle: pe.Vehicle) -> None:
-    settings, layer, present = scene.perception_entropy, view_layer_of(scene), None
+    settings = scene.perception_entropy
+    layer = view_layer_of(scene)
+    present = None
     with contextlib.suppress(pe.InputError):
         present = vehicle_of_scene(scene, layer.depsgraph)
     write_values(settings, vehicle)
@@ -197,11 +204,13 @@ def _write_vehicle(scene: Scene, vehicle: pe.Vehicle) -> None:
 def _write_settings(settings: PropertyGroup, record: SceneRecord) -> None:
     """Write the settings of a record to a scene: space, AP curves, score, search and limits.
     Vehicle, sensors, prior, mounts and constraints are written by others."""
-    own, tolerance = record.search, record.search.tolerance
+    own = record.search
+    tolerance = record.search.tolerance
     instances = (record.space, record.targets, record.model, own, own.schedule, record.selection)
     for instance in instances:
         write_values(settings, instance)
-    settings.score_samples, settings.returns = record.samples, record.returns
+    settings.score_samples = record.samples
+    settings.returns = record.returns
     settings.method = own.method
     write_goals(settings, own.goals)
     write_limits(settings, record.limits)
@@ -213,7 +222,8 @@ def _write_settings(settings: PropertyGroup, record: SceneRecord) -> None:
     for kind in kinds.KINDS:
         if (curve := record.model.curve(kind)) != default.curve(kind):
             row = settings.curves.add()
-            row.name, row.own = kind, True
+            row.name = kind
+            row.own = True
             write_values(row, curve)
     write_reference(settings, record.reference)
     write_time(settings, record.frames, record.confirmation, record.stories)
@@ -227,7 +237,8 @@ def _write_mounts(scene: Scene, mounts: Mapping[str, search.AnyMount]) -> None:
         row = settings.mounts.add()
         row.name = name
         if isinstance(mount, pe.SlotMount):
-            row.kind, row.slots = ON_SLOTS, _slots(scene, name, mount)
+            row.kind = ON_SLOTS
+            row.slots = _slots(scene, name, mount)
             continue
         write_values(row, mount)
         if mount.area is None:
@@ -235,7 +246,8 @@ def _write_mounts(scene: Scene, mounts: Mapping[str, search.AnyMount]) -> None:
             for part in mount.parts:
                 row.parts.add().part = members.get(part)
         else:
-            row.faces, row.group = BY_GROUP, name
+            row.faces = BY_GROUP
+            row.group = name
             paint_area(list(members), name, mount.area.triangles)
 
 
@@ -268,7 +280,8 @@ def _write_constraints(scene: Scene, constraints: pe.Constraints) -> None:
             obj.perception_entropy.is_no_go = False
     for area in constraints.no_go:
         obj = _empty(area.name)
-        obj.empty_display_type, obj.empty_display_size = "CUBE", 1.0
+        obj.empty_display_type = "CUBE"
+        obj.empty_display_size = 1.0
         sides = [getattr(area, axis) or (-FAR_M, FAR_M) for axis in "xyz"]
         sides = [(max(low, -FAR_M), min(high, FAR_M)) for low, high in sides]
         obj.location = [(low + high) / 2.0 for low, high in sides]

@@ -12,16 +12,19 @@ from ..engine import pe
 from .rig import place_poses, pose_of
 
 SIDES = (("left", "right"), ("l", "r"))
-MIDDLE_M, MIDDLE_RAD = 1e-4, 1e-5
+MIDDLE_M = 1e-4
+MIDDLE_RAD = 1e-5
 """A sensor this near to the vehicle's middle plane is its own mirror image."""
 
 _last_poses: dict[tuple[str, str], pe.Pose] = {}
 """Last poses of linked sensors by scene and name: they tell which of a pair has moved."""
+SENSORS = "Sensors"  # The collection of a scene's sensors
 
 
 def mirrored_pose(pose: pe.Pose) -> pe.Pose:
     """Return the mirror image of a pose across the x-z plane."""
-    (x, y, z), (roll, pitch, yaw) = pose.position, pose.rotation_deg
+    x, y, z = pose.position
+    roll, pitch, yaw = pose.rotation_deg
     return pe.Pose.from_degrees((x, 0.0 - y, z), (0.0 - roll, pitch, 0.0 - yaw))
 
 
@@ -145,9 +148,6 @@ def _cased(word: str, like: str) -> str:
     if like.isupper():
         return word.upper()
     return word.capitalize() if like[0].isupper() else word
-
-
-SENSORS = "Sensors"  # The collection of a scene's sensors
 
 
 def is_copy(whose: str, obj: Object, sensors: Sequence[Object]) -> bool:

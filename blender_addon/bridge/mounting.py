@@ -30,7 +30,8 @@ def mounts_of(
 ) -> dict[str, search.AnyMount]:
     """Return the scene's mounts that visible sensors are on, by name. `InputError` when a mount
     that a sensor is on has no faces or slots, or does not exist."""
-    rows, on = {row.name: row for row in scene.perception_entropy.mounts}, mounted(records)
+    rows = {row.name: row for row in scene.perception_entropy.mounts}
+    on = mounted(records)
     for name, mount in on.items():
         if mount not in rows:
             expected = f"one of {', '.join(rows)}" if rows else "a mount of the scene"
@@ -51,7 +52,7 @@ def mounting_of(
     is in two groups, or a mount is missing."""
     try:
         return pe.Mounting(
-            mounts, mounted(records), pairs_of(records), groups_of(records), constraints
+            mounts, mounted(records), pairs_of(records), groups_of(records), constraints=constraints
         )
     except pe.InputError as error:
         raise of_scene(error) from None
@@ -242,7 +243,8 @@ def bounds_box(
     limits = bounds_by_axis(settings.bounded, settings.bounds_low, settings.bounds_high)
     if not set("xyz") & set(limits):
         return None
-    usual, free = search.default_bounds(sensor, vehicle), free_axes(obj)
+    usual = search.default_bounds(sensor, vehicle)
+    free = free_axes(obj)
     ends = []
     for number, axis in enumerate("xyz"):
         position = sensor.pose.position[number]

@@ -56,7 +56,8 @@ def table_of(row: PropertyGroup) -> dict[str, Any]:
 
 def _camera_table(row: PropertyGroup) -> dict[str, Any]:
     own = OwnCamera(**values_of(row, OwnCamera))
-    size, lens = {"width": own.width, "height": own.height}, read_line(own.lens, "distortion")
+    size = {"width": own.width, "height": own.height}
+    lens = read_line(own.lens, "distortion")
     return size | ({} if LENS_KEYS & set(lens) else {"hfov_deg": own.hfov}) | lens
 
 

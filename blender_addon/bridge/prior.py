@@ -51,8 +51,11 @@ def write_prior(settings: PropertyGroup, prior: pe.Prior) -> None:
     settings.focus.clear()
     for number, (region, focus) in enumerate(_by_region(prior.focus), start=1):
         row = settings.focus.add()
-        row.name, row.factor, row.region = f"Focus {number}", focus.factor, region
-        row.x_range, row.y_range = focus.x, focus.y
+        row.name = f"Focus {number}"
+        row.factor = focus.factor
+        row.region = region
+        row.x_range = focus.x
+        row.y_range = focus.y
         if focus.classes is not None:
             with contextlib.suppress(TypeError):  # the menu does not have the class
                 row.classes = set(focus.classes)
@@ -68,7 +71,8 @@ def _by_region(weights: Sequence[pe.Focus]) -> Iterator[tuple[str, pe.Focus]]:
             if same and left[: len(same)] == same:
                 break
         else:
-            region, same = REGIONS[CUSTOM], [first]
+            region = REGIONS[CUSTOM]
+            same = [first]
         yield region.key, first
         del left[: len(same)]
 

@@ -40,14 +40,18 @@ class Result:
     """A result as the panel shows it. Entropies are in nats, shares from 0 to 1."""
 
     def __init__(self, data: Mapping[str, Any]) -> None:
-        self.data, self.after = data, data["after"]
+        self.data = data
+        self.after = data["after"]
         began = data.get(BEGAN, data)
-        self.before, first = began["before"], began.get("figures", {})
+        self.before = began["before"]
+        first = began.get("figures", {})
         figures = {"before": first.get("before"), "after": data.get("figures", {}).get("after")}
         self.kind: str = data["kind"]
         self.figures = {which: each for which, each in figures.items() if each is not None}
-        self.entropy, self.entropy_before = self.after["entropy"], self.before["entropy"]
-        self.coverage, self.coverage_before = self.after["coverage"], self.before["coverage"]
+        self.entropy = self.after["entropy"]
+        self.entropy_before = self.before["entropy"]
+        self.coverage = self.after["coverage"]
+        self.coverage_before = self.before["coverage"]
         self.stderr: float = self.after["stderr"]
         self.change_errors = self._change_errors()
         self.gain: str = data.get("gain", "").replace("+-", "±")
@@ -142,7 +146,8 @@ def store_outcome(scene: Scene, outcome: jobs.Outcome, signature: str) -> None:
     settings = scene.perception_entropy
     data = jobs.result_dict(outcome, blender_version())
     data["after"] = scored_data(outcome.after, outcome.figures and outcome.figures[1])
-    settings.result_json, settings.result_signature = json.dumps(data), signature
+    settings.result_json = json.dumps(data)
+    settings.result_signature = signature
     store_warnings(settings, outcome.warnings)
     store_verdicts(settings, outcome.verdicts)
     settings.result_stale = False
@@ -269,14 +274,19 @@ def score_from_dict(figures: Mapping[str, Any]) -> pe.Score:
         for which in ("per_class", "per_zone")
     )
     by_sensor = {name: pe.SensorScore(**own) for name, own in figures["per_sensor"].items()}
-    whole = (figures["entropy"], figures["coverage"], figures["stderr"])
-    objects, scatter = figures.get("objects"), figures.get("scatter")
+    entropy = figures["entropy"]
+    coverage = figures["coverage"]
+    stderr = figures["stderr"]
+    objects = figures.get("objects")
+    scatter = figures.get("scatter")
     return pe.Score(
-        *whole,
+        entropy,
+        coverage,
+        stderr,
         by_class,
-        by_zone,
-        by_sensor,
-        figures["voxels"],
+        per_zone=by_zone,
+        per_sensor=by_sensor,
+        voxels=figures["voxels"],
         objects=None if objects is None else pe.ObjectScore.from_dict(objects),
         scatter=None if scatter is None else pe.Scatter.from_dict(scatter),
     )

@@ -19,6 +19,7 @@ HELD_POSITION_M = 4e-6
 HELD_ROTATION = 2e-6
 """An object this near to its last written pose has not moved: single precision and a chain of
 parents move it by less. Both tolerances are below half a step of the rounding."""
+TRANSFORM = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")
 
 
 def sensor_objects(scene: Scene) -> list[Object]:
@@ -50,9 +51,17 @@ def sensor_from_object(obj: Object, depsgraph: Depsgraph) -> pe.Sensor:
         returns = depsgraph.scene.perception_entropy.returns
         model = kinds.returning(catalog.load(settings.model), returns)
         pose = pose_of(obj, depsgraph)
-        fusion, color = settings.fusion or None, color_of(obj)
-        own = curve_of(settings), color, sheet_of(settings)
-        return pe.Sensor(obj.name, model, pose, fusion, *own)
+        fusion = settings.fusion or None
+        color = color_of(obj)
+        return pe.Sensor(
+            obj.name,
+            model,
+            pose,
+            fusion,
+            curve=curve_of(settings),
+            color=color,
+            sheet=sheet_of(settings),
+        )
     except pe.InputError as error:
         raise error.within("scene", f"sensor {obj.name!r}") from None
 
@@ -110,9 +119,6 @@ def place_rig(scene: Scene, rig: pe.Rig, start: pe.Rig | None = None) -> list[st
     moved = [s for s in rig if start is None or start[s.name].pose != s.pose]
     left = [s.name for s in rig if s not in moved and not _is_sensor(scene.objects.get(s.name))]
     return place_poses(scene, {sensor.name: sensor.pose for sensor in moved}) + left
-
-
-TRANSFORM = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")
 
 
 def place_for_now(scene: Scene, rig: pe.Rig, start: pe.Rig) -> Callable[[], None]:
@@ -222,7 +228,8 @@ def _stands_at(ground_from_sensor: np.ndarray, pose: pe.Pose) -> bool:
 
 def pose_from_numbers(numbers: Sequence[float]) -> pe.Pose:
     """Return a pose from x, y, z [m], roll, pitch, yaw [deg] in single precision."""
-    position, degrees = numbers[:3], numbers[3:]
+    position = numbers[:3]
+    degrees = numbers[3:]
     radians = (math.radians(angle) for angle in degrees)
     return search.pose_from_values(dict(zip(search.AXES, (*position, *radians), strict=True)))
 

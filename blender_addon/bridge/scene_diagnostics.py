@@ -24,7 +24,10 @@ from .vehicle import (
     visible_members,
 )
 
-MISSING, DRIVER, UNITS, REFUSED = "missing", "driver", "units", "refused"
+MISSING = "missing"
+DRIVER = "driver"
+UNITS = "units"
+REFUSED = "refused"
 HIDDEN = "hidden_vehicle"
 INSTANCED = "instanced_sensors"
 """Codes of warnings, beside those of the engine."""
@@ -103,7 +106,8 @@ def _units(scene: Scene) -> Iterator[advice.Advice]:
 
 def _hidden_vehicle(scene: Scene) -> Iterator[advice.Advice]:
     """Yield warnings about collections of the vehicle that are excluded or hidden."""
-    vehicle, layer = scene.perception_entropy.vehicle, view_layer_of(scene)
+    vehicle = scene.perception_entropy.vehicle
+    layer = view_layer_of(scene)
     if vehicle is None:
         return
     layers = layers_of(layer.layer_collection, vehicle)
@@ -192,7 +196,8 @@ def check_placeable(scene: Scene, study: pe.Study) -> None:
 
 def _check_locks(obj: Object, mounting: pe.Mounting) -> None:
     """Raise `InputError` for a lock that a mount would ignore; angles on a surface are exempt."""
-    mount, locked = mounting.mount_of(obj.name), locked_axes(obj)
+    mount = mounting.mount_of(obj.name)
+    locked = locked_axes(obj)
     if isinstance(mount, pe.SurfaceMount):
         locked = tuple(axis for axis in locked if axis in "xyz")
     if mount is not None and locked:

@@ -278,5 +278,5 @@ def _option(option: ModelOption) -> pe.Option:
     if not sheet.price:
         raise pe.InputError("choice", f"price of {option.model}", "a price above 0", 0.0)
     return pe.Option(
-        catalog.load(option.model), sheet.price, sheet.mass, sheet.power, sheet.data_rate
+        catalog.load(option.model), sheet.price, sheet.mass, sheet.power, data_rate=sheet.data_rate
     )

@@ -14,6 +14,10 @@ from bpy.types import PropertyGroup, Scene
 from ..choices import EXPECTED_AP, OBJECTS
 from ..engine import kinds, pe, search, studies
 
+LARGEST_INT = 2**31 - 1  # A property holds no larger whole number
+PLACED = frozenset({"score_samples", "targets", "traffic", "scenes"})
+"""Settings with a place of their own in the signature of a scene."""
+
 
 def as_typed(value: float) -> float:
     """Return the shortest decimal number that a property of single precision stands for."""
@@ -24,11 +28,6 @@ def pair_as_typed(values: Sequence[float]) -> tuple[float, float]:
     """Return the shortest decimal numbers of a pair of values."""
     low, high = map(as_typed, values)
     return low, high
-
-
-LARGEST_INT = 2**31 - 1  # A property holds no larger whole number
-PLACED = frozenset({"score_samples", "targets", "traffic", "scenes"})
-"""Settings with a place of their own in the signature of a scene."""
 
 
 def values_of(
@@ -82,7 +81,8 @@ def value_of_property(setting: studies.Setting, value: Any) -> Any:
 
 def property_value(setting: studies.Setting, value: Any) -> Any:
     """Return an engine's value as its property holds it."""
-    rule, panel = setting.rule, setting.panel
+    rule = setting.rule
+    panel = setting.panel
     if isinstance(rule, studies.Several):
         return set(value)
     if isinstance(rule, studies.Texts):

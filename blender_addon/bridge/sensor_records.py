@@ -28,8 +28,25 @@ from .rig import (
 from .scene_settings import pair_as_typed
 from .transform_constraints import locked_axes
 
-NO_BOUNDS, ZEROS = (False,) * len(search.AXES), (0.0,) * len(search.AXES)
+NO_BOUNDS = (False,) * len(search.AXES)
+ZEROS = (0.0,) * len(search.AXES)
 PAPER_FREE = tuple(axis in search.PAPER_FREE for axis in search.AXES)
+STORED = (
+    "name",
+    "model",
+    "fusion",
+    "free",
+    "visible",
+    "display",
+    "size_m",
+    "bounded",
+    "low",
+    "high",
+    "mirror_of",
+    "mount",
+    "rack",
+)
+"""Fields that a variant stores as they are; the others have forms of their own."""
 
 
 class ModelOption(NamedTuple):
@@ -119,7 +136,8 @@ def records_of_scene(scene: Scene) -> tuple[SensorRecord, ...]:
 def record_of_object(obj: Object, depsgraph: Depsgraph, layer: ViewLayer) -> SensorRecord:
     """Return the record of one sensor of a scene. `InputError` when it is scaled or sheared, has no
     finite place, or its AP curve is impossible."""
-    settings, visible = obj.perception_entropy, obj.visible_get(view_layer=layer)
+    settings = obj.perception_entropy
+    visible = obj.visible_get(view_layer=layer)
     try:
         pose = pose_of(obj, depsgraph) if visible else _hidden_pose(obj)
         curve = curve_of(settings)
@@ -180,13 +198,6 @@ def _ground_from_object(obj: Object) -> np.ndarray:
     )
 
 
-STORED = (
-    *("name", "model", "fusion", "free", "visible", "display", "size_m"),
-    *("bounded", "low", "high", "mirror_of", "mount", "rack"),
-)
-"""Fields that a variant stores as they are; the others have forms of their own."""
-
-
 def records_of(variant: PropertyGroup) -> tuple[SensorRecord, ...]:
     """Return a variant's sensors, in the order of the scene's."""
     records = (_record_of_table(variant.id_data, row) for row in json.loads(variant.sensors))
@@ -197,7 +208,8 @@ def _record_of_table(scene: Scene, table: dict[str, Any]) -> SensorRecord:
     values: dict[str, Any] = {
         key: tuple(v) if isinstance(v, list) else v for key, v in table.items()
     }
-    pose, curve = pose_from_numbers(values.pop("pose")), values.pop("curve")
+    pose = pose_from_numbers(values.pop("pose"))
+    curve = values.pop("curve")
     own = None if curve is None else pe.ApCurve(*curve)
     obj = _object_named(scene, table["name"])
     known: dict[str, Any] = {"sheet": pe.DataSheet(**values.pop("sheet"))}
@@ -265,8 +277,15 @@ def sensor_of(record: SensorRecord, source: str = "variant") -> pe.Sensor:
     model, or the name or the fusion group is impossible."""
     try:
         model = record.intrinsics or catalog.load(record.model)
-        own = record.fusion or None, record.curve, record.color, record.sheet
-        return pe.Sensor(record.name, model, record.pose, *own)
+        return pe.Sensor(
+            record.name,
+            model,
+            record.pose,
+            record.fusion or None,
+            curve=record.curve,
+            color=record.color,
+            sheet=record.sheet,
+        )
     except pe.InputError as error:
         raise error.within(source, f"sensor {record.name!r}") from None
 

@@ -65,7 +65,8 @@ def write_time(
 
 def write_story(row: PropertyGroup, story: motion.Story) -> None:
     """Write a story to a row: its fields, and as JSON what these do not have."""
-    row.name, row.result = story.name, ""
+    row.name = story.name
+    row.result = ""
     write_values(row, story)
     row.table = json.dumps(studies.write(story))
 

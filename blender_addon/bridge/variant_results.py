@@ -60,7 +60,8 @@ def store_search(scene: Scene, outcome: jobs.Outcome, surroundings: str) -> int:
     """Store the start and the result of a search as variants; return the key of the result. The
     start becomes the active variant, as the sensors have not been moved yet."""
     records = records_of_scene(scene)
-    start, result = _moved(records, outcome.start.rig), _moved(records, outcome.study.rig)
+    start = _moved(records, outcome.start.rig)
+    result = _moved(records, outcome.study.rig)
     before = find_or_add_variant(scene, "Before optimize", start).key
     name = f"Optimized, seed {outcome.start.search.seed}"
     after = find_or_add_variant(scene, name, result).key
@@ -99,7 +100,8 @@ def copy_score(source: Variant, to: Variant) -> None:
     to.figures_json = source.figures_json
     if source.has_result:
         _write_figures(to, json.loads(source.score_json))
-        to.signature, to.stale = source.signature, source.stale
+        to.signature = source.signature
+        to.stale = source.stale
 
 
 def _write_figures(variant: Variant, figures: dict) -> None:
@@ -138,7 +140,8 @@ def check_choosable(scene: Scene, study: pe.Study) -> None:
 
 def store_front(scene: Scene, trade_off: jobs.TradeOff, surroundings: str) -> None:
     """Store each design of a Pareto front as a variant, and the scene's sensors as another one."""
-    records, settings = records_of_scene(scene), scene.perception_entropy
+    records = records_of_scene(scene)
+    settings = scene.perception_entropy
     before = find_or_add_variant(scene, BEFORE, records).key
     rows = []
     for design in trade_off.front:
@@ -169,7 +172,8 @@ def _designed(now: Sequence[SensorRecord], design: jobs.Design) -> tuple[SensorR
 
 
 def _with_choice(record: SensorRecord, sensor: pe.Sensor) -> SensorRecord:
-    model, fusion = sensor.model.name, sensor.fusion or ""
+    model = sensor.model.name
+    fusion = sensor.fusion or ""
     return replace(record, model=model, fusion=fusion, pose=sensor.pose, curve=sensor.curve)
 
 
@@ -226,6 +230,9 @@ def stored_outcome(scene: Scene, study: pe.Study, figures: dict[str, Any]) -> jo
     score = score_from_dict(figures)
     if set(score.per_sensor) != {sensor.name for sensor in study.rig}:
         return None
-    known, warnings = figures.get("figures"), scene_advice(scene)
+    known = figures.get("figures")
+    warnings = scene_advice(scene)
     beside = None if known is None else (advice.KeyFigures.from_dict(known),) * 2
-    return jobs.Outcome("score", study, study, score, score, warnings=warnings, figures=beside)
+    return jobs.Outcome(
+        "score", study, study, score, after=score, warnings=warnings, figures=beside
+    )

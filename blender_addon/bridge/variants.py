@@ -46,7 +46,8 @@ def add_variant(scene: Scene, name: str, records: Sequence[SensorRecord]) -> Var
     settings = scene.perception_entropy
     key = 1 + max((row.key for row in settings.variants), default=0)
     row = settings.variants.add()
-    row.key, row.name = key, name
+    row.key = key
+    row.name = name
     write_records(row, records)
     return row
 
@@ -70,7 +71,8 @@ def _renamed(record: SensorRecord, names: Mapping[str, str]) -> SensorRecord:
 def mark_active(scene: Scene, key: int) -> None:
     """Store the key of the active variant, and select its row in the list."""
     settings = scene.perception_entropy
-    settings.variant_key, settings.variant_changed = key, False
+    settings.variant_key = key
+    settings.variant_changed = False
     keys = [row.key for row in settings.variants]
     settings.variant_index = keys.index(key) if key in keys else 0
 
@@ -108,7 +110,8 @@ def variant_dict(scene: Scene, variant: Variant) -> dict[str, object]:
 
 def check_variants(scene: Scene, now: Fingerprint) -> None:
     """Update the list of variants: whether the scene differs from the active one, stale scores."""
-    settings, current = scene.perception_entropy, now.surroundings
+    settings = scene.perception_entropy
+    current = now.surroundings
     active = active_variant(scene)
     changed = active is not None and not _is_applied(scene, active)
     if changed != settings.variant_changed:

@@ -50,7 +50,9 @@ def vehicle_from_collection(
     triangles = np.concatenate([part.triangles for part in parts])
     glass = list(dict.fromkeys(part.name for part in parts if part.glass))
     covers = {part.name: part.cover_db for part in parts if part.cover_db > 0.0}
-    return pe.Vehicle(triangles, np.concatenate(labels), names, glass, clearance_m, covers)
+    return pe.Vehicle(
+        triangles, np.concatenate(labels), names, glass, clearance=clearance_m, covers=covers
+    )
 
 
 def visible_members(collection: Collection, layer: ViewLayer) -> set[Object]:
@@ -147,7 +149,8 @@ def _parts(collection: Collection, depsgraph: Depsgraph) -> Iterator[VehiclePart
     """Yield a part for every drawn object and instance that belongs to the collection."""
     local: dict[int, np.ndarray] = {}
     for obj, ground_from_object in drawn_meshes(collection, depsgraph):
-        original, triangles = obj.original, _triangles_local(obj, local)
+        original = obj.original
+        triangles = _triangles_local(obj, local)
         if not len(triangles):
             continue
         if not (np.isfinite(triangles).all() and np.isfinite(ground_from_object).all()):

@@ -15,7 +15,8 @@ FILM_MM = 36.0
 SHORTEST_MM = 1.0
 """Blender knows no shorter focal length: wider lenses get a wider film."""
 WIDEST = math.radians(150.0)  # A wider pinhole shows little but its own corners
-NEAR_M, FAR_M = 0.01, 1000.0
+NEAR_M = 0.01
+FAR_M = 1000.0
 SIZE_M = 0.1
 CAMERA_FROM_SENSOR = Matrix(((0, 0, -1, 0), (-1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 0, 1)))
 """In the sensor's frame (x ahead, y left, z up): Blender's cameras look along -z, y is up."""
@@ -43,12 +44,15 @@ def shown_fov(model: pe.Camera) -> float:
 def set_lens(camera: bpy.types.Camera, model: pe.Camera) -> None:
     """Give a camera a model's field of view; the principal point is the picture's centre."""
     half = math.tan(shown_fov(model) / 2.0)
-    camera.type, camera.lens_unit, camera.sensor_fit = "PERSP", "MILLIMETERS", "HORIZONTAL"
+    camera.type = "PERSP"
+    camera.lens_unit = "MILLIMETERS"
+    camera.sensor_fit = "HORIZONTAL"
     camera.sensor_width = max(FILM_MM, 2.0 * half * SHORTEST_MM)
     camera.sensor_height = camera.sensor_width * model.height / model.width
     camera.lens = camera.sensor_width / (2.0 * half)
     camera.shift_x = camera.shift_y = 0.0
-    camera.clip_start, camera.clip_end = NEAR_M, FAR_M
+    camera.clip_start = NEAR_M
+    camera.clip_end = FAR_M
 
 
 def look_through(scene: Scene, obj: Object, model: pe.Camera) -> Object:
@@ -58,15 +62,18 @@ def look_through(scene: Scene, obj: Object, model: pe.Camera) -> Object:
         name = f"{obj.name} view"
         view = bpy.data.objects.new(name, bpy.data.cameras.new(name))
         view.perception_entropy.is_view = True
-        view.parent, view.matrix_local = obj, CAMERA_FROM_SENSOR
-        view.data.display_size, view.hide_select = SIZE_M, True
+        view.parent = obj
+        view.matrix_local = CAMERA_FROM_SENSOR
+        view.data.display_size = SIZE_M
+        view.hide_select = True
         for collection in obj.users_collection:
             collection.objects.link(view)
     set_lens(view.data, model)
     if not scene.perception_entropy.before_look:
         scene.perception_entropy.before_look = json.dumps(_settings(scene))
     render = scene.render
-    render.resolution_x, render.resolution_y = model.width, model.height
+    render.resolution_x = model.width
+    render.resolution_y = model.height
     render.resolution_percentage = 100
     render.pixel_aspect_x = render.pixel_aspect_y = 1.0
     scene.camera = view
@@ -88,7 +95,8 @@ def look_back(scene: Scene) -> None:
 def update_view_cameras(scene: Scene, sensors: Sequence[Object]) -> None:
     """Update view cameras to their sensors' models; remove those whose sensor is gone."""
     for obj in sensors:
-        view, model = view_camera(obj), _camera_of(obj)
+        view = view_camera(obj)
+        model = _camera_of(obj)
         if view is not None and model is not None:
             size = model.width, model.height
             if abs(view.data.angle_x - shown_fov(model)) > 1e-5:
@@ -121,8 +129,11 @@ def _camera_of(obj: Object) -> pe.Camera | None:
 def _settings(scene: Scene) -> dict[str, object]:
     """Return the scene's settings that `look_through` changes."""
     names = (
-        *("resolution_x", "resolution_y", "resolution_percentage"),
-        *("pixel_aspect_x", "pixel_aspect_y"),
+        "resolution_x",
+        "resolution_y",
+        "resolution_percentage",
+        "pixel_aspect_x",
+        "pixel_aspect_y",
     )
     values = {name: getattr(scene.render, name) for name in names}
     return values | {"camera": None if scene.camera is None else scene.camera.name}

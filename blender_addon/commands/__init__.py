@@ -65,6 +65,8 @@ def parser(prog: str) -> argparse.ArgumentParser:
     shared = [verb for verb in app.VERBS if verb.name not in OF_FILES]
     verbs = [verb._replace(function=OWN.get(verb.name, verb.function)) for verb in shared]
     about = "list the variants in the file"
-    verbs.append(app.Verb("variants", "show", about, app.NONE, "json", list_variants))
+    verbs.append(
+        app.Verb("variants", "show", about, app.NONE, options="json", function=list_variants)
+    )
     top, _ = app.command_parser(prog, f"pe {pe.__version__}", verbs, SceneStudies())
     return top

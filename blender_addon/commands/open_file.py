@@ -14,6 +14,11 @@ import bpy
 from .. import bridge, result_staleness
 from ..engine import app, jobs, pe, studies, text
 
+OPTIMIZED = studies.OPTIMIZED
+BLEND_BEGIN = b"\x28\xb5\x2f\xfd"
+BLEND_END = b"\xb1\xea\x92\x8f"
+"""Of a complete compressed .blend file (zstd with its seek table)."""
+
 
 def opened_study(variant: str | None = None) -> pe.Study:
     """Return the study of the open file, with a variant's sensors if one is named. Errors name the
@@ -39,7 +44,8 @@ def from_file() -> Iterator[None]:
 def opened_scene() -> bpy.types.Scene:
     """Return the scene of the open file. `InputError` when no file is open, or the scene has
     neither a vehicle nor sensors."""
-    path, scene = bpy.data.filepath, bpy.context.scene
+    path = bpy.data.filepath
+    scene = bpy.context.scene
     if not path:
         expected = "an existing .blend file before --command"
         raise pe.InputError("blender", "file", expected, "none opened")
@@ -49,11 +55,6 @@ def opened_scene() -> bpy.types.Scene:
         expected = "a vehicle collection and sensors, set in the tab Perception"
         raise pe.InputError(path, f"scene {scene.name!r}", expected, "neither")
     return scene
-
-
-OPTIMIZED = studies.OPTIMIZED
-BLEND_BEGIN, BLEND_END = b"\x28\xb5\x2f\xfd", b"\xb1\xea\x92\x8f"
-"""Of a complete compressed .blend file (zstd with its seek table)."""
 
 
 def write_optimized(outcome: jobs.Outcome, data: dict, folder: Path) -> None:

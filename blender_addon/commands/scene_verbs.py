@@ -23,7 +23,8 @@ def check_scene(source: SceneStudies, args: argparse.Namespace) -> app.Answer:
     text.require_new(path, replace=args.replace)
     if others:
         raise pe.InputError("check", "stories", "one for a film", 1 + len(others))
-    args.output, args.stories = None, args.stories or ""
+    args.output = None
+    args.stories = args.stories or ""
     answer = app.check_study(study, args)
     with quiet_blender():
         film.write_film(bpy.context.scene, study, story, path)

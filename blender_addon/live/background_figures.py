@@ -19,22 +19,27 @@ figure_cache: text.RecentCache[advice.KeyFigures] = text.RecentCache(24)
 
 def request(scene: bpy.types.Scene, score: ScoreRequest, baseline: Baseline | None) -> None:
     """Request the figures of an idle scene that are not known yet, where they are wanted."""
-    name, problem = scene.name, score.problem
+    name = scene.name
+    problem = score.problem
     is_wanted = scene.perception_entropy.live.figures
     live_state(name).figures = problem if is_wanted else None
     if not is_wanted:
         return
     rigs = [score.rig, *([baseline.rig] if baseline is not None and baseline.rig else [])]
     if missing := [rig for rig in rigs if figure_cache.get(_key(problem, rig)) is None]:
-        deliver, topic = partial(_keep, problem, missing), f"live figures of {name}"
-        engine_process.ask(topic, analysis_calls.key_figures, (problem, missing), deliver, _failed)
+        deliver = partial(_keep, problem, missing)
+        topic = f"live figures of {name}"
+        engine_process.ask(
+            topic, analysis_calls.key_figures, (problem, missing), deliver, fail=_failed
+        )
 
 
 def figures_of(scene: bpy.types.Scene) -> list[advice.KeyFigures]:
     """Return the figures to show of the live score, after those of what it is compared with. Those
     that were shown last while its own are not known; none where no figures are wanted."""
     state = live_state(scene.name)
-    score, problem = state.exact, state.figures
+    score = state.exact
+    problem = state.figures
     if problem is None or score is None:
         return []
     now = figure_cache.get(_key(problem, score.rig))

@@ -17,11 +17,13 @@ from .state import LiveScore, ShownScore, live_state, shown_score
 
 LARGE = 17.0
 """Size of the headline, in pixels of an interface at scale 1; so are all lengths below."""
-ROW, PAD = 17.0, 10.0
+ROW = 17.0
+PAD = 10.0
 ZONE_ROWS = 2
 """Rows that are reserved for zones, so that the plate does not jump with every move."""
 WORD_GAP = 0.3
-MIN_WIDTH, MAX_COLUMNS = 236.0, 64
+MIN_WIDTH = 236.0
+MAX_COLUMNS = 64
 ALERT: Rgba = (1.0, 0.84, 0.35, 1.0)
 SENSE_COLORS: dict[int, Rgba] = {BETTER: (0.42, 0.75, 1.0, 1.0), WORSE: (1.0, 0.62, 0.25, 1.0)}
 ARROWS = {BETTER: "\N{DOWNWARDS ARROW}", WORSE: "\N{UPWARDS ARROW}"}
@@ -54,18 +56,21 @@ def unregister() -> None:
 def draw() -> None:
     """Draw into the current 3D view, if it shows overlays; Blender calls this at each redraw."""
     context = bpy.context
-    space, scene = context.space_data, context.scene
+    space = context.space_data
+    scene = context.scene
     overlays = space is None or space.type != "VIEW_3D" or space.overlay.show_overlays
     box = None
     if scene.perception_entropy.live.on and overlays and viewport.is_lower_left(context):
-        state, shown = live_state(scene.name), shown_score(scene)
+        state = live_state(scene.name)
+        shown = shown_score(scene)
         if shown is not None and shown.exact and engine_process.busy(engine_process.OVERLAY):
             shown = shown._replace(view_outdated=True)
         rows = rows_of(state.score, state.note, shown)
         if is_simple(scene):
             rows = [row._replace(words=tuple((plain(t), c) for t, c in row.words)) for row in rows]
-        corner = viewport.beside_toolbar(context), viewport.above_hud(context)
-        box = draw_rows(rows, *corner, viewport.ui_scale())
+        box = draw_rows(
+            rows, viewport.beside_toolbar(context), viewport.above_hud(context), viewport.ui_scale()
+        )
     viewport.reserve_plate(context.region.as_pointer(), PLATE_NAME, box)
 
 
@@ -87,7 +92,8 @@ def rows_of(score: LiveScore | None, note: str, shown: ShownScore | None) -> lis
 
 def _rows_of_score(score: LiveScore | None, shown: ShownScore) -> list[TextRow]:
     text = readout_of(score, shown)
-    arrow, color = ARROWS.get(text.sense, ""), SENSE_COLORS.get(text.sense, FAINT)
+    arrow = ARROWS.get(text.sense, "")
+    color = SENSE_COLORS.get(text.sense, FAINT)
     change = ((f"{arrow} {text.change}".strip(), color),) if text.change else ()
     has_zones = score is not None and score.before is not None
     reserved = ((TextPiece(""),),) * (ZONE_ROWS + 1 - len(text.lines)) if has_zones else ()
@@ -110,9 +116,10 @@ def draw_rows(rows: list[TextRow], left: float, bottom: float, scale: float) -> 
     y = bottom + pad + height
     for row in rows:
         y -= _height(row) * scale
-        x, size = left + pad, row.size * scale
+        x = left + pad
+        size = row.size * scale
         for text, color in row.words:
-            x += viewport.draw_text(text, x, y + 0.3 * size, size, color) + row.gap * size
+            x += viewport.draw_text(text, x, y + 0.3 * size, size, color=color) + row.gap * size
     return box
 
 

@@ -9,7 +9,9 @@ from .state import LiveScore, ShownScore
 MIN_CHANGE = 0.0005
 """Entropies nearer to each other than this are the same in the text [nats]."""
 MIN_ZONE_CHANGE = 0.005  # A zone is named from this change on [nats]
-BETTER, SAME, WORSE = -1, 0, 1
+BETTER = -1
+SAME = 0
+WORSE = 1
 SENSE_ICONS = {BETTER: "COLORSET_04_VEC", SAME: "NONE", WORSE: "COLORSET_02_VEC"}
 """Blender's own: blue is better, orange worse, told apart by colour-blind eyes, too."""
 MAX_LABEL_LETTERS = 32  # Letters of a variant's name that the read-out has room for
@@ -43,12 +45,15 @@ class ReadoutText(NamedTuple):
 def readout_of(score: LiveScore | None, shown: ShownScore) -> ReadoutText:
     """Return the text of the score that is shown: a live or a stored one. Changes are those of the
     live score, from sample to sample; of a stored search, its own."""
-    change, sense, against = "", SAME, ""
+    change = ""
+    sense = SAME
+    against = ""
     lines: tuple[ReadoutLine, ...] = (
         (TextPiece(f"Coverage {advice.percent(shown.coverage, 1)}"),),
     )
     if score is not None:
-        now, before = score.summary, score.before
+        now = score.summary
+        before = score.before
         what = "Coverage" if now.voxels else "Objects visible:"
         by = None if before is None else 100.0 * (now.coverage - before.coverage)
         off = 100.0 * error_of_change(now, before, "coverage")
@@ -68,7 +73,7 @@ def readout_of(score: LiveScore | None, shown: ShownScore) -> ReadoutText:
         change, sense = entropy_change(shown.entropy, shown.before, shown.change_error)
         against = f"compared with {BEFORE_SEARCH}"
     headline = f"{shown.entropy:.3f} nats"
-    return ReadoutText(headline, state_of(shown), change, sense, against, lines)
+    return ReadoutText(headline, state_of(shown), change, sense, against=against, lines=lines)
 
 
 def error_of_change(now: pe.Score, before: pe.Score | None, measure: str) -> float:

@@ -27,6 +27,7 @@ from .state import Baseline, LastRead, LiveScore, LiveState, live_state, states
 VEHICLE_MOVES = "The vehicle is moving: scored again when it stops"
 MOVING = "TRANSFORM_OT_"
 """How the names of Blender's operators begin that move things."""
+MOVE_LABEL = "before this move"
 
 
 def follow_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
@@ -68,7 +69,8 @@ def on_idle() -> None:
 
 def request_score(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, moving: bool) -> None:
     """Read a scene, and have it scored."""
-    name, state = scene.name, live_state(scene.name)
+    name = scene.name
+    state = live_state(scene.name)
     number = state.next_request()
     try:
         request = read_request(scene, depsgraph)
@@ -79,15 +81,21 @@ def request_score(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, mov
         note_move(state, _moving_operator(), request.rig)
     if state.last_read is not None and state.last_read.prior != request.prior_key:
         state.before_move = None  # entropies under two priors cannot be compared
-    counts = change_events.change_count(), vehicle_cache.shared.version
-    state.last_read = LastRead(*counts, request.prior_key, request.rig, request.problem.key)
+    state.last_read = LastRead(
+        change_events.change_count(),
+        vehicle_cache.shared.version,
+        request.prior_key,
+        request.rig,
+        problem=request.problem.key,
+    )
     baseline = baseline_of(scene, request, moving)
     needed = None if baseline is None or moving or baseline.summary else baseline.rig
-    deliver = partial(take_score, name, request, number, baseline, moving)
+    deliver = partial(take_score, name, request, number, baseline, moving=moving)
     fail = partial(report_failure, name)
-    topic, given = engine_process.LIVE_SCORE + name, (name, request, needed)
+    topic = engine_process.LIVE_SCORE + name
+    given = (name, request, needed)
     lane = engine_process.FOLLOWS_MOUSE
-    engine_process.ask(topic, engine_calls.live_score, given, deliver, fail, lane=lane)
+    engine_process.ask(topic, engine_calls.live_score, given, deliver, fail=fail, lane=lane)
     if not moving:
         background_figures.request(scene, request, baseline)
 
@@ -97,7 +105,8 @@ def read_request(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Scor
     something in the scene is wrong: one line."""
     bridge.check_scene(scene)
     rig = bridge.rig_from_objects(sensor_cache.sensors(scene), depsgraph)
-    state, prior_key = live_state(scene.name), bridge.prior_key(scene)
+    state = live_state(scene.name)
+    prior_key = bridge.prior_key(scene)
     if state.prior is None or state.prior[0] != prior_key:
         state.prior = prior_key, bridge.prior_from_scene(scene)
     prior = state.prior[1]
@@ -106,10 +115,11 @@ def read_request(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Scor
         collection = scene.perception_entropy.vehicle
         vehicle = bridge.vehicle_from_collection(collection, depsgraph)  # raises the reason
     settings = scene.perception_entropy
-    space, model = bridge.space_of(settings), bridge.perception_of(settings)
+    space = bridge.space_of(settings)
+    model = bridge.perception_of(settings)
     targets = bridge.targets_of(settings)
     problem_key = prior_key, vehicle_key, space, model, targets
-    problem = Problem(problem_key, prior, vehicle, space, model, targets)
+    problem = Problem(problem_key, prior, vehicle, space, model=model, targets=targets)
     return ScoreRequest(problem, rig, (prior_key, space, model, targets))
 
 
@@ -122,10 +132,13 @@ def take_score(
     scored: ScoredRig,
 ) -> None:
     """Store a score that the engine made, and have it drawn."""
-    state, problem = live_state(name), request.problem.key
+    state = live_state(name)
+    problem = request.problem.key
     if baseline is not None and scored.baseline is not None:
         baseline.summary = scored.baseline
-    state.put(LiveScore(scored.summary, baseline, not moving, request.rig, number, problem))
+    state.put(
+        LiveScore(scored.summary, baseline, not moving, request.rig, number=number, problem=problem)
+    )
     signals.live_score_changed.emit()
 
 
@@ -187,9 +200,6 @@ def unregister() -> None:
     clear()
 
 
-MOVE_LABEL = "before this move"
-
-
 def note_move(state: LiveState, operator: int, now: pe.Rig | None) -> None:
     """Note an update in which something moves; keep what was there before where a move begins.
     `state` is as it was before this update. `operator` is the number of the one that moves with the
@@ -201,7 +211,8 @@ def note_move(state: LiveState, operator: int, now: pe.Rig | None) -> None:
     if last is None or (now is not None and rig_key(now) == rig_key(last.rig)):
         return
     state.operator = operator
-    exact, summary = state.exact, None
+    exact = state.exact
+    summary = None
     if exact and exact.problem == last.problem and rig_key(exact.rig) == rig_key(last.rig):
         summary = exact.summary
     if operator or summary is not None:  # otherwise a field is dragged, or typed in several times
@@ -212,7 +223,8 @@ def note_move(state: LiveState, operator: int, now: pe.Rig | None) -> None:
 def baseline_of(scene: bpy.types.Scene, request: ScoreRequest, moving: bool) -> Baseline | None:
     """Return what a scene is compared with, as its settings choose; None where nothing is yet. A
     variant is read again whenever the scene is idle; while sensors move it stays what it was."""
-    state, choice = live_state(scene.name), scene.perception_entropy.live.against
+    state = live_state(scene.name)
+    choice = scene.perception_entropy.live.against
     chosen = state.chosen
     if chosen is not None and moving and chosen[0][:2] == (choice, request.problem.key):
         return chosen[1]

@@ -97,7 +97,8 @@ class LiveState:
 
     def put(self, score: LiveScore) -> None:
         """Store a new score; the note of why there was none goes."""
-        self.score, self.note = score, ""
+        self.score = score
+        self.note = ""
         if score.exact:
             self.exact = score
 
@@ -108,7 +109,8 @@ class LiveState:
     def switch_off(self) -> None:
         """Drop what the live score found; finished scores stay."""
         self.score = self.exact = self.last_read = self.before_move = None
-        self.figures, self.shown_figures = None, []
+        self.figures = None
+        self.shown_figures = []
         self.note = ""
 
 
@@ -150,20 +152,23 @@ def shown_score(scene: bpy.types.Scene) -> ShownScore | None:
     and the stored result came back with the scene. With *Live* off the panel shows the stored one.
     A stored result is never that of another state than as drawn.
     """
-    settings, state = scene.perception_entropy, live_state(scene.name)
+    settings = scene.perception_entropy
+    state = live_state(scene.name)
     if not settings.live.on:
         return None
-    other, score = bridge.shown_state(scene), state.score
+    other = bridge.shown_state(scene)
+    score = state.score
     is_stored = settings.has_result and not (settings.result_stale or other)
     exact = score is None or state.is_current(score)
     # While something moves it is not known yet whether a result is stale.
     if is_stored and exact:
         result = settings.result
-        stored = result.entropy, result.coverage, result.stderr
         is_search = result.kind == "optimize" and settings.live.against == BEFORE_MOVE
         before = result.entropy_before if is_search else None
         return ShownScore(
-            *stored,
+            result.entropy,
+            result.coverage,
+            result.stderr,
             exact=True,
             stored=True,
             before=before,
@@ -173,5 +178,12 @@ def shown_score(scene: bpy.types.Scene) -> ShownScore | None:
     if score is None:
         return None
     summary = score.summary
-    figures = summary.entropy, summary.coverage, summary.stderr
-    return ShownScore(*figures, exact, stored=False, state=other, voxels=summary.voxels)
+    return ShownScore(
+        summary.entropy,
+        summary.coverage,
+        summary.stderr,
+        exact,
+        stored=False,
+        state=other,
+        voxels=summary.voxels,
+    )

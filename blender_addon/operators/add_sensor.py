@@ -20,6 +20,21 @@ from .surface_pose import is_part
 ROOF_DEPTH_M = 0.1  # Points this near to the vehicle's highest point belong to the roof
 FRONT_INSET_M = 0.05  # How far behind the roof's front edge a camera is placed
 DOWN = (0.0, 0.0, -1.0)
+MODEL: dict[str, Any] = {
+    "model": StringProperty(
+        name="Model",
+        description="Name of the sensor in the catalogue",
+        default=DEFAULT_MODEL,
+        search=model_suggestions,
+        search_options=set(),
+    ),
+    "housing": BoolProperty(
+        name="Housing",
+        description="Show the sensor's own body in its true size, where a data sheet gives it",
+        default=True,
+    ),
+}
+"""Properties of operators that add a sensor."""
 
 
 def default_location(context: bpy.types.Context, mount: Mount) -> Vector:
@@ -39,7 +54,8 @@ def roof_location(vehicle: pe.Vehicle, mount: Mount) -> tuple[float, float, floa
     corners = vehicle.triangles.reshape(-1, 3)
     top = corners[:, 2].max()
     roof = corners[corners[:, 2] > top - ROOF_DEPTH_M]
-    low, high = roof.min(axis=0), roof.max(axis=0)
+    low = roof.min(axis=0)
+    high = roof.max(axis=0)
     x, y = (low[:2] + high[:2]) / 2.0
     if mount.at_front:
         x = max(x, high[0] - FRONT_INSET_M)
@@ -88,23 +104,6 @@ def with_data_sheet(about: str, chosen: bpy.types.OperatorProperties) -> str:
     return f"{about}\n\n{tooltip_of(chosen.model)}"
 
 
-MODEL: dict[str, Any] = {
-    "model": StringProperty(
-        name="Model",
-        description="Name of the sensor in the catalogue",
-        default=DEFAULT_MODEL,
-        search=model_suggestions,
-        search_options=set(),
-    ),
-    "housing": BoolProperty(
-        name="Housing",
-        description="Show the sensor's own body in its true size, where a data sheet gives it",
-        default=True,
-    ),
-}
-"""Properties of operators that add a sensor."""
-
-
 @operator("Add Sensor", mode="Sensors are added in Object Mode", tooltip=with_data_sheet, **MODEL)
 def add_sensor(context: bpy.types.Context, model: str, housing: bool) -> None:
     """Add a sensor at the 3D cursor, or on the roof while the cursor is at the origin"""
@@ -113,7 +112,7 @@ def add_sensor(context: bpy.types.Context, model: str, housing: bool) -> None:
     choose_vehicle(context.scene)
     location = default_location(context, mount)
     body = measured_housing(model) if housing else None
-    obj = new_sensor(context, kind.label, model, mount, body)
+    obj = new_sensor(context, kind.label, model, mount, body=body)
     obj.location = location
     select_only(context, obj)
 
@@ -139,7 +138,8 @@ def new_sensor(
     """Create a sensor in the scene's collection of sensors: its `body` mesh, or an empty."""
     obj = bpy.data.objects.new(name, body)
     if body is None:
-        obj.empty_display_type, obj.empty_display_size = mount.display, mount.size_m
+        obj.empty_display_type = mount.display
+        obj.empty_display_size = mount.size_m
     bridge.shown_collection(context.scene).objects.link(obj)
     obj.perception_entropy.model = model
     obj.perception_entropy.is_sensor = True
@@ -181,6 +181,7 @@ def _search(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> O
 def search_sensor(_context: bpy.types.Context, model: str) -> OperatorResult:
     """Type a part of a sensor's name, such as QT128, and place it by pointing"""
     if not model:
-        expected, found = "the name of a sensor of the catalogue", "an empty text"
+        expected = "the name of a sensor of the catalogue"
+        found = "an empty text"
         raise pe.InputError("search", "model", expected, found)
     return bpy.ops.pe.place_sensor("INVOKE_DEFAULT", True, model=model)

@@ -24,15 +24,20 @@ from .camera_pictures import NEAR_M, Exposure
 
 PLATE_NAME = "bird's-eye view"
 UNSEEN: viewport.Rgba = (0.05, 0.05, 0.05, 0.9)
-ABOVE_M, TALL_M, BELOW_M = 200.0, 20.0, 1.0
+ABOVE_M = 200.0
+TALL_M = 20.0
+BELOW_M = 1.0
 """Height of the eye that sees the vehicle, by rays that are all but parallel; how far above and
 below the ground pictures reach."""
 RAISED_M = 0.009
 """The drawn road is raised to below that of *Surroundings*: what lies lower is shown farther out,
 less from a higher camera, and would not fit at seams."""
-HEADER, LEAST_SHARE = 110.0, 0.3
+HEADER = 110.0
+LEAST_SHARE = 0.3
 """Height of the headers and of Blender's own text at the top, and how far a plate shrinks below."""
-BAR_M, BAR_PX, LINE_PX = 5.0, 2.0, 1.4
+BAR_M = 5.0
+BAR_PX = 2.0
+LINE_PX = 1.4
 """Length and thickness of the bar that tells the scale; width of outlines."""
 
 _uploaded: list[tuple[BirdsEye, dict[str, gpu.types.GPUBatch], Batches]] = []
@@ -46,14 +51,16 @@ def clear() -> None:
 
 def draw(context: bpy.types.Context) -> None:
     """Draw the plate, if it is switched on and the engine has said who sees what."""
-    region, scene = context.region.as_pointer(), context.scene
+    region = context.region.as_pointer()
+    scene = context.scene
     viewport.reserve_plate(region, PLATE_NAME, None)
     item = shown_of(scene.name, BIRDS_EYE).get(WHOLE_RIG)
     is_on = scene.perception_entropy.view.show_birds_eye and sensor_pictures.has_room(context)
     if item is None or not is_on:
         camera_pictures.keep_only(region, PLATE_NAME, ())
         return
-    shape, scale = item.shape, viewport.ui_scale()
+    shape = item.shape
+    scale = viewport.ui_scale()
     assert isinstance(shape, BirdsEye)
     proportions = shape.y[1] - shape.y[0], shape.x[1] - shape.x[0]
     size = sensor_pictures.size_in(context, proportions)
@@ -76,13 +83,16 @@ def draw(context: bpy.types.Context) -> None:
 
 def _draw_ruler(corner: tuple[float, float], long: float, scale: float) -> None:
     """Draw a bar that tells the scale."""
-    text, small, pad = f"{BAR_M:g} m", viewport.SMALL * scale, sensor_pictures.PAD_PX * scale
-    left, bottom = corner[0] + pad, corner[1] + pad
+    text = f"{BAR_M:g} m"
+    small = viewport.SMALL * scale
+    pad = sensor_pictures.PAD_PX * scale
+    left = corner[0] + pad
+    bottom = corner[1] + pad
     right = left + long + 2.0 * pad + viewport.text_size(text, small)[0]
     plate = corner[0], corner[1], right, bottom + small + pad / 2.0
     viewport.fill_box(plate, sensor_pictures.TITLE_PLATE)
     viewport.fill_box((left, bottom, left + long, bottom + BAR_PX * scale), viewport.INK)
-    viewport.draw_text(text, left + long + pad, bottom, small, viewport.INK)
+    viewport.draw_text(text, left + long + pad, bottom, small, color=viewport.INK)
 
 
 def _draw_ground(
@@ -105,7 +115,7 @@ def _draw_ground(
     gpu.state.blend_set("NONE")
     with viewport.in_box(box):
         for name, look in looks.items():
-            camera = camera_pictures.picture(context, PLATE_NAME, name, look, size)
+            camera = camera_pictures.picture(context, PLATE_NAME, name, look, size=size)
             if camera is not None:
                 image.bind()
                 image.uniform_sampler("image", camera.texture)
@@ -132,8 +142,9 @@ def look_down(eye: pe.Pose, shape: BirdsEye) -> Exposure:
     """Return the exposure straight down from an eye whose picture is the ground of a plate."""
     ex, ey, height = eye.position
     camera_from_ground = Matrix(((0, -1, 0, ey), (1, 0, 0, -ex), (0, 0, 1, -height), (0, 0, 0, 1)))
-    across, up = (ey - shape.y[1], ey - shape.y[0]), (shape.x[0] - ex, shape.x[1] - ex)
+    across = (ey - shape.y[1], ey - shape.y[0])
+    up = (shape.x[0] - ex, shape.x[1] - ex)
     near = max(NEAR_M, height - TALL_M)
     left, right, bottom, top = (near / height * w for w in (*across, *up))
-    clip = camera_pictures.frustum(left, right, bottom, top, near, height + BELOW_M)
+    clip = camera_pictures.frustum(left, right, bottom, top, near=near, far=height + BELOW_M)
     return Exposure(eye, camera_from_ground, clip, RAISED_M)

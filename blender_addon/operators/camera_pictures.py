@@ -22,7 +22,8 @@ from .sensor_pictures import PictureSize, PictureView, ViewportPicture
 
 STILL_S = 0.25
 """How long after the last change all pictures that are out of date are rendered."""
-NEAR_M, FAR_M = 0.02, 500.0
+NEAR_M = 0.02
+FAR_M = 500.0
 
 
 class PictureKey(NamedTuple):
@@ -54,7 +55,8 @@ class WantedPicture(NamedTuple):
 _change_count = 0
 """How often a scene has changed: earlier pictures are out of date."""
 _rendering = False
-_rendered_count, _rest_at = 0, 0.0
+_rendered_count = 0
+_rest_at = 0.0
 """How often it had changed when pictures were rendered last, and when all others will be."""
 _pictures: dict[PictureKey, tuple[Hashable, ViewportPicture]] = {}
 """Pictures, with what they were made from."""
@@ -102,14 +104,16 @@ def projection(model: pe.Camera) -> Matrix:
     """Return the matrix (4, 4), clip space from camera, of the pinhole for a model's view."""
     across = NEAR_M * math.tan(bridge.shown_fov(model) / 2.0)
     up = across * model.height / model.width
-    return frustum(-across, across, -up, up, NEAR_M, FAR_M)
+    return frustum(-across, across, -up, up, near=NEAR_M, far=FAR_M)
 
 
 def frustum(
     left: float, right: float, bottom: float, top: float, near: float, far: float
 ) -> Matrix:
     """Return the matrix (4, 4), clip space from camera, of a window in the near plane [m]."""
-    wide, high, deep = right - left, top - bottom, far - near
+    wide = right - left
+    high = top - bottom
+    deep = far - near
     return Matrix(
         (
             (2.0 * near / wide, 0.0, (right + left) / wide, 0.0),
@@ -132,7 +136,8 @@ def picture(
     context: bpy.types.Context, plate: str, name: str, look: Exposure, size: PictureSize
 ) -> ViewportPicture | None:
     """Return the latest picture of a look; request a new one if anything has changed."""
-    key, shading = PictureKey(context.region.as_pointer(), plate, name), context.space_data.shading
+    key = PictureKey(context.region.as_pointer(), plate, name)
+    shading = context.space_data.shading
     shown = shading.type, shading.light, shading.color_type
     clip = tuple(map(tuple, look.projection))
     made_of = (size, look.eye, clip, _change_count, context.scene.name, shown)
@@ -151,11 +156,13 @@ def render_requested(rest: bool = False) -> None:
     """
     global _rendered_count, _rest_at
     is_moving = not rest and _rendered_count != _change_count
-    _rendered_count, _rest_at = _change_count, time.monotonic() + STILL_S
+    _rendered_count = _change_count
+    _rest_at = time.monotonic() + STILL_S
     in_turn = list(_requested)
     now = in_turn[:1] if is_moving else in_turn
     for key in now:
-        wanted, view = _requested.pop(key), _view_of(key.region)
+        wanted = _requested.pop(key)
+        view = _view_of(key.region)
         if view is not None:
             cached = _pictures.get(key)
             camera = cached[1] if cached is not None else ViewportPicture()
@@ -189,14 +196,17 @@ def _view_of(pointer: int) -> PictureView | None:
 def _render(view: PictureView, camera: ViewportPicture, wanted: WantedPicture) -> None:
     """Render a picture by the viewport, without overlays."""
     global _rendering
-    look, overlay = wanted.look, view.space.overlay
-    before, _rendering = overlay.show_overlays, True
+    look = wanted.look
+    overlay = view.space.overlay
+    before = overlay.show_overlays
+    _rendering = True
     overlay.show_overlays = False
     try:
         around = partial(_draw_around, look, wanted.size)
         camera.render(view, wanted.size, look.camera_from_ground, look.projection, around)
     finally:
-        overlay.show_overlays, _rendering = before, False
+        overlay.show_overlays = before
+        _rendering = False
 
 
 def _draw_around(look: Exposure, size: PictureSize) -> None:

@@ -11,7 +11,8 @@ from . import camera_pictures, sensor_pictures
 from .declared import declared
 from .sensor_pictures import PictureSize, has_room, sensor_of
 
-STRIP_PX, GAP_PX = 92.0, 6.0
+STRIP_PX = 92.0
+GAP_PX = 6.0
 """Height of the pictures of the strip and the gaps between them, at a scale of 1."""
 _in_strip: dict[int, list[tuple[str, viewport.PlateBox]]] = {}
 """Sensors and their pictures in the strip, by the region's pointer."""
@@ -34,10 +35,12 @@ def shown_cameras(context: bpy.types.Context) -> list[tuple[pe.Sensor, pe.Camera
 
 def draw(context: bpy.types.Context) -> None:
     """Draw the pictures of all cameras in a row, and note where they are."""
-    region, scale = context.region.as_pointer(), viewport.ui_scale()
+    region = context.region.as_pointer()
+    scale = viewport.ui_scale()
     viewport.reserve_plate(region, viewport.CAMERAS, None)
     _in_strip.pop(region, None)
-    cameras, drawn = shown_cameras(context), []
+    cameras = shown_cameras(context)
+    drawn = []
     camera_pictures.keep_only(region, viewport.CAMERAS, {sensor.name for sensor, _ in cameras})
     if not cameras:
         return
@@ -47,7 +50,7 @@ def draw(context: bpy.types.Context) -> None:
     sizes = strip_sizes(width, [(each.width, each.height) for _, each in cameras], scale)
     for (sensor, model), size in zip(cameras, sizes, strict=True):
         look = camera_pictures.look_of(sensor.pose, model)
-        camera = camera_pictures.picture(context, viewport.CAMERAS, sensor.name, look, size)
+        camera = camera_pictures.picture(context, viewport.CAMERAS, sensor.name, look, size=size)
         if camera is not None:
             sensor_pictures.draw_picture(camera.texture, (left, bottom), size)
         box = sensor_pictures.draw_frame((left, bottom), size, sensor.name, scale)
@@ -90,8 +93,7 @@ class PE_GT_camera_strip(bpy.types.Gizmo):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Look through the camera under the mouse."""
-        place = event.mouse_region_x, event.mouse_region_y
-        name = picture_at(context.region.as_pointer(), *place)
+        name = picture_at(context.region.as_pointer(), event.mouse_region_x, event.mouse_region_y)
         if name and bpy.ops.pe.look_through.poll():
             bpy.ops.pe.look_through("INVOKE_DEFAULT", name=name)
         return {"FINISHED"}
@@ -105,8 +107,10 @@ class PE_GT_camera_strip(bpy.types.Gizmo):
 class PE_GGT_camera_strip(bpy.types.GizmoGroup):
     """The strip of cameras takes clicks while it is shown."""
 
-    bl_idname, bl_label = "PE_GGT_camera_strip", "Camera Strip"
-    bl_space_type, bl_region_type = "VIEW_3D", "WINDOW"
+    bl_idname = "PE_GGT_camera_strip"
+    bl_label = "Camera Strip"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "WINDOW"
     bl_options = {"PERSISTENT"}
 
     @classmethod

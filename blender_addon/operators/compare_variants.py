@@ -16,10 +16,13 @@ from .declared import INTERNAL, OperatorResult, Told, operator
 from .jobs import JobRow, Task
 from .variants import unless_variants
 
-LABEL_PX, COLUMN_PX = 260, 170
-MIN_WIDTH_PX, LETTER_PX = 560, 7
+LABEL_PX = 260
+COLUMN_PX = 170
+MIN_WIDTH_PX = 560
+LETTER_PX = 7
 """Smallest width of the table, and width of a letter of the sentences above it."""
-PICTURE_SCALE, BAR_SHARE = 6.0, 0.45
+PICTURE_SCALE = 6.0
+BAR_SHARE = 0.45
 """Height of a picture in rows, and share of a cell that is its bar."""
 MAX_VARIANTS = 8
 OF_PARTS = ("entropy", "coverage")  # Figures that zones and classes have as well
@@ -179,7 +182,8 @@ def _draw_figure(
     cells: bpy.types.UILayout, row: advice.ComparedRow, k: int, *, with_bar: bool = False
 ) -> None:
     """Draw a figure, and beside it the change with a star or a colour."""
-    cell, (text, best, change, sense) = cells.split(factor=BAR_SHARE), cell_of(row, k)
+    cell = cells.split(factor=BAR_SHARE)
+    text, best, change, sense = cell_of(row, k)
     if with_bar:
         cell.progress(text=text, factor=row.share(k), translate=False)
     else:

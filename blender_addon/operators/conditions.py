@@ -23,11 +23,14 @@ STORY_ITEMS = [(name, each.title, each.source) for name, each in motion.stories(
 
 def add_state(context: bpy.types.Context, _kind: str) -> str:
     """Add the frame that is shown as a state of the vehicle; what has moved is read here"""
-    scene, settings = context.scene, context.scene.perception_entropy
-    before, frame = settings.state_index, scene.frame_current
+    scene = context.scene
+    settings = context.scene.perception_entropy
+    before = settings.state_index
+    frame = scene.frame_current
     is_drawn = frame == settings.drawn_frame
     row = new_row(scene, "states", "As Drawn" if is_drawn else f"Frame {frame}")
-    name, row.frame = row.name, frame
+    name = row.name
+    row.frame = frame
     try:
         bridge.read_states(scene)
     except pe.InputError:
@@ -84,7 +87,8 @@ row_list("stories", "story", add=add_story, kinds=STORY_ITEMS)
 @operator("Play", signal=signals.study_changed, unless=unless_selected("stories"))
 def play_story(context: bpy.types.Context) -> None:
     """Play the selected story from its first frame. Again: stop"""
-    scene, settings = context.scene, context.scene.perception_entropy
+    scene = context.scene
+    settings = context.scene.perception_entropy
     row = settings.stories[settings.story_index]
     playing = context.screen is not None and context.screen.is_animation_playing
     if not playing:
@@ -102,7 +106,8 @@ def play_story(context: bpy.types.Context) -> None:
 )
 def film_story(context: bpy.types.Context, filepath: str) -> str:
     """Render the selected story as a film (.webm, .mp4), with what the 3D view shows over it"""
-    settings, path = context.scene.perception_entropy, chosen_file(filepath)
+    settings = context.scene.perception_entropy
+    path = chosen_file(filepath)
     story = bridge.story_of(settings.stories[settings.story_index])
     film.write_film(context.scene, bridge.study_as_drawn(context.scene), story, path)
     return f"Wrote {path}"

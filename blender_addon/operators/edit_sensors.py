@@ -80,7 +80,8 @@ def mirrored_copy(context: bpy.types.Context, obj: bpy.types.Object) -> bpy.type
     when its image is not on the vehicle."""
     depsgraph = context.evaluated_depsgraph_get()
     sensor = bridge.sensor_from_object(obj, depsgraph)
-    pose, image = sensor.pose, bridge.mirrored_pose(sensor.pose)
+    pose = sensor.pose
+    image = bridge.mirrored_pose(sensor.pose)
     if bridge.in_the_middle(pose):
         expected = "a sensor beside the vehicle's middle plane"
         raise pe.InputError("scene", f"sensor {obj.name!r}", expected, "its own mirror image")

@@ -21,13 +21,20 @@ from . import running_job
 from .declared import Answer, OperatorResult, Stopped, Told, chosen_file, operator
 from .jobs import JobRow, Task, begin
 
+STOPPED = "Stopped: nothing was written"
+REPLACE = BoolProperty(
+    name="Replace", description="Replace existing files of a folder", default=False
+)
+FORMAT_ITEMS = tuple(
+    (row.name, row.title, "", k) for k, row in enumerate(exchange.RIG_FORMATS.values())
+)
+
 
 def _take_waiting(_context: bpy.types.Context) -> Task:
     job = EXPORT.asked.pop("job")
     return Task(job, lambda _scene, written: told_of(written), "written")
 
 
-STOPPED = "Stopped: nothing was written"
 EXPORT = JobRow(read=_take_waiting, unfinished=STOPPED, of_scene=False)
 
 
@@ -71,11 +78,6 @@ def dialog(suffix: str, name: Callable[[Any], str] | None = None) -> dict[str, A
     return found | {"filter_glob": StringProperty(default=f"*{suffix}", options={"HIDDEN"})}
 
 
-REPLACE = BoolProperty(
-    name="Replace", description="Replace existing files of a folder", default=False
-)
-
-
 @operator("Export Study", **dialog(".toml"))
 def export_study(context: bpy.types.Context, filepath: str) -> Told:
     """Write a study (.toml) and the vehicle's mesh (.npz) beside it"""
@@ -114,14 +116,17 @@ def export_scene(
     asked_in_window: bool,
 ) -> Answer:
     """Write vehicle, sensors and fields of view for CAD, viewers and other programs"""
-    row, path = outputs.scene_output(output), chosen_file(filepath)
+    row = outputs.scene_output(output)
+    path = chosen_file(filepath)
     if not (row.has_several or path.suffix):
         path = path.with_suffix(Path(row.file).suffix)
     exchange.format_of_file(path, outputs.output_files(), row.name)  # refuses another's suffix
     study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
     replace = replace or not row.has_several  # of one file the dialog has confirmed it
 
-    return run(own_jobs.scene_job(study, row.name, path, range_m or None, replace), asked_in_window)
+    return run(
+        own_jobs.scene_job(study, row.name, path, range_m or None, replace=replace), asked_in_window
+    )
 
 
 @operator("Render Review", unless=_unless_running, **dialog(".svg"))
@@ -155,7 +160,8 @@ def export_review(
     asked_in_window: bool,
 ) -> Answer:
     """Score the present sensors and write a page of the results (.html)"""
-    path, about = chosen_file(filepath), page.About(title, author, date, revision)
+    path = chosen_file(filepath)
+    about = page.About(title, author, date, revision)
     study = bridge.study_as_drawn(context.scene)
     facts: dict[str, Any] = {
         "command": headless_command(path, about),
@@ -175,11 +181,6 @@ def headless_command(path: Path, about: page.About) -> str:
     options += [f"--{name}={text}" for name, text in texts.items() if text]
     file = shlex.quote(Path(bpy.data.filepath).name)
     return app.as_typed(f"blender -b {file} --command pe", options)
-
-
-FORMAT_ITEMS = tuple(
-    (row.name, row.title, "", k) for k, row in enumerate(exchange.RIG_FORMATS.values())
-)
 
 
 def rig_file(name: str) -> str:

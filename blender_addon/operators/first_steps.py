@@ -18,7 +18,8 @@ def use_selected(context: bpy.types.Context) -> str:
     """Choose the selected objects, with all objects parented to them, as the vehicle.
 
     They are moved into a new collection, unless a collection has them and no other mesh"""
-    scene, parts = context.scene, selected_parts(context.selected_objects)
+    scene = context.scene
+    parts = selected_parts(context.selected_objects)
     vehicle = common_collection(scene, parts) or new_vehicle(scene, parts)
     scene.perception_entropy.vehicle = vehicle
     return f"Vehicle: {vehicle.name}, objects: {len(parts)}"

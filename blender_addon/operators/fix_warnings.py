@@ -14,10 +14,12 @@ from .declared import operator
 from .edit_sensors import rigid
 
 AdviceAmount = tuple[float, float, float]
-AMOUNT, FACTOR = text.Number(cap=1e6), text.Number(1e-6, 1e6)
+AMOUNT = text.Number(cap=1e6)
+FACTOR = text.Number(1e-6, 1e6)
 """Amounts of a correction, and of a scale. Beyond single precision Blender ends at an undo."""
 ON_VEHICLE_M = 0.5
 """A sensor this near to the vehicle's box goes with it when that is turned or moved."""
+Fix = Callable[[bpy.types.Context, str, AdviceAmount], None]
 
 
 def turn_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount) -> None:
@@ -28,7 +30,8 @@ def turn_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount
 def stand_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount) -> None:
     """Turn the vehicle about x, y and z [deg]; put it on the ground, its axis on the x axis."""
     turn = Euler([math.radians(each) for each in amount]).to_matrix()
-    collection, depsgraph = _chosen_vehicle(context), context.evaluated_depsgraph_get()
+    collection = _chosen_vehicle(context)
+    depsgraph = context.evaluated_depsgraph_get()
     vehicle = bridge.vehicle_from_collection(collection, depsgraph)
     turned = vehicle.triangles @ np.array(turn).T
     shape = geometry.BodyShape(turned, vehicle.parts, vehicle.part_names)
@@ -63,18 +66,20 @@ def apply_scale(context: bpy.types.Context, subject: str, _amount: AdviceAmount)
 def metric_units(context: bpy.types.Context, _subject: str, _amount: AdviceAmount) -> None:
     """Set the scene's unit to one metre; no object is moved or scaled."""
     units = context.scene.unit_settings
-    units.system, units.scale_length, units.length_unit = "METRIC", 1.0, "METERS"
+    units.system = "METRIC"
+    units.scale_length = 1.0
+    units.length_unit = "METERS"
 
 
 def show_vehicle(context: bpy.types.Context, _subject: str, _amount: AdviceAmount) -> None:
     """Make the vehicle's collection and its parent collections visible again."""
-    vehicle, root = context.scene.perception_entropy.vehicle, context.view_layer.layer_collection
+    vehicle = context.scene.perception_entropy.vehicle
+    root = context.view_layer.layer_collection
     for layer in reversed(bridge.layers_of(root, vehicle)[:-1] if vehicle else []):
         layer.exclude = layer.hide_viewport = False
         layer.collection.hide_viewport = layer.collection.hide_render = False
 
 
-Fix = Callable[[bpy.types.Context, str, AdviceAmount], None]
 FIXES: dict[str, tuple[str, Fix]] = {
     "turn_vehicle": ("Turn the Vehicle", turn_vehicle),
     "stand_vehicle": ("Stand on Wheels", stand_vehicle),
@@ -128,7 +133,8 @@ def _transform_vehicle(context: bpy.types.Context, change: Matrix) -> None:
     outermost = [obj for obj in members if obj.parent not in members]
     for obj in outermost:
         if obj.library is not None:
-            expected, found = "an object of this file", f"linked from {obj.library.filepath}"
+            expected = "an object of this file"
+            found = f"linked from {obj.library.filepath}"
             raise pe.InputError("scene", f"vehicle object {obj.name!r}", expected, found)
     carried = [obj for obj in _sensors_on(context, members) if not _follows(obj, outermost)]
     for obj in outermost:
@@ -172,11 +178,13 @@ def _sensor_named(context: bpy.types.Context, name: str) -> bpy.types.Object:
 
 def _bounds(members: Iterable[bpy.types.Object]) -> tuple[Vector, Vector]:
     """Return the lowest and the highest corner of the meshes [m]; of none, a box without points."""
-    low, high = Vector((math.inf,) * 3), Vector((-math.inf,) * 3)
+    low = Vector((math.inf,) * 3)
+    high = Vector((-math.inf,) * 3)
     for obj in members:
         for corner in obj.bound_box if obj.type == "MESH" else ():
             point = obj.matrix_world @ Vector(corner)
-            low, high = Vector(map(min, low, point)), Vector(map(max, high, point))
+            low = Vector(map(min, low, point))
+            high = Vector(map(max, high, point))
     return low, high
 
 

@@ -10,8 +10,11 @@ from mathutils import Matrix
 
 from .declared import declared
 
-RADIUS, THIN, ALPHA = 0.9, 2.0, 0.55
-YAW, PITCH = (0.30, 0.56, 0.95), (0.55, 0.80, 0.25)
+RADIUS = 0.9
+THIN = 2.0
+ALPHA = 0.55
+YAW = (0.30, 0.56, 0.95)
+PITCH = (0.55, 0.80, 0.25)
 ROTATIONS = ((YAW, "GLOBAL", (False, False, True)), (PITCH, "LOCAL", (False, True, False)))
 """Colour of each handle, orientation and axis of its rotation."""
 FROM_DIAL = Matrix.Rotation(-math.pi / 2.0, 4, "X")
@@ -40,15 +43,20 @@ class PE_GGT_handles(bpy.types.GizmoGroup):
             dial = self.gizmos.new("GIZMO_GT_dial_3d")
             dial.draw_options = {"CLIP"}  # type: ignore[attr-defined]  # of this type of gizmo
             rotation = dial.target_set_operator("transform.rotate")
-            rotation.orient_type, rotation.constraint_axis = orientation, axis
+            rotation.orient_type = orientation
+            rotation.constraint_axis = axis
             rotation.release_confirm = True
-            dial.color, dial.alpha = color, ALPHA
-            dial.color_highlight, dial.alpha_highlight = color, 1.0
-            dial.scale_basis, dial.line_width = RADIUS, THIN
+            dial.color = color
+            dial.alpha = ALPHA
+            dial.color_highlight = color
+            dial.alpha_highlight = 1.0
+            dial.scale_basis = RADIUS
+            dial.line_width = THIN
 
     def draw_prepare(self, context: bpy.types.Context) -> None:
         obj = context.active_object
-        place, turned = Matrix.Translation(obj.matrix_world.translation), obj.matrix_world
+        place = Matrix.Translation(obj.matrix_world.translation)
+        turned = obj.matrix_world
         turned = turned.to_quaternion().to_matrix().to_4x4()
         frames = (place, place @ turned @ FROM_DIAL)
         for dial, frame in zip(self.gizmos, frames, strict=True):

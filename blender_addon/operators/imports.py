@@ -20,6 +20,9 @@ from .exports import FORMAT_ITEMS
 from .named_places import places_of
 from .variants import stand_as_variant
 
+BY_NAME = "TOLD"
+FORMAT_OR_NAME = (*FORMAT_ITEMS, (BY_NAME, "By Name", "By the file's name", len(FORMAT_ITEMS)))
+
 
 def _about_rig(about: str, chosen: bpy.types.OperatorProperties) -> str:
     if (template := catalog.templates().get(chosen.key)) is not None:
@@ -59,7 +62,8 @@ def add_rig(context: bpy.types.Context, key: str, fit: bool, on_places: bool) ->
         at = None if vehicle is None else places_of(scene, vehicle)
         sensors = catalog.sensors_on(rig, vehicle, at)
         kinds = ((each.name, catalog.load(each.model).kind) for each in sensors)
-        tints, note = graphics.place_tints(kinds), f"A template on named places. {rig.note}"
+        tints = graphics.place_tints(kinds)
+        note = f"A template on named places. {rig.note}"
         records = tuple(replace(record_of(s), color=tints[s.name]) for s in sensors)
     else:
         on_it = vehicle if fit else None
@@ -71,7 +75,7 @@ def add_rig(context: bpy.types.Context, key: str, fit: bool, on_places: bool) ->
             f"{rig.vehicle}; published with the origin {rig.origin}, here about the vehicle's "
             f"centre, {how}. {rig.note} Source: {rig.source}"
         )
-    name = stand_as_variant(scene, rig.title, records, note, before)
+    name = stand_as_variant(scene, rig.title, records, note, before=before)
     return f"Added {name}: {len(records)} sensors"
 
 
@@ -118,7 +122,7 @@ def replace_sensors(
         )
         for sensor in sensors
     )
-    name = stand_as_variant(scene, title, records, f"{origin}. {' '.join(lines)}", before)
+    name = stand_as_variant(scene, title, records, f"{origin}. {' '.join(lines)}", before=before)
     signals.study_changed.emit()
     count = len(records)
     return Told(f"Added {name}: {count} sensor{'s' if count > 1 else ''}", tuple(lines))
@@ -157,7 +161,7 @@ def paste_rig(context: bpy.types.Context, text: str) -> Told:
 
     Present sensors that are no variant yet are saved as one"""
     rig = studies.read_rig_line(text or context.window_manager.clipboard, "clipboard")
-    return replace_sensors(context.scene, "Pasted", rig, (), "Pasted")
+    return replace_sensors(context.scene, "Pasted", rig, lines=(), origin="Pasted")
 
 
 @operator(
@@ -181,10 +185,6 @@ def import_study(context: bpy.types.Context, filepath: str) -> Told:
     return Told(f"Imported {filepath} without any loss")
 
 
-BY_NAME = "TOLD"
-FORMAT_OR_NAME = (*FORMAT_ITEMS, (BY_NAME, "By Name", "By the file's name", len(FORMAT_ITEMS)))
-
-
 @operator(
     "Import Rig",
     bases=(ImportHelper,),
@@ -196,10 +196,12 @@ def import_rig(context: bpy.types.Context, filepath: str, format: str) -> Told:
 
     Present sensors that are no variant yet are saved as one. A sensor whose model the file does not
     name gets a usual one, and a line that says so"""
-    path, scene = chosen_file(filepath), context.scene
+    path = chosen_file(filepath)
+    scene = context.scene
     several = [row.files for row in exchange.RIG_FORMATS.values() if row.is_folder]
     place = path.parent if any(path.name in files for files in several) else path
-    reference, name = bridge.reference_of(scene.perception_entropy), format
+    reference = bridge.reference_of(scene.perception_entropy)
+    name = format
     found = exchange.import_rig(place, None if name == BY_NAME else name, reference)
     title = path.stem or path.parent.name
-    return replace_sensors(scene, title, tuple(found.rig), found.lines, f"Read from {path}")
+    return replace_sensors(scene, title, tuple(found.rig), found.lines, origin=f"Read from {path}")

@@ -317,7 +317,8 @@ def store_search(
 
 def search_line(outcome: jobs.Outcome) -> str:
     """Return the result of a search in a line."""
-    before, after = outcome.before.entropy, outcome.after.entropy
+    before = outcome.before.entropy
+    after = outcome.after.entropy
     best = "best so far, stopped early" if outcome.stopped else f"{outcome.evaluations} tried"
     if outcome.in_traffic is not None:
         first, last = (each.ap for each in outcome.in_traffic)
@@ -353,7 +354,8 @@ def check_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprin
 
     def store(scene: bpy.types.Scene, found: jobs.CheckJob | jobs.Checked) -> None:
         nonlocal count
-        count, settings = len(found.verdicts), scene.perception_entropy
+        count = len(found.verdicts)
+        settings = scene.perception_entropy
         same = {name for name, _ in tables & {*bridge.requirements_key(settings)}}
         kept = [each for each in found.verdicts if each.name in same]
         bridge.store_verdicts(settings, kept, found.unchecked)

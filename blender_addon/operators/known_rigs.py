@@ -21,7 +21,7 @@ def request(scene: bpy.types.Scene, study: pe.Study, surroundings: str) -> None:
             signals.live_score_changed.emit()
 
     topic = f"known rigs of {name}"
-    engine_process.ask(topic, engine_calls.known_entropies, (study,), deliver, lambda _: None)
+    engine_process.ask(topic, engine_calls.known_entropies, (study,), deliver, fail=lambda _: None)
 
 
 def told(scene: bpy.types.Scene) -> str:

@@ -15,8 +15,13 @@ from .edit_sensors import NAME
 
 SPACE_FIELDS = ("lens", "clip_start", "clip_end", "lock_camera")
 VIEW_FIELDS = (
-    *("view_perspective", "view_location", "view_rotation", "view_distance"),
-    *("view_camera_zoom", "view_camera_offset", "is_orthographic_side_view"),
+    "view_perspective",
+    "view_location",
+    "view_rotation",
+    "view_distance",
+    "view_camera_zoom",
+    "view_camera_offset",
+    "is_orthographic_side_view",
 )
 """In the order in which they are set: an axis view has to follow its rotation."""
 CAMERA_PERSPECTIVE = "CAMERA"
@@ -84,7 +89,8 @@ def _copied(value: Any) -> Any:
 @operator("Look Through", mode="Look Through works in Object Mode", name=NAME)
 def look_through(context: bpy.types.Context, name: str) -> None:
     """Show what this camera sees (press again to come back)"""
-    scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
+    scene = context.scene
+    depsgraph = context.evaluated_depsgraph_get()
     obj = chosen_sensor(context, name)
     sensor = bridge.sensor_from_object(obj, depsgraph)
     row = row_of(sensor.kind)

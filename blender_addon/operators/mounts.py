@@ -16,7 +16,8 @@ from .rows import new_row, row_list, unless_selected
 
 IN_A_BOX = "BOX"  # The entry for no mount in the menu of a sensor's mounts
 NO_GO_SIZE_M = 0.25  # Half a side of a no-go area that encloses no part
-PART_MARGIN_M, MIN_SIDE_M = 0.02, 0.01
+PART_MARGIN_M = 0.02
+MIN_SIDE_M = 0.01
 """Margin of a no-go area round parts, and its smallest side."""
 _listed: list[tuple[str, str, str]] = []
 """What the menu lists: Blender reads the texts after the function that made them returned."""
@@ -52,7 +53,8 @@ row_list(
 @operator("Take Selected", unless=unless_selected("mounts"), signal=signals.view_changed)
 def mount_parts(context: bpy.types.Context) -> None:
     """Use all faces of the vehicle's selected objects for this mount"""
-    settings, parts = context.scene.perception_entropy, selected_parts(context)
+    settings = context.scene.perception_entropy
+    parts = selected_parts(context)
     if not parts:
         raise Refused("Select objects of the vehicle's collection first")
     _set_parts(settings.mounts[settings.mount_index], parts)
@@ -85,7 +87,8 @@ def add_no_go(context: bpy.types.Context) -> None:
     """Add a box that no part of a sensor may be in: round the vehicle's parts that are selected,
     else at the 3D cursor, or on the roof where the cursor is at the origin"""
     obj = bpy.data.objects.new("no_go", None)
-    obj.empty_display_type, obj.empty_display_size = "CUBE", NO_GO_SIZE_M
+    obj.empty_display_type = "CUBE"
+    obj.empty_display_size = NO_GO_SIZE_M
     low, high = no_go_extent(context)
     obj.location = (low + high) / 2.0
     obj.scale = np.maximum(high - low, MIN_SIDE_M) / (2.0 * NO_GO_SIZE_M)

@@ -11,7 +11,8 @@ from .. import vehicle_cache
 from ..engine import geometry, pe
 from .declared import Refused, operator
 
-PLACES, KEY = "Named Places", "pe_place"
+PLACES = "Named Places"
+KEY = "pe_place"
 """The collection of the empties, and the property of an empty that is the place's name."""
 SIZE_M = 0.12
 
@@ -27,7 +28,8 @@ def places_of(scene: bpy.types.Scene, vehicle: pe.Vehicle) -> Mapping[str, geome
             matrix = obj.matrix_world
             ahead, up = (matrix.col[k].to_3d().normalized() for k in (0, 2))
             out = up if places[name].outward[2] > 0.0 else ahead
-            (x, y, z), (a, b, c) = np.round(matrix.translation, 4), np.round(out, 6)
+            x, y, z = np.round(matrix.translation, 4)
+            a, b, c = np.round(out, 6)
             yaw_deg = round(math.degrees(math.atan2(ahead.y, ahead.x)), 3)
             places[name] = geometry.NamedPlace((x, y, z), (a, b, c), yaw_deg)
     return places
@@ -57,7 +59,8 @@ def show_places(context: bpy.types.Context) -> str:
     for name, place in places.items():
         obj = bpy.data.objects.new(name, None)
         obj[KEY] = name
-        obj.empty_display_type, obj.empty_display_size = "ARROWS", SIZE_M
+        obj.empty_display_type = "ARROWS"
+        obj.empty_display_size = SIZE_M
         turn = Matrix.Rotation(math.radians(place.yaw_deg), 4, "Z")
         obj.matrix_world = Matrix.Translation(place.point) @ turn
         collection.objects.link(obj)

@@ -34,7 +34,8 @@ STEPS = {
     "WHEELUPMOUSE": STAND_OFF_STEP_M,
 }
 """Keys that bring a sensor nearer to the surface, or farther from it [m]."""
-TURN_DEG, FINE_TURN_DEG = 5.0, 1.0
+TURN_DEG = 5.0
+FINE_TURN_DEG = 1.0
 TURNS = {
     "LEFT_ARROW": (1.0, 0.0),
     "RIGHT_ARROW": (-1.0, 0.0),
@@ -49,6 +50,7 @@ TYPED |= {"MINUS": "-", "BACK_SPACE": ""}
 """Keys of a typed number; those of the number pad turn the view."""
 VIEW = ("NUMPAD_", "MIDDLEMOUSE", "WHEEL", "TRACKPAD", "MOUSE", "NDOF", "TIMER", "WINDOW", "HOME")
 """How events begin that turn, move and zoom the view, or are Blender's own: they pass."""
+BUSY = "Something else waits for Esc: a search, or a sensor to place"
 
 
 def _stance(self: Any, mount: Mount) -> Stance:
@@ -64,8 +66,9 @@ def _put(self: Any, context: bpy.types.Context, name: str, mount: Mount, placed:
         obj = context.scene.objects[self.sensor]
     else:
         body = measured_housing(self.model) if self.housing else None
-        obj = new_sensor(context, name, self.model, mount, body)
-        obj.location, obj.rotation_euler = placed.to_translation(), placed.to_euler()
+        obj = new_sensor(context, name, self.model, mount, body=body)
+        obj.location = placed.to_translation()
+        obj.rotation_euler = placed.to_euler()
         context.view_layer.update()
     if self.mirrored and not obj.perception_entropy.mirror_of and not bridge.in_the_middle(pose):
         try:
@@ -87,7 +90,8 @@ def _hold(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> Ope
     if bpy.app.background:
         return self.execute(context)
     try:
-        model, moved = _model(self, context), context.scene.objects.get(self.sensor)
+        model = _model(self, context)
+        moved = context.scene.objects.get(self.sensor)
         choose_vehicle(context.scene)
         placement.begin(context, model, _stance(self, mount_for(model)), moved)
     except USER_ERRORS as error:
@@ -150,7 +154,7 @@ def _click(
         return {"RUNNING_MODAL"}
     self.mirrored = held.mirrored
     try:
-        _put(self, context, held.kind.label, held.mount, held.matrix)
+        _put(self, context, held.kind.label, held.mount, placed=held.matrix)
     except USER_ERRORS as error:  # a constraint holds the sensor that was to be moved
         placement.end()
         return report_error(self, error)
@@ -160,9 +164,6 @@ def _click(
         return {"RUNNING_MODAL"}
     placement.end()
     return {"FINISHED"}
-
-
-BUSY = "Something else waits for Esc: a search, or a sensor to place"
 
 
 @operator(
@@ -214,9 +215,10 @@ BUSY = "Something else waits for Esc: a search, or a sensor to place"
 def place_sensor(context: bpy.types.Context, operator: Any) -> None:
     """Place a sensor by pointing at the vehicle. Click: place, Esc: cancel"""
     model = _model(operator, context)
-    kind, mount = kinds.kind_of(model), mount_for(model)
+    kind = kinds.kind_of(model)
+    mount = mount_for(model)
     choose_vehicle(context.scene)
     spot = SurfaceSpot(Vector(operator.location), Vector(operator.normal).normalized(), "")
     middle = vehicle_center(context.scene.perception_entropy.vehicle)
     placed = _stance(operator, mount).placed(spot, mount, middle)
-    _put(operator, context, kind.label, mount, placed)
+    _put(operator, context, kind.label, mount, placed=placed)

@@ -37,19 +37,25 @@ from .surface_pose import (
     view_under,
 )
 
-LENGTH_M, RING_M, ALOFT_M = 2.0, 0.12, 100.0
+LENGTH_M = 2.0
+RING_M = 0.12
+ALOFT_M = 100.0
 STEM_COLOR = (1.0, 1.0, 1.0, 0.8)
 HELD_PALETTE = replace(graphics.VIEWPORT, free=(1.0, 0.93, 0.55, 0.5), other=(1.0, 0.93, 0.55, 0.9))
 """Lighter than sensors that are there."""
 POINT_AT = "Point at the vehicle"
 LINE_PX = 1.5
-TEXT_PX, TEXT_GAP, PAD_PX = 12, 1.5, 6
+TEXT_PX = 12
+TEXT_GAP = 1.5
+PAD_PX = 6
 TEXT_AT = (26, -12)
 """Where text begins beside the mouse [px]."""
 PLATE = (0.08, 0.08, 0.08, 0.78)
-OFF, ALONG = -1, 0.5
+OFF = -1
+ALONG = 0.5
 """Numbers are typed for the stand-off; of a normal: along this axis the body goes on."""
-FARTHEST_M, CENTERED_M = 100.0, 5e-4
+FARTHEST_M = 100.0
+CENTERED_M = 5e-4
 TOPIC = "held sensor"
 _numbers = count()
 """Of studies that sensors are held in."""
@@ -66,24 +72,30 @@ class HeldSensor:
         stance: Stance,
         moved: bpy.types.Object | None = None,
     ) -> None:
-        self.model, self.kind = model, kinds.kind_of(model)
-        self.mirrored, self.name = False, "" if moved is None else moved.name
+        self.model = model
+        self.kind = kinds.kind_of(model)
+        self.mirrored = False
+        self.name = "" if moved is None else moved.name
         self._is_linked = moved is not None and bool(moved.perception_entropy.mirror_of)
         self._own = None if moved is None else moved.matrix_world.to_euler().to_matrix().to_4x4()
-        self._axis, self._given = OFF, dict[int, float]()
-        self.mount, self.stance = mount_for(model), stance
+        self._axis = OFF
+        self._given = dict[int, float]()
+        self.mount = mount_for(model)
+        self.stance = stance
         self.matrix: Matrix | None = None
         self.text: tuple[str, ...] = ()
         self.lines = self._faces = graphics.Primitives.empty()
         self.score = self._typed = ""
         self._spot: SurfaceSpot | None = None
-        self._region, self._mouse = 0, (0, 0)
+        self._region = 0
+        self._mouse = (0, 0)
         self._handlers = viewport.DrawHandlers()
         self._shape = sensor_shape(self.kind.label, model)
         depsgraph = context.evaluated_depsgraph_get()
         vehicle = context.scene.perception_entropy.vehicle
         self._parts = parts_of(vehicle, depsgraph)
-        self._middle, self._box = vehicle_center(vehicle), vehicle_box(vehicle)
+        self._middle = vehicle_center(vehicle)
+        self._box = vehicle_box(vehicle)
         self._scored = self._scored_in(context.scene, depsgraph)
         self._workspace = context.workspace.name
         self._handlers.show((self._draw, "POST_VIEW"), (self._draw_text, "POST_PIXEL"))
@@ -91,11 +103,13 @@ class HeldSensor:
 
     def point(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
         """Follow the mouse; over anything but a 3D view there is no spot."""
-        view, spot = view_under(context, event), None
+        view = view_under(context, event)
+        spot = None
         if view is not None:
             depsgraph = context.evaluated_depsgraph_get()
             spot = spot_on_ray(context.scene, depsgraph, self._parts, *ray_of(view))
-            self._region, self._mouse = view.region.as_pointer(), view.mouse
+            self._region = view.region.as_pointer()
+            self._mouse = view.mouse
         self.stance = replace(self.stance, magnet=not event.ctrl)
         self.put(spot)
 
@@ -115,7 +129,8 @@ class HeldSensor:
 
     def type_into(self, axis: int) -> None:
         """Have numbers typed for a coordinate of the sensor; again: for its stand-off."""
-        self._axis, self._typed = OFF if axis == self._axis else axis, ""
+        self._axis = OFF if axis == self._axis else axis
+        self._typed = ""
         self.show_keys()
 
     def typed(self, letter: str) -> None:
@@ -138,7 +153,8 @@ class HeldSensor:
 
     def step(self, by_m: float) -> None:
         """Change the stand-off by a distance [m]."""
-        self._axis, self._typed = OFF, ""
+        self._axis = OFF
+        self._typed = ""
         self.stand(self.stance.changed(by_m))
 
     @property
@@ -158,9 +174,12 @@ class HeldSensor:
 
     def more(self, context: bpy.types.Context) -> None:
         """Hold another sensor of the same model; its score includes the sensor just placed."""
-        scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
-        self._scored, self.score = self._scored_in(scene, depsgraph), ""
-        self._axis, self._typed = OFF, ""
+        scene = context.scene
+        depsgraph = context.evaluated_depsgraph_get()
+        self._scored = self._scored_in(scene, depsgraph)
+        self.score = ""
+        self._axis = OFF
+        self._typed = ""
         self._given.clear()
         self.put(None)
 
@@ -180,7 +199,8 @@ class HeldSensor:
 
     def put(self, spot: SurfaceSpot | None) -> None:
         """Put the sensor on a spot, or nowhere; request its approximate score there."""
-        self._spot, self.matrix = spot, None
+        self._spot = spot
+        self.matrix = None
         self.lines = self._faces = graphics.Primitives.empty()
         if spot is not None:
             wanted = self._wanted(spot)
@@ -198,9 +218,11 @@ class HeldSensor:
             self.lines = graphics.Primitives.joined([*lines, stem])
             self._faces = graphics.Primitives.joined(faces)
             if self._scored is not None:
-                given, lane = (*self._scored, pose), engine_process.FOLLOWS_MOUSE
-                tell = self._tell, self._tell
-                engine_process.ask(TOPIC, engine_calls.gain, given, *tell, lane=lane)
+                given = (*self._scored, pose)
+                lane = engine_process.FOLLOWS_MOUSE
+                engine_process.ask(
+                    TOPIC, engine_calls.gain, given, self._tell, fail=self._tell, lane=lane
+                )
         self._write()
 
     def _wanted(self, spot: SurfaceSpot) -> dict[int, float]:
@@ -215,8 +237,9 @@ class HeldSensor:
         along = {axis: v for axis, v in wanted.items() if abs(spot.normal[axis]) < ALONG}
         if not along:
             return spot
-        scene, depsgraph = bpy.context.scene, bpy.context.evaluated_depsgraph_get()
-        return spot_beside(scene, depsgraph, self._parts, spot, along)
+        scene = bpy.context.scene
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        return spot_beside(scene, depsgraph, self._parts, spot, wanted=along)
 
     def _tell(self, gain: Gain | Exception) -> None:
         """Show the score that the engine found, or why there is none."""
@@ -287,7 +310,8 @@ class HeldSensor:
         if region is None or region.as_pointer() != self._region:
             return
         scale = viewport.ui_scale()
-        size, pad = TEXT_PX * scale, PAD_PX * scale
+        size = TEXT_PX * scale
+        pad = PAD_PX * scale
         row = size * TEXT_GAP
         left, top = (at + off * scale for at, off in zip(self._mouse, TEXT_AT, strict=True))
         width = max((viewport.text_size(line, size)[0] for line in self.text), default=0.0)
@@ -295,7 +319,7 @@ class HeldSensor:
         left = min(left, viewport.sidebar_left(bpy.context) - width - 2.0 * pad)
         viewport.fill_box((left - pad, low, left + width + pad, top + row), PLATE)
         for number, line in enumerate(self.text):
-            viewport.draw_text(line, left, top - number * row, size, viewport.INK)
+            viewport.draw_text(line, left, top - number * row, size, color=viewport.INK)
 
 
 current: HeldSensor | None = None
@@ -318,7 +342,8 @@ def end() -> None:
     """Stop holding the sensor; does nothing if there is none."""
     global current
     if current is not None:
-        ended, current = current, None
+        ended = current
+        current = None
         ended.end()
 
 

@@ -10,7 +10,8 @@ from ..overlay.layer_cache import shown_of
 from ..overlay.requirement_zones import VerdictShape
 from .rows import new_row, row_list
 
-OWN, ALL = "OWN", "ALL"
+OWN = "OWN"
+ALL = "ALL"
 PRESETS = (
     (OWN, "Own Requirement", "An adult ahead of the vehicle, to be changed below"),
     *(
@@ -39,11 +40,13 @@ def add_requirement(context: bpy.types.Context, preset: str) -> str:
     present = {bridge.preset_of(row) for row in settings.requirements}
     presets = studies.requirement_file.presets()
     made = dict(_requirement(each) for each in presets if each not in present)
-    depsgraph, chosen = context.evaluated_depsgraph_get(), settings.requirement_index
+    depsgraph = context.evaluated_depsgraph_get()
+    chosen = settings.requirement_index
     vehicle = vehicle_cache.shared.read(scene, depsgraph).vehicle
     study = bridge.study_from_scene(scene, depsgraph, vehicle)
-    around = study.rig, study.vehicle, study.reference, study.space
-    fitting, reasons = requirements.checkable(list(made), *around)
+    fitting, reasons = requirements.checkable(
+        list(made), study.rig, study.vehicle, study.reference, space=study.space
+    )
     for each in fitting:
         _add(scene, each, made[each])
     settings.requirement_index = chosen

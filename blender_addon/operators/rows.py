@@ -23,6 +23,13 @@ PLAIN: Kind = ("PLAIN", "Row", "")
 MENU_LENGTH = 12
 """More kinds than these are searched for by their names, not chosen in a menu."""
 ROW_OPTIONS = INTERNAL | {"UNDO"}
+ROWS = StringProperty(name="List", description="Property of the list's rows: requirements, mounts")
+INDEX = IntProperty(
+    name="Index",
+    description="Position of the row; -1: the selected one",
+    default=SELECTED,
+    min=SELECTED,
+)
 
 
 def of_scene(context: bpy.types.Context) -> bpy.types.PropertyGroup:
@@ -154,15 +161,6 @@ def _about_row(verb: str) -> Callable[[str, Any], str]:
         return f"{verb} the selected {found.noun}{found.loss if verb == 'Remove' else ''}"
 
     return tooltip
-
-
-ROWS = StringProperty(name="List", description="Property of the list's rows: requirements, mounts")
-INDEX = IntProperty(
-    name="Index",
-    description="Position of the row; -1: the selected one",
-    default=SELECTED,
-    min=SELECTED,
-)
 
 
 def _list_named(rows: str) -> RowList:

@@ -42,15 +42,19 @@ class RunningJob(jobs.WatchedJob):
 
     def start(self) -> None:
         """Have the job run; `ended` says that it has, `found` its result, `error` its failure."""
-        given, take = (self.job, self.outcome), (self._take, self._fail)
+        given = (self.job, self.outcome)
         lane = engine_process.JOB
-        engine_process.ask(TOPIC, jobs.JobRun, given, *take, step=self.note, lane=lane)
+        engine_process.ask(
+            TOPIC, jobs.JobRun, given, self._take, fail=self._fail, step=self.note, lane=lane
+        )
 
     def _take(self, found: Any) -> None:
-        self.ended, self.found = True, found
+        self.ended = True
+        self.found = found
 
     def _fail(self, error: Exception) -> None:
-        self.ended, self.error = True, error
+        self.ended = True
+        self.error = error
 
     def stop(self) -> None:
         """End the part of the job that runs; called once more than it has parts, keep nothing."""
@@ -65,7 +69,8 @@ class RunningJob(jobs.WatchedJob):
         if self.seen.dropped:
             return "Stopping"
         stage = f"{self.progress.stage.capitalize()} {self.progress.fraction:.0%}"
-        entropy, figure = self.progress.entropy, self.progress.figure
+        entropy = self.progress.entropy
+        figure = self.progress.figure
         if entropy is None:
             return stage
         if self.progress.stage == "optimizing" and (curve := getattr(self.seen, "curve", ())):
@@ -104,7 +109,8 @@ class RunningJob(jobs.WatchedJob):
         best = getattr(self.seen, "curve", ())[1:][-1:]
         if best == self._best or time.monotonic() - self._looked < BEST_EVERY_S:
             return
-        self._looked, self._best = time.monotonic(), best
+        self._looked = time.monotonic()
+        self._best = best
         best_so_far.searches[self.scene_name] = tuple(cast(Any, self.seen).best.rig)
         signals.view_changed.emit()  # it is drawn as ghosts
         viewport.redraw_editors()
@@ -138,7 +144,8 @@ def end(context: bpy.types.Context) -> None:
     """Drop the job; do nothing if there is none."""
     global current
     if current is not None:
-        ended, current = current, None
+        ended = current
+        current = None
         ended.end(context)
 
 

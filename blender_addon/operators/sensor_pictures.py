@@ -12,10 +12,14 @@ from mathutils import Matrix
 from .. import bridge, viewport
 from ..engine import catalog, pe
 
-TITLE_PX, PAD_PX = 20.0, 6.0
-WIDTH_SHARE, MAX_HEIGHT_SHARE, MAX_WIDTH_PX = 0.3, 0.4, 380.0
+TITLE_PX = 20.0
+PAD_PX = 6.0
+WIDTH_SHARE = 0.3
+MAX_HEIGHT_SHARE = 0.4
+MAX_WIDTH_PX = 380.0
 """Largest share of the view's width and height, and largest width at a scale of 1."""
-TITLE_PLATE, INK = (0.08, 0.08, 0.08, 0.78), (0.92, 0.92, 0.92, 1.0)
+TITLE_PLATE = (0.08, 0.08, 0.08, 0.78)
+INK = (0.92, 0.92, 0.92, 1.0)
 TAKES_SRGB = bpy.app.version >= (5, 0, 0)
 """Whether textures drawn over a view are taken as they are; before 5.0 they are linear light."""
 EDGE = (0.75, 0.75, 0.75, 1.0)
@@ -60,7 +64,8 @@ class ViewportPicture:
         draws what is added to the scene, with the camera's matrices."""
         if size != self.size:
             self.free()
-            self._offscreen, self.size = gpu.types.GPUOffScreen(*size), size
+            self._offscreen = gpu.types.GPUOffScreen(*size)
+            self.size = size
         self._offscreen.draw_view3d(
             view.window.scene,
             view.window.view_layer,
@@ -80,7 +85,8 @@ class ViewportPicture:
         """Let go of the memory."""
         if self._offscreen is not None:
             self._offscreen.free()
-        self._offscreen, self.size = None, (0, 0)
+        self._offscreen = None
+        self.size = (0, 0)
 
 
 def draw_picture(
@@ -96,14 +102,17 @@ def draw_frame(
     corner: tuple[float, float], size: tuple[int, int], title: str, scale: float
 ) -> viewport.PlateBox:
     """Draw a frame round a picture and its title on top; return the box of all of it."""
-    (left, bottom), (width, height) = corner, size
-    right, top = left + width, bottom + height
+    left, bottom = corner
+    width, height = size
+    right = left + width
+    top = bottom + height
     above = top + TITLE_PX * scale
-    pad, small = PAD_PX * scale, viewport.SMALL * scale
+    pad = PAD_PX * scale
+    small = viewport.SMALL * scale
     end = max(right, left + viewport.text_size(title, small)[0] + 2.0 * pad)
     viewport.fill_box((left, top, end, above), TITLE_PLATE)
     viewport.draw_outline((left, bottom, right, top), EDGE)
-    viewport.draw_text(title, left + pad, top + pad, small, INK)
+    viewport.draw_text(title, left + pad, top + pad, small, color=INK)
     return left, bottom, right, above
 
 
@@ -128,7 +137,8 @@ def size_in(
 ) -> PictureSize:
     """Return the size of a picture of these proportions in a region, between toolbar and sidebar
     [px]; its height is at most that `share` of the largest one."""
-    region, scale = context.region, viewport.ui_scale()
+    region = context.region
+    scale = viewport.ui_scale()
     free = viewport.sidebar_left(context) - viewport.beside_toolbar(context)
     wide = min(region.width, (free - viewport.MARGIN * scale) / WIDTH_SHARE)
     return size_of((wide, region.height * share), picture, scale)
@@ -143,8 +153,10 @@ def size_of(region: tuple[float, float], picture: tuple[float, float], scale: fl
 
 def corner(context: bpy.types.Context, plate: str, size: tuple[int, int]) -> tuple[float, float]:
     """Return the lower left corner of a picture in the region [px]: above the other plates."""
-    region, margin = context.region, viewport.MARGIN * viewport.ui_scale()
-    left, pointer = viewport.beside_toolbar(context), region.as_pointer()
+    region = context.region
+    margin = viewport.MARGIN * viewport.ui_scale()
+    left = viewport.beside_toolbar(context)
+    pointer = region.as_pointer()
     viewport.reserve_plate(pointer, plate, None)
     bottom = viewport.free_bottom(pointer, (left, left + size[0]), margin, margin)
     return left, min(bottom, region.height - size[1] - TITLE_PX * viewport.ui_scale())

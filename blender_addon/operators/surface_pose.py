@@ -15,6 +15,18 @@ from ..sensor_kinds import Mount
 
 PASS_STEP_M = 1e-3  # How far behind a surface that is not the vehicle's a ray goes on
 MAX_STEPS = 64
+REACH_M = 0.5  # How far out from a spot a ray starts that finds the surface beside it
+POSITION_DECIMALS = 3  # A sensor that is put down by hand stands at whole millimetres
+PARALLEL_COS = 0.999  # Of two unit vectors: they are parallel
+QUARTER = math.pi / 2.0
+MAGNET_RAD = math.radians(12.0)
+MAGNET_M = 0.06
+"""The magnet: to a quarter turn from so near, to the centre line from so near."""
+STAND_OFF_STEP_M = 0.01
+MIN_STAND_OFF_M = 0.0
+MAX_STAND_OFF_M = 2.0
+MAX_PITCH_DEG = 90.0
+"""A sensor pitches no further than straight down or up."""
 
 
 class SurfaceSpot(NamedTuple):
@@ -55,9 +67,6 @@ def spot_on_ray(
     return None
 
 
-REACH_M = 0.5  # How far out from a spot a ray starts that finds the surface beside it
-
-
 def spot_beside(
     scene: bpy.types.Scene,
     depsgraph: bpy.types.Depsgraph,
@@ -70,19 +79,12 @@ def spot_beside(
     point = spot.point.copy()
     for axis, value in wanted.items():
         point[axis] = value
-    found = spot_on_ray(scene, depsgraph, parts, point + spot.normal * REACH_M, -spot.normal)
+    found = spot_on_ray(
+        scene, depsgraph, parts, point + spot.normal * REACH_M, direction=-spot.normal
+    )
     if found is None or (found.point - point).length > REACH_M:
         return spot._replace(point=point)
     return found
-
-
-POSITION_DECIMALS = 3  # A sensor that is put down by hand stands at whole millimetres
-PARALLEL_COS = 0.999  # Of two unit vectors: they are parallel
-QUARTER, MAGNET_RAD, MAGNET_M = math.pi / 2.0, math.radians(12.0), 0.06
-"""The magnet: to a quarter turn from so near, to the centre line from so near."""
-STAND_OFF_STEP_M, MIN_STAND_OFF_M, MAX_STAND_OFF_M = 0.01, 0.0, 2.0
-MAX_PITCH_DEG = 90.0
-"""A sensor pitches no further than straight down or up."""
 
 
 class ViewUnderMouse(NamedTuple):
@@ -138,13 +140,15 @@ class Stance:
 
     def _turn(self) -> Matrix:
         """(4, 4) yaw, then pitch, in the sensor's own frame."""
-        yaw, pitch = math.radians(self.yaw_deg), math.radians(self.pitch_deg)
+        yaw = math.radians(self.yaw_deg)
+        pitch = math.radians(self.pitch_deg)
         return Matrix.Rotation(yaw, 4, "Z") @ Matrix.Rotation(pitch, 4, "Y")
 
 
 def view_under(context: bpy.types.Context, event: bpy.types.Event) -> ViewUnderMouse | None:
     """Return the 3D view under the mouse; None over its sidebar, its header or anything else."""
-    x, y = event.mouse_x, event.mouse_y
+    x = event.mouse_x
+    y = event.mouse_y
     for area in context.window.screen.areas:
         if area.type != "VIEW_3D" or not _holds(area, x, y):
             continue

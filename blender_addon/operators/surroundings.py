@@ -18,11 +18,17 @@ Z_M = -0.01
 """Height of the road: just above what pictures show of it farther away."""
 HALF_M = (40.0, 20.0)
 """Half the length and width of what is made of the ground."""
-ROAD_M, KERB_M, KERB_HIGH_M, JOINT_M = 1.5 * graphics.LANE_M + 0.15, 0.15, 0.12, 0.001
+ROAD_M = 1.5 * graphics.LANE_M + 0.15
+KERB_M = 0.15
+KERB_HIGH_M = 0.12
+JOINT_M = 0.001
 """Half the road's width; width and height of a kerb, and breadth of its sides seen from above."""
-GRID_M, STRONG_M, NEAR_M = 0.02, 0.05, 15.0
+GRID_M = 0.02
+STRONG_M = 0.05
+NEAR_M = 15.0
 """Width of the lines of the metre grid, and of each fifth; beyond `NEAR_M` only of these."""
-MARK_EVERY_M, MARK_M = 10, 0.55
+MARK_EVERY_M = 10
+MARK_M = 0.55
 """Distance of the marks on the road, and the height of their letters."""
 GROUND, ROAD, GRID, PAINT, KERB = range(5)
 GROUNDS: dict[str, housing.Look] = {
@@ -127,7 +133,8 @@ def _road() -> bpy.types.Object:
         made_of[np.ix_(in_dash | whole, np.abs(mid_y - lane) < half)] = PAINT
     made_of[:, (np.abs(mid_y) > ROAD_M) & (np.abs(mid_y) < ROAD_M + KERB_M)] = KERB
     points = np.zeros((len(x), len(y), 3))
-    points[..., 0], points[..., 1] = x[:, None], y[None]
+    points[..., 0] = x[:, None]
+    points[..., 1] = y[None]
     on_top = (np.abs(y) > kerb[0] + JOINT_M / 2.0) & (np.abs(y) < kerb[3] - JOINT_M / 2.0)
     points[..., 2] = np.where(on_top, KERB_HIGH_M, Z_M)
     at = np.arange(len(x) * len(y)).reshape(len(x), len(y))
@@ -165,7 +172,9 @@ def _marks() -> list[bpy.types.Object]:
     found = []
     for x in range(-30, 31, MARK_EVERY_M):
         text = bpy.data.curves.new(f"{x} m", "FONT")
-        text.body, text.size, text.align_x = f"{x} m", MARK_M, "CENTER"
+        text.body = f"{x} m"
+        text.size = MARK_M
+        text.align_x = "CENTER"
         text.materials.append(housing.housing_material("PE paint", GROUNDS["PE paint"]))
         mark = bpy.data.objects.new(f"{x} m", text)
         mark.location = (x + 0.1, graphics.LANE_M, Z_M + 0.004)
@@ -177,8 +186,10 @@ def _marks() -> list[bpy.types.Object]:
 def _sun() -> bpy.types.Object:
     """Return a sun, for renders: in a view its lines would be in the way."""
     light: Any = bpy.data.lights.new("Sun", "SUN")
-    light.energy, light.angle = 3.0, math.radians(0.5)
+    light.energy = 3.0
+    light.angle = math.radians(0.5)
     sun = bpy.data.objects.new("Sun", light)
-    sun.location, sun.hide_viewport = (0.0, 0.0, 12.0), True
+    sun.location = (0.0, 0.0, 12.0)
+    sun.hide_viewport = True
     sun.rotation_euler = (math.radians(35.0), math.radians(20.0), 0.0)
     return sun

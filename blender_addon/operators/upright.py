@@ -48,7 +48,8 @@ def place_on_surface(obj: bpy.types.Object, middle: Vector) -> None:
         mount = mount_for(catalog.load(obj.perception_entropy.model))
     except pe.InputError:  # the model is not in this catalogue: its view is unknown
         return
-    low, high = np.min(obj.bound_box, axis=0), np.max(obj.bound_box, axis=0)
+    low = np.min(obj.bound_box, axis=0)
+    high = np.max(obj.bound_box, axis=0)
     base = Vector(((low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, low[2]))
     local = obj.matrix_world
     spot = SurfaceSpot(local @ base, local.col[2].to_3d().normalized(), "")

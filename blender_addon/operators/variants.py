@@ -41,13 +41,15 @@ def of_variant(
 
     def make(function: VariantFunction) -> type[bpy.types.Operator]:
         def act(context: bpy.types.Context, key: int) -> str | None:
-            scene, settings = context.scene, context.scene.perception_entropy
+            scene = context.scene
+            settings = context.scene.perception_entropy
             rows = list(settings.variants)
             wanted = [row for row in rows if row.key == key] or rows[settings.variant_index :][:1]
             with bridge.as_drawn(scene) if of_sensors else contextlib.nullcontext():
                 return function(scene, wanted[0] if wanted else None)
 
-        act.__name__, act.__doc__ = function.__name__, function.__doc__
+        act.__name__ = function.__name__
+        act.__doc__ = function.__doc__
         return operator(
             label,
             mode="Variants are for Object Mode",
@@ -83,7 +85,8 @@ def switch_variant(scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> 
     """Replace the scene's sensors by those of this variant.
 
     If the present sensors are no variant yet, they are saved as one: nothing is lost"""
-    key, before = variant.key, bridge.records_of_scene(scene)
+    key = variant.key
+    before = bridge.records_of_scene(scene)
     kept = keep_unsaved(scene, before)
     variant = next(row for row in scene.perception_entropy.variants if row.key == key)
     switch(scene, variant, before)
@@ -159,7 +162,8 @@ def switch(
 
 def show_own_result(scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> None:
     """Show the score of the applied variant; a result of other sensors is marked stale."""
-    settings, now = scene.perception_entropy, result_staleness.fingerprint(scene)
+    settings = scene.perception_entropy
+    now = result_staleness.fingerprint(scene)
     settings.result_stale = settings.has_result and settings.result_signature != now.text
     if settings.has_result and not settings.result_stale:
         return
@@ -187,7 +191,8 @@ def stand_as_variant(
     rows = scene.perception_entropy.variants
     row = bridge.add_variant(scene, _free(scene, title), records)
     row.note = note
-    key, name = row.key, row.name
+    key = row.key
+    name = row.name
     try:
         switch(scene, row, before)
     except pe.InputError:

@@ -76,7 +76,8 @@ def where(_context: bpy.types.Context, operator: Any) -> OperatorResult:
 
 def _task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> Task:
     asked = PLACES.asked
-    model, name = catalog.load(asked["model"]), asked["on"]
+    model = catalog.load(asked["model"])
+    name = asked["on"]
     sensor = pe.Sensor(kinds.kind_of(model).label, model)
     mount = "" if name == WHOLE else name
     study = bridge.with_mount(study, scene, bpy.context.evaluated_depsgraph_get(), mount)
@@ -132,7 +133,7 @@ def put(context: bpy.types.Context, sensor: pe.Sensor) -> bpy.types.Object:
     """Add a sensor of the catalogue to the scene at its pose, with its housing, and select it."""
     name = sensor.model.name
     body = measured_housing(name)
-    obj = new_sensor(context, sensor.name, name, mount_for(sensor.model), body)
+    obj = new_sensor(context, sensor.name, name, mount_for(sensor.model), body=body)
     bridge.place_poses(context.scene, {obj.name: sensor.pose})
     select_only(context, obj)
     return obj

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from ..engine import advice, pe
 
 
-DEFAULT_HALF_WIDTH_M, BEYOND_M = 0.9, 0.15
+DEFAULT_HALF_WIDTH_M = 0.9
+BEYOND_M = 0.15
 """Half an axle where there is no vehicle, and how far it extends beyond the body."""
 AXIS_M = 0.6
 AXES: tuple[graphics.Rgba, ...] = (
@@ -25,6 +26,34 @@ AXES: tuple[graphics.Rgba, ...] = (
 )
 """Blender's colours of x, y and z."""
 AXLE_ALPHA = 0.55
+GAP_M = 0.3
+SHAFT_M = 0.9
+HEAD_M = 0.6
+HEAD_HALF_M = 0.35
+"""Of the arrow ahead of a vehicle: distance from its bumper, length of shaft and head, and half the
+head's width."""
+ARROW = (1.0, 0.85, 0.3, 0.95)
+SIDE_M = 0.1
+POST_M = 0.6
+"""A voxel alone would be too small to see: a post marks it."""
+VISIBLE = graphics.with_alpha(graphics.VIEWPORT.free, 0.9)
+OCCLUDED = graphics.with_alpha(graphics.VIEWPORT.occluded, 0.9)
+MARK = (1.0, 1.0, 1.0, 0.95)
+REASON_COLORS = {"sees": VISIBLE, "occluded": OCCLUDED}
+"""By the reason that `advice.ask_place` gives."""
+RING_M = 0.18
+VIEW_M = 0.6
+"""Radius of a ring, and length of a camera's view."""
+GHOST_ALPHA = 0.5
+LINK_ALPHA = 0.8
+SAME_M = 1e-4
+"""Sensors nearer to each other than this are at one place: there is no line between them."""
+PALE = (0.85, 0.85, 0.9)
+GHOST_PALETTE = replace(
+    graphics.VIEWPORT, reach=graphics.with_alpha(PALE, 0.55), words=graphics.with_alpha(PALE, 0.75)
+)
+"""Colours of another variant's reach."""
+GHOST_TITLE = "Other variant"
 
 
 def axles(reference: pe.Reference, half_width: float | None) -> graphics.LayerShape:
@@ -32,7 +61,8 @@ def axles(reference: pe.Reference, half_width: float | None) -> graphics.LayerSh
     `half_width` is the vehicle's [m]; lines go a little beyond it, and are drawn through the body.
     """
     half = BEYOND_M + (DEFAULT_HALF_WIDTH_M if half_width is None else half_width)
-    x, z = reference.rear_axle_x, reference.rear_axle_z
+    x = reference.rear_axle_x
+    z = reference.rear_axle_z
     lines = [_axle_line(x, z, half)]
     if reference.wheelbase is not None:
         lines.append(_axle_line(x + reference.wheelbase, z, half))
@@ -49,17 +79,14 @@ def _axle_line(x: float, z: float, half: float) -> graphics.Primitives:
     )
 
 
-GAP_M, SHAFT_M, HEAD_M, HEAD_HALF_M = 0.3, 0.9, 0.6, 0.35
-"""Of the arrow ahead of a vehicle: distance from its bumper, length of shaft and head, and half the
-head's width."""
-ARROW = (1.0, 0.85, 0.3, 0.95)
-
-
 def front_arrow(vehicle: pe.Vehicle) -> graphics.LayerShape:
     """Return an arrow on the ground ahead of a vehicle, and the names of its two ends."""
     low, high = vehicle.bounds
-    rear, front, y = float(low[0]) - GAP_M, float(high[0]) + GAP_M, float(low[1] + high[1]) / 2.0
-    neck, tip = front + SHAFT_M, front + SHAFT_M + HEAD_M
+    rear = float(low[0]) - GAP_M
+    front = float(high[0]) + GAP_M
+    y = float(low[1] + high[1]) / 2.0
+    neck = front + SHAFT_M
+    tip = front + SHAFT_M + HEAD_M
     head = [(neck, y - HEAD_HALF_M, 0.0), (neck, y + HEAD_HALF_M, 0.0), (tip, y, 0.0)]
     edges = [(front, y, 0.0), (neck, y, 0.0), *(head[k] for k in (0, 1, 1, 2, 2, 0))]
     labels = (
@@ -71,16 +98,6 @@ def front_arrow(vehicle: pe.Vehicle) -> graphics.LayerShape:
         through=graphics.Primitives.of(edges, ARROW),
         labels=labels,
     )
-
-
-SIDE_M = 0.1
-POST_M = 0.6
-"""A voxel alone would be too small to see: a post marks it."""
-VISIBLE, OCCLUDED = (
-    graphics.with_alpha(graphics.VIEWPORT.free, 0.9),
-    graphics.with_alpha(graphics.VIEWPORT.occluded, 0.9),
-)
-MARK = (1.0, 1.0, 1.0, 0.95)
 
 
 def location_mark(place: advice.AskedPlace, sensors: Sequence[pe.Sensor]) -> graphics.LayerShape:
@@ -104,21 +121,6 @@ def location_mark(place: advice.AskedPlace, sensors: Sequence[pe.Sensor]) -> gra
     )
 
 
-REASON_COLORS = {"sees": VISIBLE, "occluded": OCCLUDED}
-"""By the reason that `advice.ask_place` gives."""
-RING_M, VIEW_M = 0.18, 0.6
-"""Radius of a ring, and length of a camera's view."""
-GHOST_ALPHA, LINK_ALPHA = 0.5, 0.8
-SAME_M = 1e-4
-"""Sensors nearer to each other than this are at one place: there is no line between them."""
-PALE = (0.85, 0.85, 0.9)
-GHOST_PALETTE = replace(
-    graphics.VIEWPORT, reach=graphics.with_alpha(PALE, 0.55), words=graphics.with_alpha(PALE, 0.75)
-)
-"""Colours of another variant's reach."""
-GHOST_TITLE = "Other variant"
-
-
 def ghost_sensors(
     others: Sequence[pe.Sensor],
     present: Sequence[pe.Sensor],
@@ -129,7 +131,8 @@ def ghost_sensors(
     is the other variant's, for the legend."""
     here = {sensor.name: sensor for sensor in present}
     lines = [_ghost_outline(sensor) for sensor in others]
-    color, labels = graphics.with_alpha(PALE, LINK_ALPHA), []
+    color = graphics.with_alpha(PALE, LINK_ALPHA)
+    labels = []
     for other in others:
         place = other.pose.position
         ends = np.array([place, here[other.name].pose.position if other.name in here else place])
@@ -146,7 +149,8 @@ def ghost_sensors(
 
 def _ghost_outline(sensor: pe.Sensor) -> graphics.Primitives:
     """Return a camera's view, for others a ring, in one pale colour."""
-    drawing, palette = graphics.drawing_of(sensor.kind), graphics.VIEWPORT
+    drawing = graphics.drawing_of(sensor.kind)
+    palette = graphics.VIEWPORT
     if drawing.beams:
         drawn = graphics.ring_lines(sensor, RING_M, palette)
     else:

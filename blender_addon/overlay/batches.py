@@ -10,7 +10,8 @@ from ..engine import graphics
 from ..viewport import DrawRegion, line_shader, shader
 
 THIN_PX = 1.0
-EDGE_PX, EDGE = 2.0, (0.05, 0.05, 0.05, 0.35)
+EDGE_PX = 2.0
+EDGE = (0.05, 0.05, 0.05, 0.35)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,7 +33,7 @@ class Batches:
         lines, through, thin = (_batch(wide, "LINES", primitives) for primitives in sorts)
         faces = _batch(shader("SMOOTH_COLOR"), "TRIS", shape.faces)
         sheet = None if shape.sheet is None else _sheet(shape.sheet)
-        return cls(shape, lines, through, thin, faces, sheet)
+        return cls(shape, lines, through, thin, faces=faces, sheet=sheet)
 
     def draw_areas(self) -> None:
         """Draw sheet and triangles."""

@@ -50,7 +50,8 @@ def birds_eye(seen: sight.SurroundView, palette: graphics.Palette = graphics.VIE
     def around(squares: Flags) -> tuple[Floats, ...]:
         return sight.outlines(squares.astype(float), 0.5, seen.x, seen.y)
 
-    blind, color = around(seen.blind), palette.blind
+    blind = around(seen.blind)
+    color = palette.blind
     edges = [
         graphics.Primitives.of(graphics.polyline(on_plate(smoothed(line))), shade)
         for lines, shade in ((blind, color), (around(own), BODY))
@@ -69,7 +70,8 @@ def rectangles(squares: Flags) -> Singles:
     edges = np.diff(np.pad(squares.T[::-1], ((0, 0), (1, 1))).astype(np.int8), axis=1)
     column, first = np.nonzero(edges == 1)
     _, last = np.nonzero(edges == -1)
-    across, along = 1.0 / squares.shape[1], 1.0 / squares.shape[0]
+    across = 1.0 / squares.shape[1]
+    along = 1.0 / squares.shape[0]
     low = np.column_stack([column * across, first * along])
     high = np.column_stack([(column + 1) * across, last * along])
     right, left = (np.column_stack([a[:, 0], b[:, 1]]) for a, b in ((high, low), (low, high)))

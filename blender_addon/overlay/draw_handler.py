@@ -133,10 +133,12 @@ def draw_text() -> None:
     viewport.reserve_plate(region, viewport.STRIP, None)
     if not _overlays_shown(context):
         return
-    scene, now = context.scene.name, _seconds(context.scene)
+    scene = context.scene.name
+    now = _seconds(context.scene)
     visible = [(layer.name, name) for layer, names in _visible(context) for name in names]
     written: list[graphics.Tag] = []
-    wiped, line = {layer for layer, name in visible if name == OTHER_RIG}, 0.0
+    wiped = {layer for layer, name in visible if name == OTHER_RIG}
+    line = 0.0
     if wiped:
         line = wipe.line_px(context)
         wipe.draw_line(context, line, _names_of_both(context.scene))
@@ -216,7 +218,9 @@ def _overlays_shown(context: bpy.types.Context) -> bool:
 
 def _visible(context: bpy.types.Context) -> Iterator[tuple[Layer, list[str]]]:
     """Yield the layers, each with the names of the sensors that the view shows."""
-    scene, through, space = context.scene.name, _sensor_looked_through(context), context.space_data
+    scene = context.scene.name
+    through = _sensor_looked_through(context)
+    space = context.space_data
     # In a local view there is no layer of the whole rig.
     is_whole = not (space and space.type == "VIEW_3D" and space.local_view)
     known = {WHOLE_RIG: is_whole, OTHER_RIG: is_whole}
@@ -239,7 +243,8 @@ def _sensor_visible(context: bpy.types.Context, name: str) -> bool:
 
 def _sensor_looked_through(context: bpy.types.Context) -> str | None:
     """Return the sensor that the view looks through: its own layers would be in the way."""
-    look, space = context.region_data, context.space_data
+    look = context.region_data
+    space = context.space_data
     if look is None or space is None or look.view_perspective != "CAMERA":
         return None
     eye = space.camera

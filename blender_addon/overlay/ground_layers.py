@@ -16,10 +16,27 @@ if TYPE_CHECKING:
     from .request import ViewRequest
 
 
-COARSE_M, FINE_M = 1.5, 0.5
+COARSE_M = 1.5
+FINE_M = 0.5
 """Side of the ground map's cells while something moves, and when idle."""
 MAX_CELLS = 60_000
 NOTHING_TO_COMPARE = "Difference: nothing to compare with yet"
+BoxBounds = tuple[Floats, Floats]
+HATCH_M = 0.35
+HATCH_ALPHA = 0.45
+MIN_ZONE_M = 0.3
+"""A shorter zone is no more than a strip along the vehicle: it has no measure."""
+SMOOTHED_POINTS = 9
+"""Points of the running mean that is drawn of an outline: it follows cells of 5 cm."""
+SIDES = {"front": (0, 1), "rear": (0, -1), "left": (1, 1), "right": (1, -1)}
+"""By side: the axis that leads there, and its sign."""
+TICK_M = 0.35  # Half the length of the bar across the end of a measure
+REACH_AP = 0.5  # The average precision from which an object counts as detected
+BEARINGS = 72
+LABEL_COUNT = 8
+"""At how many bearings the distance is written."""
+MIN_LABEL_M = 1.0
+CUT_ALPHA = 0.25
 
 
 def ground_map(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
@@ -27,9 +44,11 @@ def ground_map(request: ViewRequest, cache: LayerCache) -> graphics.LayerShape:
     view = request.view
     if shows_difference(request):
         return _difference(request, cache)
-    scored, where = scored_map(request), None
+    scored = scored_map(request)
+    where = None
     if scored is not None and request.space is not None:
-        seen, where = graphics.as_scored(scored, request.space, FINE_M), graphics.AS_SCORED
+        seen = graphics.as_scored(scored, request.space, FINE_M)
+        where = graphics.AS_SCORED
     else:
         seen = _ground_sight(request, cache, pe.Rig([e.sensor for e in request.counted]))
     bounds = _bounds(request, cache, seen)
@@ -64,7 +83,8 @@ def compared_key(request: ViewRequest) -> Hashable:
 
 def step_of(space: pe.PerceptionSpace, *, moving: bool) -> float:
     """Return the side of the ground map's cells [m]: larger in a very large space."""
-    (x0, x1), (y0, y1) = space.x, space.y
+    x0, x1 = space.x
+    y0, y1 = space.y
     least, most = (COARSE_M, MAX_CELLS // 4) if moving else (FINE_M, MAX_CELLS)
     return max(least, math.sqrt((x1 - x0) * (y1 - y0) / most))
 
@@ -108,18 +128,6 @@ def _bounds(
         anew=not request.moving and not request.is_wiped,  # both sides in the same colours
         scored=request.has_result,
     )
-
-
-BoxBounds = tuple[Floats, Floats]
-
-HATCH_M, HATCH_ALPHA = 0.35, 0.45
-MIN_ZONE_M = 0.3
-"""A shorter zone is no more than a strip along the vehicle: it has no measure."""
-SMOOTHED_POINTS = 9
-"""Points of the running mean that is drawn of an outline: it follows cells of 5 cm."""
-SIDES = {"front": (0, 1), "rear": (0, -1), "left": (1, 1), "right": (1, -1)}
-"""By side: the axis that leads there, and its sign."""
-TICK_M = 0.35  # Half the length of the bar across the end of a measure
 
 
 def blind_ground(
@@ -172,7 +180,8 @@ def hatch(outlines: Sequence[Floats], spacing_m: float) -> Floats:
     end = np.concatenate([line[1:] for line in closed])
     # Along a hatching line x - y stays the same: count where edges pass each of its values.
     first, last = ((p[:, 0] - p[:, 1]) / spacing_m for p in (start, end))
-    low, high = np.ceil(np.minimum(first, last)), np.ceil(np.maximum(first, last))
+    low = np.ceil(np.minimum(first, last))
+    high = np.ceil(np.maximum(first, last))
     count = (high - low).astype(np.int64)  # for the integers in [low, high)
     edge = np.repeat(np.arange(len(start)), count)
     value = low[edge] + np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
@@ -186,27 +195,34 @@ def _measure(
     found: sight.BlindGround, body: BoxBounds, side: str, palette: graphics.Palette
 ) -> tuple[graphics.Primitives, graphics.Tag] | None:
     """Return a line from the vehicle to where blind ground begins or ends, with its length."""
-    spot, zone = found.nearest[side], found.zone[side]
+    spot = found.nearest[side]
+    zone = found.zone[side]
     if spot is None or (zone is not None and 0.0 < zone < MIN_ZONE_M):
         return None
     if zone is None:
-        distance, text = found.within, f"blind beyond {found.within:g} m out"
+        distance = found.within
+        text = f"blind beyond {found.within:g} m out"
     elif zone:
-        distance, text = zone, f"blind to {sight.shown_end(zone):.1f} m out"
+        distance = zone
+        text = f"blind to {sight.shown_end(zone):.1f} m out"
     else:
-        distance, text = spot.distance, f"blind from {sight.shown_start(spot.distance):.1f} m out"
+        distance = spot.distance
+        text = f"blind from {sight.shown_start(spot.distance):.1f} m out"
     axis, sign = SIDES[side]
     end = np.zeros(3)
     end[axis] = body[1 if sign > 0 else 0][axis] + sign * distance
     end[1 - axis] = spot.point[1 - axis]
-    return _measured(end, axis, sign, distance, palette.words), _label(end, text, palette.words)
+    return _measured(end, axis, sign, distance, color=palette.words), _label(
+        end, text, palette.words
+    )
 
 
 def _measured(
     end: Floats, axis: int, sign: int, distance: float, color: graphics.Rgba
 ) -> graphics.Primitives:
     """Return a line of the measured length, with a bar across its end."""
-    start, across = end.copy(), np.zeros(3)
+    start = end.copy()
+    across = np.zeros(3)
     start[axis] -= sign * distance
     across[1 - axis] = TICK_M
     return graphics.Primitives.of(
@@ -224,14 +240,6 @@ def _flat(points: Floats) -> Floats:
     return np.column_stack([points, np.zeros(len(points))])
 
 
-REACH_AP = 0.5  # The average precision from which an object counts as detected
-BEARINGS = 72
-LABEL_COUNT = 8
-"""At how many bearings the distance is written."""
-MIN_LABEL_M = 1.0
-CUT_ALPHA = 0.25
-
-
 def reach_of_rig(
     found: sight.Reach, palette: graphics.Palette = graphics.VIEWPORT, name: str = ""
 ) -> graphics.LayerShape:
@@ -247,7 +255,8 @@ def reach_of_rig(
 
 def reach_of_sensors(found: sight.Reach, colors: dict[str, graphics.Rgb]) -> graphics.LayerShape:
     """Return the reach of each sensor in its colour, by name."""
-    lines, classes = [], []
+    lines = []
+    classes = []
     for name, own in colors.items():
         color = (*own, 0.75)
         lines.append(reach_lines(found, found.per_sensor[name], color))
@@ -288,7 +297,8 @@ def _distance_labels(found: sight.Reach, color: graphics.Rgba) -> Iterable[graph
     step = max(1, len(found.bearings) // LABEL_COUNT)
     cut = sight.ends_with_space(found, found.distance)
     for at in range(0, len(found.bearings), step):
-        metres, angle = float(found.distance[at]), float(found.bearings[at])
+        metres = float(found.distance[at])
+        angle = float(found.bearings[at])
         if metres >= MIN_LABEL_M:
             text = sight.reach_text(metres, bool(cut[at]))
             place = (metres * float(np.cos(angle)), metres * float(np.sin(angle)), 0.0)

@@ -9,7 +9,8 @@ import numpy as np
 
 from ..engine import Floats, Ints, graphics
 
-TILE_M, DEPTH_M = 0.05, 0.20
+TILE_M = 0.05
+DEPTH_M = 0.20
 """Side of a tile, and how thick the layer of space is in which hits are taken together."""
 ASIDE = 0.37
 """Offset of the layers, in thicknesses: flat surfaces tend to lie at round heights."""
@@ -18,8 +19,17 @@ LIFT_M = 0.004
 OVERLAP = 1.15
 """Tiles are a little larger than their cells: a slanted surface shows no gaps."""
 ALPHA = 0.92
-MIN_DENSITY, MAX_DENSITY = 1.0, 100.0
+MIN_DENSITY = 1.0
+MAX_DENSITY = 100.0
 """Ends of the scale, which is logarithmic [beams a dm2]."""
+LEGEND = graphics.ColorKey(
+    "Occluded beams per dm²",
+    scale=tuple(
+        (float(red), float(green), float(blue), 1.0)
+        for red, green, blue in graphics.on_scale(np.linspace(0.0, 1.0, 13), graphics.VIRIDIS)
+    ),
+    ticks=("100", "10", "1 beam"),
+)
 
 
 def hit_density(casts: Sequence[graphics.Cast], triangles: Floats) -> graphics.LayerShape:
@@ -51,21 +61,13 @@ def hit_density(casts: Sequence[graphics.Cast], triangles: Floats) -> graphics.L
     )
 
 
-LEGEND = graphics.ColorKey(
-    "Occluded beams per dm²",
-    scale=tuple(
-        (float(red), float(green), float(blue), 1.0)
-        for red, green, blue in graphics.on_scale(np.linspace(0.0, 1.0, 13), graphics.VIRIDIS)
-    ),
-    ticks=("100", "10", "1 beam"),
-)
-
-
 class _Tiles:
     """Pieces of the surface with hits: mean position and normal, and hits per dm2."""
 
     def __init__(self, points: Floats, normals: Floats, density: Floats) -> None:
-        self.points, self.normals, self.density = points, normals, density
+        self.points = points
+        self.normals = normals
+        self.density = density
 
     @classmethod
     def of(cls, points: Floats, normals: Floats, weight: Floats) -> "_Tiles":

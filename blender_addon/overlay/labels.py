@@ -11,12 +11,17 @@ from ..engine import Floats, graphics
 from ..viewport import SMALL, PlateBox
 
 STRONG_SIZE = 12.5
-RISE, PADDING = 10.0, 4.0
-MARGIN, GAP = 16.0, 12.0
-GIZMOS, BESIDE_GIZMOS = 330.0, 48.0
+RISE = 10.0
+PADDING = 4.0
+MARGIN = 16.0
+GAP = 12.0
+GIZMOS = 330.0
+BESIDE_GIZMOS = 48.0
 """Height and width of Blender's own gizmos, from the upper right corner."""
 HEADER = 110.0  # Height of the headers and of Blender's own text, from the top
-MIN_WIDTH, BAR, ROW = 150.0, 10.0, 17.0
+MIN_WIDTH = 150.0
+BAR = 10.0
+ROW = 17.0
 VALUES = 0.8
 """Size of the values below a scale, as a share of its words."""
 INK: graphics.Rgba = (0.92, 0.92, 0.92, 1.0)
@@ -42,8 +47,10 @@ def draw_labels(
         size = (STRONG_SIZE if label.strong else SMALL) * scale
         lines = label.text.split("\n")
         extents = [viewport.text_size(line, size) for line in lines]
-        width, row = max(extent[0] for extent in extents), 1.35 * size
-        x, y = place.x - width / 2.0, place.y + RISE * scale
+        width = max(extent[0] for extent in extents)
+        row = 1.35 * size
+        x = place.x - width / 2.0
+        y = place.y + RISE * scale
         height = extents[0][1] + row * (len(lines) - 1)
         for _ in lines:  # a label of several lines is lifted over what it would cover
             box = (x - pad, y - pad, x + width + pad, y + height + pad)
@@ -56,7 +63,7 @@ def draw_labels(
         taken.append(box)
         viewport.fill_box(box, LABEL_PLATE)
         for number, line in enumerate(reversed(lines)):
-            viewport.draw_text(line, x, y + number * row, size, label.color)
+            viewport.draw_text(line, x, y + number * row, size, color=label.color)
 
 
 def draw_legends(
@@ -64,7 +71,9 @@ def draw_legends(
 ) -> list[PlateBox]:
     """Draw legends: in the lower right corner, or where they cover no plate and not the vehicle.
     Return the boxes that are covered: those of the legends, and those of Blender's own."""
-    scale, region, space = viewport.ui_scale(), context.region, context.space_data
+    scale = viewport.ui_scale()
+    region = context.region
+    space = context.space_data
     if len(space.region_quadviews) and context.region_data != space.region_3d:
         return []  # one of four views, and not the one that can be turned
     right = viewport.sidebar_left(context)
@@ -80,7 +89,7 @@ def draw_legends(
     if sizes:
         widest = max(width for width, _ in sizes)
         sizes = [(widest, height) for _, height in sizes]
-    boxes = arranged(sizes, room, taken, _box_of(context, vehicle), GAP * scale / 2.0)
+    boxes = arranged(sizes, room, taken, _box_of(context, vehicle), gap=GAP * scale / 2.0)
     for legend, box in zip(legends, boxes, strict=True):
         if box is not None:
             _draw_legend(legend, box, scale)
@@ -101,7 +110,8 @@ def arranged(
     (width, height) [px], the most important plate first; `gap` is left free between plates.
     """
     left, bottom, right, top = room
-    covered, placed = list(taken), []
+    covered = list(taken)
+    placed = []
     for width, height in sizes:
         corners = [*covered, *([] if vehicle is None else [vehicle])]
         across = {left, right - width, *(b[2] + gap for b in corners)}
@@ -154,7 +164,8 @@ def _height(legend: graphics.ColorKey, scale: float) -> float:
 
 def _width(legend: graphics.ColorKey, scale: float) -> float:
     """Return the width that a legend's text needs [px]."""
-    size, swatch = SMALL * scale, 2.2 * BAR * scale
+    size = SMALL * scale
+    swatch = 2.2 * BAR * scale
     names = [viewport.text_size(name, size)[0] + swatch for _, name in legend.classes]
     widest = max([viewport.text_size(legend.title, size)[0], *names])
     return max(MIN_WIDTH * scale, widest + PADDING * 4.0 * scale)
@@ -162,10 +173,11 @@ def _width(legend: graphics.ColorKey, scale: float) -> float:
 
 def _draw_legend(legend: graphics.ColorKey, box: PlateBox, scale: float) -> None:
     left, _, right, top = box
-    pad, size = PADDING * 2.0 * scale, SMALL * scale
+    pad = PADDING * 2.0 * scale
+    size = SMALL * scale
     viewport.fill_box(box, PLATE)
     y = top - pad - (ROW - 5.0) * scale
-    viewport.draw_text(legend.title, left + pad, y, size, INK)
+    viewport.draw_text(legend.title, left + pad, y, size, color=INK)
     if legend.scale:
         y -= ROW * scale
         viewport.fill_gradient((left + pad, y, right - pad, y + BAR * scale), legend.scale)
@@ -177,7 +189,7 @@ def _draw_legend(legend: graphics.ColorKey, box: PlateBox, scale: float) -> None
     for color, name in legend.classes:
         y -= ROW * scale
         viewport.fill_box((left + pad, y, left + pad + 1.4 * BAR * scale, y + BAR * scale), color)
-        viewport.draw_text(name, left + pad + 2.2 * BAR * scale, y + 1.0 * scale, size, INK)
+        viewport.draw_text(name, left + pad + 2.2 * BAR * scale, y + 1.0 * scale, size, color=INK)
 
 
 def _draw_ticks(ticks: Sequence[str], sides: tuple[float, float], y: float, size: float) -> None:
@@ -186,4 +198,4 @@ def _draw_ticks(ticks: Sequence[str], sides: tuple[float, float], y: float, size
     for number, tick in enumerate(ticks):
         share = number / max(len(ticks) - 1, 1)
         x = left + share * (right - left)
-        viewport.draw_text(tick, x, y, size, FAINT_INK, left_of_x=share)
+        viewport.draw_text(tick, x, y, size, color=FAINT_INK, left_of_x=share)

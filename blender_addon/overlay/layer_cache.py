@@ -13,6 +13,11 @@ from .request import SceneSensor, ViewRequest
 
 Sight = sight.Sight  # a cache has a method `sight`
 GroundSight = sight.GroundSight
+T = TypeVar("T")
+MAX_TRIANGLES = 50_000
+"""A vehicle of more is simplified for drawing: a picture shows no more detail."""
+MAX_KEPT = {"casts": 24, "compared": 2, "scale": 16}
+"""How many results of a sort are kept, those used last; otherwise one."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,14 +38,6 @@ def shown_of(scene: str, layer: str) -> Mapping[str, ShownLayer]:
     return shown.get((scene, layer), {})
 
 
-T = TypeVar("T")
-
-MAX_TRIANGLES = 50_000
-"""A vehicle of more is simplified for drawing: a picture shows no more detail."""
-MAX_KEPT = {"casts": 24, "compared": 2, "scale": 16}
-"""How many results of a sort are kept, those used last; otherwise one."""
-
-
 class LayerCache:
     """Caches expensive results by plain keys; never used by two threads at once."""
 
@@ -59,7 +56,9 @@ class LayerCache:
         vehicle = request.vehicle
         if vehicle is None or len(vehicle.triangles) <= MAX_TRIANGLES:
             return vehicle
-        key, few = request.body_key, MAX_TRIANGLES  # it takes seconds for millions
+        # it takes seconds for millions
+        key = request.body_key
+        few = MAX_TRIANGLES
         return self._keep("body", key, lambda: graphics.simplified(vehicle, few, quick=True)[0])
 
     def sight(self, request: ViewRequest) -> Sight:
@@ -84,7 +83,8 @@ class LayerCache:
             return now
         found = {verdict.name: verdict.met for verdict in verdicts}
         if found != now:
-            before, now = now, found
+            before = now
+            now = found
         self._met = {key: (before, now)}
         return before
 
@@ -105,7 +105,8 @@ class LayerCache:
         return self._keep("fitted", key, fit)
 
     def _sight(self, request: ViewRequest) -> Sight:
-        body, targets = self.body(request), request.targets
+        body = self.body(request)
+        targets = request.targets
         assert request.space is not None and request.prior is not None  # no key without them
         return Sight(request.space, request.prior, body, model=request.model, targets=targets)
 
@@ -118,7 +119,9 @@ class LayerCache:
 
 def _checker(request: ViewRequest) -> tuple[requirements.RequirementChecker, dict[str, str]]:
     rig = pe.Rig([each.sensor for each in request.counted])
-    around = rig, request.vehicle, request.reference, request.space
-    placed, unplaced = requirements.checkable(request.requirements, *around)
-    given = request.vehicle, request.model, request.reference, request.space
-    return engine_calls.checker(placed, *given), unplaced
+    placed, unplaced = requirements.checkable(
+        request.requirements, rig, request.vehicle, request.reference, space=request.space
+    )
+    return engine_calls.checker(
+        placed, request.vehicle, request.model, request.reference, space=request.space
+    ), unplaced

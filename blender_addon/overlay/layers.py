@@ -25,7 +25,8 @@ from .place_colors import place_colors
 from .request import SceneSensor, ViewRequest
 from .requirement_zones import requirement_zones
 
-WHOLE_RIG, OTHER_RIG = "", "\0other variant"
+WHOLE_RIG = ""
+OTHER_RIG = "\0other variant"
 """The names of shapes that belong to no single sensor: of the scene, and of the variant that a wipe
 shows beside it."""
 BIRDS_EYE = "birds_eye"
@@ -34,10 +35,12 @@ BLIND_WITHIN_M = 10.0
 RING_ALPHA = 0.55
 OCCLUDED_ALPHA = 0.35
 """Opacity of blocked beams behind the vehicle: many of them would hide all else."""
-FRUSTUM_M, UNSELECTED_ALPHA = 1.0, 0.6
+FRUSTUM_M = 1.0
+UNSELECTED_ALPHA = 0.6
 
 LayerKeys = Callable[[ViewRequest], dict[str, Hashable]]
 LayerMaker = Callable[[ViewRequest, LayerCache, str], graphics.LayerShape]
+ZONES: dict[str, Any] = {"on_ground": True, "edged": True}
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +98,8 @@ def _ground_keys(request: ViewRequest) -> dict[str, Hashable]:
     settings: tuple[str, ...] = ("ground_quantity", "ground_height", "ground_opacity")
     settings += ("ground_range", "ground_fits")
     keys = _rig_keys(*settings)(request)
-    scored, compared = ground_layers.scored_map(request), ground_layers.compared_key(request)
+    scored = ground_layers.scored_map(request)
+    compared = ground_layers.compared_key(request)
     more = id(scored), compared, request.is_wiped
     return {name: (key, more) for name, key in keys.items()}
 
@@ -119,7 +123,8 @@ def _birds_eye_keys(request: ViewRequest) -> dict[str, Hashable]:
 
 
 def _birds_eye(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.LayerShape:
-    rig, within = _counted_rig(request), request.view.birds_eye_within
+    rig = _counted_rig(request)
+    within = request.view.birds_eye_within
     return birds_eye(cache.sight(request).surround_view(rig, within))
 
 
@@ -151,7 +156,8 @@ def _reach(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.Laye
 
 
 def _beam_keys(request: ViewRequest) -> dict[str, Hashable]:
-    view, shown = request.view, request.of_beams()
+    view = request.view
+    shown = request.of_beams()
     budget = graphics.beam_budget([each.sensor for each in shown], view.beam_limit)
     chosen = view.channels, view.beam_colors, view.rings, view.beam_length
     chosen_key = *chosen, budget
@@ -159,7 +165,8 @@ def _beam_keys(request: ViewRequest) -> dict[str, Hashable]:
 
 
 def _beams(request: ViewRequest, cache: LayerCache, name: str) -> graphics.LayerShape:
-    view, shown = request.view, request.of_beams()
+    view = request.view
+    shown = request.of_beams()
     of = next(each for each in shown if each.sensor.name == name)
     budget = graphics.beam_budget([each.sensor for each in shown], view.beam_limit)
     choice = graphics.BeamChoice(budget, graphics.ChannelMode(view.channels))
@@ -167,7 +174,7 @@ def _beams(request: ViewRequest, cache: LayerCache, name: str) -> graphics.Layer
     beams = graphics.shown_beams(found, choice)
     colors = _beam_colors(of, view, beams.channel, beams.occluded)
     around = None if request.vehicle is None else request.vehicle.bounds
-    parts = [graphics.free_lines(of.sensor, beams, view.beam_length, colors, around)]
+    parts = [graphics.free_lines(of.sensor, beams, view.beam_length, colors, around=around)]
     if view.rings:
         rows = graphics.channels_of(cast(pe.Lidar, of.sensor.model), choice)
         whole = _beam_colors(of, view, rows, np.zeros(len(rows), bool))
@@ -239,7 +246,8 @@ def _views(request: ViewRequest, _cache: LayerCache, name: str) -> graphics.Laye
         outline = drawing.footprint(of.sensor, request.view.view_range)
         lines.append(graphics.footprint_lines(outline, palette.camera))
         faces.append(graphics.footprint_faces(outline, palette.camera_face))
-    shown, filled = graphics.Primitives.joined(lines), graphics.Primitives.joined(faces)
+    shown = graphics.Primitives.joined(lines)
+    filled = graphics.Primitives.joined(faces)
     for part in (shown, filled):
         part.colors[:, 3] *= 1.0 if of.selected else UNSELECTED_ALPHA
     return graphics.LayerShape(shown, filled)
@@ -268,16 +276,18 @@ def _ghost_keys(request: ViewRequest) -> dict[str, Hashable]:
 
 
 def _ghosts(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.LayerShape:
-    here, of = [e.sensor for e in request.counted], request.ghosts_title or GHOST_TITLE
+    here = [e.sensor for e in request.counted]
+    of = request.ghosts_title or GHOST_TITLE
     shape = ghost_sensors(request.ghosts, here, request.ghosts_name, of)
     if request.ghosts_title:
         return shape
     if "reach" not in request.view.layers or request.prior is None or request.is_wiped:
         return shape
-    rig, known = pe.Rig(request.ghosts), request.prior.class_names
+    rig = pe.Rig(request.ghosts)
+    known = request.prior.class_names
     of = request.view.reach_class if request.view.reach_class in known else known[0]
     line = ground_layers.rig_reach(
-        cache.sight(request), rig, of, GHOST_PALETTE, request.ghosts_name
+        cache.sight(request), rig, of, GHOST_PALETTE, name=request.ghosts_name
     )
     return replace(shape, lines=line.lines)
 
@@ -333,10 +343,17 @@ def _story_keys(request: ViewRequest) -> dict[str, Hashable]:
 
 
 def _story(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.LayerShape:
-    rig, vehicle = _counted_rig(request), request.vehicle
+    rig = _counted_rig(request)
+    vehicle = request.vehicle
     assert request.story is not None  # the layer has no key without one
-    how = vehicle, request.model, request.confirmation, dict(request.rates)
-    driven = motion.drive_by(request.story, rig, *how)
+    driven = motion.drive_by(
+        request.story,
+        rig,
+        vehicle,
+        request.model,
+        confirmation=request.confirmation,
+        rates=dict(request.rates),
+    )
     return graphics.moving_shape(driven, rig, vehicle, request.rate_hz)
 
 
@@ -383,25 +400,30 @@ def _front(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.Lay
     return front_arrow(request.vehicle)
 
 
-ZONES: dict[str, Any] = {"on_ground": True, "edged": True}
 LAYERS = (
     Layer("ground", "Ground Map", *_wiped(_ground_keys, _ground), rough=True, on_ground=True),
     Layer("blind", "Blind Ground", *_wiped(_rig_keys("blind_height"), _blind), 1.6, **ZONES),
     Layer("reach", "Reach", *_wiped(_reach_keys, _reach), 2.2, **ZONES),
     Layer(
-        "requirements", "Requirements", _requirement_keys, _requirements, 1.6, rough=True, **ZONES
+        "requirements",
+        "Requirements",
+        _requirement_keys,
+        _requirements,
+        line_px=1.6,
+        rough=True,
+        **ZONES,
     ),
     Layer("where", "Where?", _where_keys, _where, on_ground=True),
-    Layer("mounts", "Mounts", _mount_keys, _mounts, 1.4, edged=True),
-    Layer("focus", "Focus", _focus_keys, _focus, 1.4, edged=True),
+    Layer("mounts", "Mounts", _mount_keys, _mounts, line_px=1.4, edged=True),
+    Layer("focus", "Focus", _focus_keys, _focus, line_px=1.4, edged=True),
     Layer("frustums", "Camera Views", _view_keys, _views),
     Layer("beams", "Beams", _beam_keys, _beams, rough=True),
     Layer("heat", "Occluded Beams", _heat_keys, _heat, rough=True),
-    Layer("story", "Drive-by", _story_keys, _story, 1.8, edged=True),
-    Layer("axles", "Axles", _axle_keys, _axles, 1.6, edged=True),
-    Layer("front", "Front", _front_keys, _front, 2.2, edged=True),
-    Layer("ghosts", "Other Variant", _ghost_keys, _ghosts, 1.6, edged=True),
-    Layer("place", "Queried Location", _place_keys, _place, 1.8, edged=True),
+    Layer("story", "Drive-by", _story_keys, _story, line_px=1.8, edged=True),
+    Layer("axles", "Axles", _axle_keys, _axles, line_px=1.6, edged=True),
+    Layer("front", "Front", _front_keys, _front, line_px=2.2, edged=True),
+    Layer("ghosts", "Other Variant", _ghost_keys, _ghosts, line_px=1.6, edged=True),
+    Layer("place", "Queried Location", _place_keys, _place, line_px=1.8, edged=True),
     Layer(BIRDS_EYE, "Bird's-Eye View", _birds_eye_keys, _birds_eye),
     Layer("labels", "Names", _label_keys, _label),
 )

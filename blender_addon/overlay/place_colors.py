@@ -11,7 +11,9 @@ from ..engine import graphics
 if TYPE_CHECKING:
     from ..engine import jobs, pe
 
-REASONS_NAMED, TICKS, NARROWEST = 3, 3, 0.01
+REASONS_NAMED = 3
+TICKS = 3
+NARROWEST = 0.01
 """The scale has all but 1 % of the values at either end; a narrower range would show noise."""
 GREY: graphics.Rgba = (*graphics.FORBIDDEN, 1.0)
 MARK = (1.0, 1.0, 1.0, 0.95)
@@ -30,7 +32,7 @@ def place_colors(found: "jobs.PlaceMap", sensors: "Sequence[pe.Sensor]") -> grap
     low, high = np.percentile(known, (1.0, 99.0)).tolist() if len(known) else (0.0, 0.0)
     lack = max((1.0 if row.exact else NARROWEST) - (high - low), 0.0)
     low, high = (low - lack / 2.0, high + lack / 2.0)[:: 1 if row.sign < 0.0 else -1]
-    faces = graphics.colored_surface(found.surface, points, normals, values, (low, high))
+    faces = graphics.colored_surface(found.surface, points, normals, values, bounds=(low, high))
     ends = [low + (high - low) * k / (TICKS - 1) for k in range(TICKS)]
     classes = [(GREY, f"forbidden: {why} ({n:,})") for why, n in found.reasons().items()]
     unit = f" [{figure.unit}]" if figure.unit else ""

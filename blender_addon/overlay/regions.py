@@ -16,19 +16,28 @@ if TYPE_CHECKING:
 
 MOUNT: graphics.Rgba = (0.36, 0.80, 0.62, 1.0)
 """A calm green, unlike the beams' blue and orange: visible on white and on black."""
-TINT_ALPHA, STRONG_ALPHA, RIM_ALPHA = 0.34, 0.52, 0.95
+TINT_ALPHA = 0.34
+STRONG_ALPHA = 0.52
+RIM_ALPHA = 0.95
 """Opacity of the tint: of a mount, and of the selected sensor's mount."""
 BOUNDS: graphics.Rgba = (0.92, 0.92, 0.96, 0.80)
 NO_GO: graphics.Rgba = (0.95, 0.45, 0.25, 0.95)
 LIFT_M = 0.003
 """Distance of the tint from the surface, on both sides: it would flicker in it."""
+FOCUS_HEIGHT_M = 2.0
+"""Height of a box: about that of objects in it. The focus itself holds at all heights."""
+INSET_M = 0.15  # Distance of neighbouring boxes: regions may share an edge
+MORE_COLOR: graphics.Rgba = (0.98, 0.82, 0.30, 0.90)
+LESS_COLOR: graphics.Rgba = (0.62, 0.66, 0.74, 0.90)
 
 
 def mount_regions(
     several: "Sequence[MountFaces]", boxes: "Sequence[LimitBox]"
 ) -> graphics.LayerShape:
     """Return the tint of surfaces with their rims, and boxes."""
-    faces, lines, classes = [], [], []
+    faces = []
+    lines = []
+    classes = []
     for each in several:
         color = graphics.with_alpha(MOUNT, STRONG_ALPHA if each.strong else TINT_ALPHA)
         faces.append(graphics.Primitives.of(offset_surface(each.triangles), color))
@@ -70,7 +79,8 @@ def rim(triangles: Floats) -> Floats:
     if not len(triangles):
         return np.empty((0, 3))
     corner = _corners(triangles)
-    starts, ends = corner.reshape(-1), np.roll(corner, -1, axis=1).reshape(-1)
+    starts = corner.reshape(-1)
+    ends = np.roll(corner, -1, axis=1).reshape(-1)
     pairs = np.sort(np.stack([starts, ends], axis=1), axis=1)
     _, first, count = np.unique(pairs, axis=0, return_index=True, return_counts=True)
     alone = first[count == 1]
@@ -90,18 +100,12 @@ def box_edges(low: Sequence[float] | Floats, high: Sequence[float] | Floats) -> 
     return corners[np.array(graphics.EDGES)].reshape(-1, 3)
 
 
-FOCUS_HEIGHT_M = 2.0
-"""Height of a box: about that of objects in it. The focus itself holds at all heights."""
-INSET_M = 0.15  # Distance of neighbouring boxes: regions may share an edge
-MORE_COLOR: graphics.Rgba = (0.98, 0.82, 0.30, 0.90)
-LESS_COLOR: graphics.Rgba = (0.62, 0.66, 0.74, 0.90)
-
-
 def focus_regions(
     regions: "Sequence[FocusRegion]", space: "pe.PerceptionSpace"
 ) -> graphics.LayerShape:
     """Return an outlined box for each area of each focus, cut to the space, with its label."""
-    lines, labels = [], []
+    lines = []
+    labels = []
     for number, region in enumerate(regions):
         inset = INSET_M * (number + 1)
         color = MORE_COLOR if region.factor >= 1.0 else LESS_COLOR

@@ -14,7 +14,8 @@ MET: graphics.Rgba = (0.5, 1.0, 0.95, 1.0)
 """A light blue-green: told from every colour of the ground map below it, as a test measures."""
 NOT_MET: graphics.Rgba = (0.95, 0.36, 0.16, 1.0)
 NOT_CHECKED: graphics.Rgba = (0.6, 0.6, 0.6, 1.0)
-FILL_ALPHA, FAINT_ALPHA = 0.5, 0.5
+FILL_ALPHA = 0.5
+FAINT_ALPHA = 0.5
 """Opacity of filled samples, and of the outlines of zones that are not selected."""
 ON_GROUND_M = 0.015  # Zones are drawn a little above the ground
 TICK_M = 0.12
@@ -42,7 +43,10 @@ def requirement_zones(
     """Return the zones of all requirements. Of the `chosen` one, by its name, worst place, body,
     height and margin are drawn. `before` says whether each was met before the last move: the legend
     names what was lost or won since. `unplaced` says why a requirement cannot be checked."""
-    lines, faces, thin, labels = [], [], [], []
+    lines = []
+    faces = []
+    thin = []
+    labels = []
     for verdict in verdicts:
         color = MET if verdict.met else NOT_MET
         is_chosen = verdict.name == chosen
@@ -85,7 +89,8 @@ def _squares(places: Floats, size: float, color: graphics.Rgba) -> graphics.Prim
 
 def _hatching(places: Floats, size: float, color: graphics.Rgba) -> graphics.Primitives:
     """Return slanted lines on places (N, 2): lines of neighbours continue each other."""
-    half, every = size / 2.0, max(1, round(HATCH_M / size))
+    half = size / 2.0
+    every = max(1, round(HATCH_M / size))
     ends = np.array([(-half, -half), (half, half)])
     if every == 1:  # large samples have two more lines each
         ends = np.vstack([ends, [(-half, 0.0), (0.0, half), (0.0, -half), (half, 0.0)]])
@@ -103,7 +108,8 @@ def _details(
     verdict: Verdict, color: graphics.Rgba
 ) -> tuple[list[graphics.Primitives], list[graphics.Tag]]:
     """Return the zone's height, the body at the worst place, the margin, and their labels."""
-    lines, labels = [], []
+    lines = []
+    labels = []
     body = next((b for b in verdict.requirement.bodies if b.name == verdict.body), None)
     zone = verdict.samples.zone
     if body is not None:
@@ -134,8 +140,9 @@ def _worst_mark(
     length, width, height = body.size if body is not None else (0.4, 0.4, 0.0)
     low = body.low if body is not None else ON_GROUND_M
     half = (length / 2.0, width / 2.0)
-    ends = (x - half[0], y - half[1], low), (x + half[0], y + half[1], low + height)
-    return graphics.Primitives.of(box_edges(*ends), color)
+    return graphics.Primitives.of(
+        box_edges((x - half[0], y - half[1], low), (x + half[0], y + half[1], low + height)), color
+    )
 
 
 def _margin_line(verdict: Verdict) -> tuple[graphics.Primitives, graphics.Tag] | None:

@@ -143,7 +143,9 @@ def _request(scene: str, layer: Layer, request: ViewRequest) -> None:
             raise problem
 
     given = request, layer.name, rough, missing
-    engine_process.ask(_topic(scene, layer.name), analysis_calls.layer_shapes, given, deliver, fail)
+    engine_process.ask(
+        _topic(scene, layer.name), analysis_calls.layer_shapes, given, deliver, fail=fail
+    )
 
 
 def _redraw_together() -> None:

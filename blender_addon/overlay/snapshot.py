@@ -55,9 +55,15 @@ class SnapshotReader:
         others, name, title = _ghosts(scene)
         compared, compared_name = _compared(scene)
         answer = location_query.answer(scene)
-        mounts = self._mounts(scene, depsgraph, sensors, vehicle, body_key)
+        mounts = self._mounts(scene, depsgraph, sensors, vehicle, body_key=body_key)
         return ViewRequest(
-            *(sensors, vehicle, body_key, inputs.prior, inputs.key, view_of(scene), moving),
+            sensors,
+            vehicle,
+            body_key,
+            inputs.prior,
+            prior_key=inputs.key,
+            view=view_of(scene),
+            moving=moving,
             scored=_scored(scene, sensors, inputs.space),
             space=inputs.space,
             model=inputs.model,
@@ -90,7 +96,8 @@ class SnapshotReader:
             return ()
         names = [each.sensor.name for each in sensors if each.selected]
         chosen = {scene.objects[n].perception_entropy.mount for n in names if n in scene.objects}
-        known, shown = self._faces.get(scene.name, {}), []
+        known = self._faces.get(scene.name, {})
+        shown = []
         found: dict[Hashable, np.ndarray] = {}
         for row in scene.perception_entropy.mounts:
             if (said := bridge.mount_key(row)) is None:
@@ -107,9 +114,11 @@ class SnapshotReader:
 
     def _inputs_by(self, scene: bpy.types.Scene) -> ScoringInputs:
         """Return prior, space and AP curves; no prior where a setting is wrong: a score says so."""
-        settings, space = scene.perception_entropy, None
+        settings = scene.perception_entropy
+        space = None
         try:
-            space, model = bridge.space_of(settings), bridge.perception_of(settings)
+            space = bridge.space_of(settings)
+            model = bridge.perception_of(settings)
             key = bridge.prior_key(scene), space, model, bridge.targets_of(settings)
             known = self._inputs.get(scene.name)
             if known is None or known.key != key:
@@ -144,7 +153,8 @@ def view_of(scene: bpy.types.Scene) -> ViewSettings:
 
 def _sensors(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> tuple[SceneSensor, ...]:
     """Return the possible sensors; a score reports what is wrong with others."""
-    layer, possible = depsgraph.view_layer, []
+    layer = depsgraph.view_layer
+    possible = []
     active = layer.objects.active
     for obj in sensor_cache.sensors(scene):
         with contextlib.suppress(pe.InputError):
@@ -153,8 +163,9 @@ def _sensors(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> tuple[Sc
     found = []
     for obj, sensor in possible:
         selected = obj == active or obj.select_get(view_layer=layer)
-        drawn, counted = obj.perception_entropy.show, obj.visible_get(view_layer=layer)
-        found.append(SceneSensor(sensor, colors[sensor.name], selected, drawn, counted))
+        drawn = obj.perception_entropy.show
+        counted = obj.visible_get(view_layer=layer)
+        found.append(SceneSensor(sensor, colors[sensor.name], selected, drawn, counted=counted))
     return tuple(found)
 
 
@@ -230,7 +241,8 @@ def _variant(scene: bpy.types.Scene, key: int) -> tuple[tuple[pe.Sensor, ...], s
 def _requirements(scene: bpy.types.Scene) -> dict[str, Any]:
     """Return the requirements of a scene; none where one is wrong: a check says what is."""
     settings = scene.perception_entropy
-    rows, index = settings.requirements, settings.requirement_index
+    rows = settings.requirements
+    index = settings.requirement_index
     chosen = rows[index].name if index < len(rows) else ""
     try:
         found = bridge.requirements_of(settings)

@@ -17,7 +17,8 @@ DROP = 130.0
 
 def line_px(context: bpy.types.Context) -> float:
     """Return where the line is in a view, from the left [px]."""
-    left, right = viewport.beside_toolbar(context), viewport.sidebar_left(context)
+    left = viewport.beside_toolbar(context)
+    right = viewport.sidebar_left(context)
     return round(left + context.scene.perception_entropy.view.wipe_at * (right - left))
 
 
@@ -49,12 +50,15 @@ def on_side(
 
 def draw_line(context: bpy.types.Context, line: float, names: tuple[str, str]) -> None:
     """Draw the line, with the variant's name on its left and the scene's on its right."""
-    scale, height = viewport.ui_scale(), context.region.height
-    size, gap = viewport.SMALL * scale, 8.0 * scale
+    scale = viewport.ui_scale()
+    height = context.region.height
+    size = viewport.SMALL * scale
+    gap = 8.0 * scale
     viewport.fill_box((line - scale, 0.0, line + scale, height), viewport.INK)
     for text, share, end in zip(names, (1.0, 0.0), (line - gap, line + gap), strict=True):
         width, _ = viewport.text_size(text, size)
-        left, y = end - share * width, height - DROP * scale
+        left = end - share * width
+        y = height - DROP * scale
         box = (left - gap / 2.0, y - gap / 2.0, left + width + gap / 2.0, y + size + gap / 2.0)
         viewport.fill_box(box, viewport.PLATE)
-        viewport.draw_text(text, end, y, size, viewport.INK, left_of_x=share)
+        viewport.draw_text(text, end, y, size, color=viewport.INK, left_of_x=share)

@@ -22,7 +22,8 @@ from .layout import (
 @row_list("PE_UL_states")
 def states_rows(context: Context, layout: UILayout, settings: Any, item: Any) -> None:
     """The states: used, name, and a button that shows the state"""
-    row, row_index = _draw_row(layout, item), list(settings.states).index(item)
+    row = _draw_row(layout, item)
+    row_index = list(settings.states).index(item)
     icon = "HIDE_OFF" if item.frame == context.scene.frame_current else "HIDE_ON"
     row.operator("pe.show_state", text="", icon=icon, emboss=False).index = row_index
 

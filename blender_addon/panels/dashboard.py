@@ -12,14 +12,17 @@ from .layout import columns, draw_sentence
 
 MET_ICONS = {True: "COLORSET_03_VEC", False: "ERROR"}
 """Blender's own green, and its orange triangle."""
-NAME_SHARE, VALUE_SHARE, SHARE_WITHOUT_UNIT = 0.39, 0.42, 0.34
+NAME_SHARE = 0.39
+VALUE_SHARE = 0.42
+SHARE_WITHOUT_UNIT = 0.34
 LOCKS = {True: "LOCKED", False: "UNLOCKED"}
 
 
 def draw_dashboard(layout: UILayout, context: Context) -> None:
     """Draw the live score, or the stored one if it is current or Live is off, and its figures. Each
     takes the same rows, those that come late included: what is below stays where it is."""
-    scene, settings = context.scene, context.scene.perception_entropy
+    scene = context.scene
+    settings = context.scene.perception_entropy
     if not listed_sensors(scene) and not settings.has_result:
         return
     live = shown_score(scene)
@@ -53,7 +56,7 @@ def draw_dashboard(layout: UILayout, context: Context) -> None:
         known = [row.figure.value(each) for each in figures] if row.figure.is_seen else [row.value]
         known = entropies if row.figure.key == search.ENTROPY else known
         values = [value for value in known if value is not None]
-        draw_row(column, scene, row, values, errors.get(row.figure.key, 0.0))
+        draw_row(column, scene, row, values, error=errors.get(row.figure.key, 0.0))
     if not is_simple(scene):
         name, value = columns(column, NAME_SHARE)
         draw_label(name, "Coverage")
@@ -79,7 +82,8 @@ def draw_row(
 ) -> None:
     """Draw a figure: whether *Optimize* keeps it, its name, its value, and what is wanted. `error`
     is the standard error of its change."""
-    settings, figure = scene.perception_entropy, row.figure
+    settings = scene.perception_entropy
+    figure = row.figure
     line = layout.row(align=True)
     draw_lock(line, settings, figure)
     name, rest = columns(line, NAME_SHARE, align=True)
@@ -144,7 +148,8 @@ def draw_limit(
 
 def draw_outcome(layout: UILayout, context: Context) -> None:
     """Draw what the last search gained and cost, and what a stored result says besides."""
-    scene, settings = context.scene, context.scene.perception_entropy
+    scene = context.scene
+    settings = context.scene.perception_entropy
     result = settings.result
     column = layout.column(align=True)
     column.active = not settings.result_stale

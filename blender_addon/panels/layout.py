@@ -24,6 +24,14 @@ TAB: dict[str, Any] = {
     "bl_region_type": "UI",
     "bl_category": "Perception",
 }
+BESIDE_PX = 72
+ICON_PX = 20
+"""Width of borders and the tab's name, and of an icon, at a scale of 1."""
+BUTTON_PX = 26  # Width of a small button beside a sentence, at a scale of 1
+POPUP_PX = 340  # Width of a panel that is called as a popup, at a scale of 1
+MIN_ROOM_PX = 40  # A sidebar can be made narrower than any word
+FONT = 0
+WORD = re.compile(r"\s*\S+")
 
 
 def is_empty(scene: bpy.types.Scene) -> bool:
@@ -208,14 +216,6 @@ def columns(layout: UILayout, factor: float, align: bool = False) -> tuple[UILay
     return split.row(), split.row()
 
 
-BESIDE_PX, ICON_PX = 72, 20
-"""Width of borders and the tab's name, and of an icon, at a scale of 1."""
-BUTTON_PX = 26  # Width of a small button beside a sentence, at a scale of 1
-POPUP_PX = 340  # Width of a panel that is called as a popup, at a scale of 1
-MIN_ROOM_PX = 40  # A sidebar can be made narrower than any word
-FONT = 0
-
-
 def wrapped(context: Context, text: str, beside_px: float = 0.0) -> tuple[str, ...]:
     """Return a sentence in lines that fit the sidebar, measured in its font."""
     return wrapped_lines(text, *_room(context, beside_px))
@@ -226,7 +226,8 @@ def fitted(context: Context, text: str, beside_px: float, share: float) -> str:
     room, as names differ at their ends."""
     room, size = _room(context, beside_px, share)
     blf.size(FONT, size)
-    shorter, half = text, (len(text) + 1) // 2
+    shorter = text
+    half = (len(text) + 1) // 2
     while half > 1 and _width(shorter) > room:
         half -= 1
         shorter = f"{text[:half]}\N{HORIZONTAL ELLIPSIS}{text[-half:]}"
@@ -243,14 +244,12 @@ def _room(context: Context, beside_px: float, share: float = 1.0) -> tuple[float
     return max(room, MIN_ROOM_PX * scale), points * scale
 
 
-WORD = re.compile(r"\s*\S+")
-
-
 @lru_cache(maxsize=512)
 def wrapped_lines(text: str, room_px: float, size_px: float) -> tuple[str, ...]:
     """Break a text so that no line of that size is wider than the room; a longer word is cut up."""
     blf.size(FONT, size_px)
-    lines, line = [], ""
+    lines = []
+    line = ""
     for word in WORD.findall(text):
         longer = f"{line}{word}".strip()
         if line and _width(longer) > room_px:
@@ -291,7 +290,8 @@ def draw_sentence(
     (`sense`) has its own icon. A sentence that begins with a space continues the one before, and
     has no icon. `beside_px` is the width of what is beside the sentence, at a scale of 1."""
     if text.startswith(" "):
-        text, icon = text.strip(), "BLANK1"
+        text = text.strip()
+        icon = "BLANK1"
     column = layout.column(align=True)
     column.scale_y = 0.8
     icon = icon if sense == SAME else SENSE_ICONS[sense]
@@ -317,5 +317,6 @@ def draw_warning(layout: UILayout, context: Context, warning: advice.Advice) -> 
         mend = row.operator(
             "pe.mend", text=FIX_LABELS[warning.fix], icon="TOOL_SETTINGS", translate=False
         )
-        mend.fix, mend.subject = warning.fix, warning.subject or ""
+        mend.fix = warning.fix
+        mend.subject = warning.subject or ""
         mend.amount = (*warning.amount, 0.0, 0.0, 0.0)[:3]

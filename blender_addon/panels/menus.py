@@ -69,7 +69,8 @@ def draw_object_menu(menu: bpy.types.Menu, _context: Context) -> None:
 
 def draw_context_menu(menu: bpy.types.Menu, context: Context) -> None:
     """Right click on an object: of a sensor what is done with it, of a mesh to be the vehicle."""
-    obj, layout = context.active_object, menu.layout
+    obj = context.active_object
+    layout = menu.layout
     if obj is None or context.mode != "OBJECT":
         return
     is_sensor = obj.perception_entropy.is_sensor

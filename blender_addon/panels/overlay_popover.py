@@ -12,6 +12,12 @@ from .layout import is_asked, panel
 
 UILayout: TypeAlias = bpy.types.UILayout
 OverlaySettings: TypeAlias = PropertyGroup
+COLORS = "ground_range"
+ELSEWHERE = ("ground_difference", "ground_fits", "ghost_key")
+"""Drawn with the colours, or set by buttons in another place."""
+SLIDERS = {"ground_opacity", "wipe_at"}
+EXPANDED = {"ground_quantity", "blind_height", "reach_of", "beams_of", "channels"}
+"""Menus whose entries are buttons beside each other."""
 
 
 @panel(
@@ -76,10 +82,4 @@ def draw_in_header(self: bpy.types.Header, context: Context) -> None:
     part.popover(panel=view.__name__, text="")
 
 
-COLORS = "ground_range"
-ELSEWHERE = ("ground_difference", "ground_fits", "ghost_key")
-"""Drawn with the colours, or set by buttons in another place."""
-SLIDERS = {"ground_opacity", "wipe_at"}
-EXPANDED = {"ground_quantity", "blind_height", "reach_of", "beams_of", "channels"}
-"""Menus whose entries are buttons beside each other."""
 CLASSES = (view,)

@@ -11,6 +11,9 @@ from ..panel_text import draw_label, is_simple
 from .layout import BUTTON_PX, draw_sentence, draw_stale_mark, draw_warning, panel, section
 from .sensor_lists import draw_sensor_table
 
+PART_SHARE = 0.5
+NARROW_PART_SHARE = 0.3
+
 
 def _warning_count(layout: UILayout, context: Context) -> None:
     count = len(context.scene.perception_entropy.result_warnings)
@@ -96,12 +99,14 @@ def draw_offers(
     found = where_map.offers.get(context.scene.name)
     if found is None or found.of != (requirement or point):
         button = layout.operator("pe.suggest", icon="TOOL_SETTINGS")
-        button.requirement, button.point = requirement, point
+        button.requirement = requirement
+        button.point = point
         return
     if not found.found:
         draw_sentence(layout, context, suggest.NONE_FOUND)
     for number, each in enumerate(found.found):
-        text, lines = each.sentence, layout.column()
+        text = each.sentence
+        lines = layout.column()
         draw_sentence(lines, context, text[:1].upper() + text[1:], "GHOST_ENABLED")
         lines.operator(
             "pe.take_suggestion", text="Add It" if each.added else "Move It", icon="CHECKMARK"
@@ -123,9 +128,6 @@ def surroundings(layout: UILayout, settings: PropertyGroup, context: Context) ->
         if context.active_object == context.scene.objects[name]:
             for each in body.seeing:
                 draw_part_row(column, each.name, each.text)
-
-
-PART_SHARE, NARROW_PART_SHARE = 0.5, 0.3
 
 
 def draw_breakdown(layout: UILayout, settings: PropertyGroup) -> None:

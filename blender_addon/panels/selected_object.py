@@ -60,7 +60,8 @@ def sensor(layout: UILayout, _settings: PropertyGroup, context: Context) -> None
 
 def draw_pose(layout: UILayout, context: Context, obj: Object) -> None:
     """Draw the pose in the ground frame; fixed poses and locked axes are disabled."""
-    settings, holder = obj.perception_entropy, holder_of(obj)
+    settings = obj.perception_entropy
+    holder = holder_of(obj)
     pair = layout.split()
     for name, texts, locks in (
         ("ground_position", POSITION_LABELS, obj.lock_location),
@@ -88,7 +89,8 @@ def draw_mirror(layout: UILayout, obj: Object) -> None:
         return
     row.operator("pe.mirror_sensor", icon="MOD_MIRROR").name = obj.name
     linked = row.operator("pe.mirror_sensor", text="Mirror Linked", icon="LINKED")
-    linked.name, linked.linked = obj.name, True
+    linked.name = obj.name
+    linked.linked = True
 
 
 def draw_bounds(layout: UILayout, settings: PropertyGroup) -> None:

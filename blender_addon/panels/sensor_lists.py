@@ -16,6 +16,11 @@ SHOWN_ITEM = 1 << 30
 """`UIList.bitflag_filter_item`, which only its instances have."""
 SWATCH_UNITS = 0.8  # Width of a colour, in widths of an icon
 FIGURE_SHARE = 0.26  # Room for a loss of two digits before the point: "10.37"
+NAME_SHARE = 0.46
+LOSS_SHARE = 0.3
+PARTS_NAMED = 2
+NO_FIGURE = "–"
+HEADER = ("Sensor", "Loss", "Most in")
 
 
 def draw_sensors(layout: UILayout, context: Context) -> None:
@@ -27,8 +32,16 @@ def draw_sensors(layout: UILayout, context: Context) -> None:
         return
     draw_header(box, context)
     if len(objects) > MAX_ROWS:
-        given = context.scene, "objects", context.scene.perception_entropy, "selected_sensor"
-        box.template_list(sensors_rows.__name__, "", *given, rows=MAX_ROWS, maxrows=MAX_ROWS)
+        box.template_list(
+            sensors_rows.__name__,
+            "",
+            context.scene,
+            "objects",
+            context.scene.perception_entropy,
+            "selected_sensor",
+            rows=MAX_ROWS,
+            maxrows=MAX_ROWS,
+        )
         return
     for obj in objects:
         draw_sensor(box, context, obj)
@@ -71,7 +84,8 @@ def draw_header(layout: UILayout, context: Context) -> None:
 
 def draw_sensor(layout: UILayout, context: Context, obj: Object) -> None:
     """Draw a sensor's row: the Outliner's eye, the switch of its beams, and its colour."""
-    settings, counts = obj.perception_entropy, obj.visible_get()
+    settings = obj.perception_entropy
+    counts = obj.visible_get()
     row = layout.row(align=True)
     eye = "HIDE_OFF" if counts else "HIDE_ON"
     row.operator("pe.toggle_sensor", text="", icon=eye, emboss=False).name = obj.name
@@ -82,7 +96,7 @@ def draw_sensor(layout: UILayout, context: Context, obj: Object) -> None:
     share = (1.0 - FIGURE_SHARE) * (MODEL_FROM if model else 1.0)
     row.active = counts  # a hidden sensor is not scored
     warned = any(w.subject == obj.name for w in context.scene.perception_entropy.result_warnings)
-    draw_name(name, context, obj, 3.0 * ICON_PX, share, warned)
+    draw_name(name, context, obj, 3.0 * ICON_PX, share=share, warned=warned)
     if model:
         model.label(text=settings.model, translate=False)
     draw_label(figure, loss_text(obj))
@@ -93,7 +107,8 @@ def draw_name(
 ) -> None:
     """Draw the button that selects a sensor, with as much of its name as there is room for."""
     text = fitted(context, obj.name, beside_px + (ICON_PX / share if warned else 0.0), share)
-    active, icon = obj == context.active_object, "ERROR" if warned else "NONE"
+    active = obj == context.active_object
+    icon = "ERROR" if warned else "NONE"
     layout.operator(
         "pe.select_object", text=text, depress=active, icon=icon, translate=False
     ).name = obj.name
@@ -115,16 +130,11 @@ def row_cells(layout: UILayout, context: Context) -> tuple[UILayout, UILayout | 
     """Return the cells of a row: name, model (*All*: names are long), figure at the right."""
     left = layout.split(factor=1.0 - FIGURE_SHARE, align=True)
     both = left if is_simple(context.scene) else left.split(factor=MODEL_FROM, align=True)
-    name, model = both.row(align=True), None if both is left else both.row(align=True)
+    name = both.row(align=True)
+    model = None if both is left else both.row(align=True)
     figure = left.row(align=True)
     figure.alignment = "RIGHT"
     return name, model, figure
-
-
-NAME_SHARE, LOSS_SHARE = 0.46, 0.3
-PARTS_NAMED = 2
-NO_FIGURE = "–"
-HEADER = ("Sensor", "Loss", "Most in")
 
 
 def draw_sensor_table(layout: UILayout, context: Context) -> None:
@@ -144,7 +154,7 @@ def _draw_row(layout: UILayout, context: Context, obj: Object) -> None:
     known = None if words is None else words.rows.get(obj.name)
     name, loss, where = _cells(layout)
     draw_swatch(name, obj.perception_entropy)
-    draw_name(name, context, obj, ICON_PX / NAME_SHARE, NAME_SHARE, False)
+    draw_name(name, context, obj, ICON_PX / NAME_SHARE, share=NAME_SHARE, warned=False)
     if figures_of_sensor(obj) is None:
         draw_label(loss, "not scored")
         return
@@ -165,7 +175,8 @@ def _cells(layout: UILayout) -> tuple[UILayout, UILayout, UILayout]:
     named = layout.split(factor=NAME_SHARE, align=True)
     name = named.row(align=True)
     figures = named.split(factor=LOSS_SHARE, align=True)
-    loss, where = figures.row(align=True), figures.row(align=True)
+    loss = figures.row(align=True)
+    where = figures.row(align=True)
     loss.alignment = "RIGHT"
     return name, loss, where
 

@@ -145,7 +145,8 @@ def draw_options(layout: UILayout, obj: Object) -> None:
 
 def draw_front(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """Draw the Pareto front: a button for each design's variant, its name and its figures."""
-    column, front = layout.box().column(align=True), settings.front
+    column = layout.box().column(align=True)
+    front = settings.front
     if front.note:
         draw_sentence(column, context, front.note, icon="INFO")
     for row in front.rows:

@@ -31,7 +31,8 @@ def selected_object_index(_settings: PropertyGroup) -> int:
 
 def select_object_by_index(_settings: PropertyGroup, number: int) -> None:
     """Select the object at a place among the scene's objects, and nothing else."""
-    objects, layer = bpy.context.scene.objects, bpy.context.view_layer
+    objects = bpy.context.scene.objects
+    layer = bpy.context.view_layer
     if 0 <= number < len(objects) and objects[number].visible_get():
         for other in layer.objects.selected[:]:
             other.select_set(False)
@@ -59,7 +60,8 @@ def own_curve_switched(settings: PropertyGroup, context: Context) -> None:
     entry = catalog.entries().get(settings.model)
     if settings.own_curve and entry is not None and not settings.is_property_set("curve_a"):
         curve = kinds.KINDS[entry.kind].curve
-        settings.curve_a, settings.curve_b = curve.a, curve.b
+        settings.curve_a = curve.a
+        settings.curve_b = curve.b
     changed(settings, context)
 
 

@@ -23,7 +23,8 @@ UNITS = {"m": "LENGTH", "m2": "AREA"}
 
 def property_of(setting: studies.Setting, **more: Any) -> Any:
     """Return the property that a setting is stored in; `more` goes before what is declared."""
-    panel, rule = setting.panel, cast(Any, setting.rule)
+    panel = setting.panel
+    rule = cast(Any, setting.rule)
     assert panel is not None  # asked for those alone that have one
     options: dict[str, Any] = {
         "name": panel.label,
@@ -137,11 +138,13 @@ def declared_rows(part: str) -> tuple[DeclaredRow, ...]:
 
 
 def _row_of(setting: studies.Setting) -> DeclaredRow:
-    panel, rule = setting.panel, setting.rule
+    panel = setting.panel
+    rule = setting.rule
     assert panel is not None
-    is_pair, is_list = isinstance(rule, studies.Pair), isinstance(rule, studies.Several)
+    is_pair = isinstance(rule, studies.Pair)
+    is_list = isinstance(rule, studies.Several)
     name = panel.property or setting.name
-    return DeclaredRow(name, is_pair, is_list, panel.beside, panel.when)
+    return DeclaredRow(name, is_pair, is_list, panel.beside, when=panel.when)
 
 
 ROWS = {

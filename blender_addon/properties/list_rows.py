@@ -27,6 +27,15 @@ FocusFields: Any = group_of(pe.Focus)
 ApCurveFields: Any = group_of(pe.ApCurve)
 OptionFields: Any = group_of(pe.Option)
 SurfaceMountFields: Any = group_of(pe.SurfaceMount)
+KINDS = (
+    (ON_SURFACE, "Surface", "The sensor moves on faces of the vehicle"),
+    (ON_SLOTS, "Slots", "The sensor takes the place of one of a collection's empties"),
+)
+FACES = (
+    (BY_PARTS, "Parts", "Objects of the vehicle, all of their faces"),
+    (BY_GROUP, "Painted", "Faces of the vehicle's meshes whose corners all weigh more than a half "
+     "in a vertex group"),
+)  # fmt: skip
 
 
 class PE_FocusSettings(FocusFields, PropertyGroup):
@@ -80,18 +89,6 @@ class PE_SensorOption(OptionFields, PropertyGroup):
         search=model_suggestions,
         search_options={"SUGGESTION"},
     )
-
-
-KINDS = (
-    (ON_SURFACE, "Surface", "The sensor moves on faces of the vehicle"),
-    (ON_SLOTS, "Slots", "The sensor takes the place of one of a collection's empties"),
-)
-
-FACES = (
-    (BY_PARTS, "Parts", "Objects of the vehicle, all of their faces"),
-    (BY_GROUP, "Painted", "Faces of the vehicle's meshes whose corners all weigh more than a half "
-     "in a vertex group"),
-)  # fmt: skip
 
 
 def _free_name(row: PropertyGroup, rows: Any, usual: str) -> bool:

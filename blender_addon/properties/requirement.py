@@ -20,7 +20,8 @@ from .list_rows import Switched
 
 TableData = dict[str, Any]
 Change = Callable[[TableData, Any], None]
-BODIES_ASKED, GROUND_ASKED = "bodies", "ground"
+BODIES_ASKED = "bodies"
+GROUND_ASKED = "ground"
 ASKS = (
     (BODIES_ASKED, "Test Bodies", "A body stands at each sample of the zone, and has to be seen"),
     (GROUND_ASKED, "Blind Ground", "Blind ground in the zone is limited"),
@@ -41,8 +42,9 @@ USUAL: dict[str, TableData] = {
 }
 """With what a shape begins."""
 SHAPE_KEYS = ("x", "y", "polygon", "ring", "path", "spots")
-USUAL_BODY, USUAL_BLIND_M2 = "adult", 0.5
-NOT_OF_GROUND = (*("sensors", "kinds", "of", "points", "pixels", "share", "ap"),)
+USUAL_BODY = "adult"
+USUAL_BLIND_M2 = 0.5
+NOT_OF_GROUND = ("sensors", "kinds", "of", "points", "pixels", "share", "ap")
 OF_GROUND = ("blind_m2", "blind_out", "blind_height")
 ZERO_COUNTS = ("blind_m2",)
 """Settings that are asked for at 0, too."""
@@ -90,7 +92,8 @@ def _declared() -> Any:
 
 def _declared_view(section: str, setting: studies.Setting) -> dict[str, Any]:
     """Return the callbacks of a declared setting; its default removes the key."""
-    name, default = setting.name, setting.default
+    name = setting.name
+    default = setting.default
 
     def get(table: TableData) -> Any:
         value = table.get(section, {}).get(name, default)

@@ -50,6 +50,11 @@ LISTS = (
 row's group."""
 INDEX_OF = {name: index for name, index, *_ in LISTS}
 """The property of the selected row's place, by that of the rows."""
+KEPT_AT_FIRST = ("blind_ground", "blind_sector")
+UNITS = {"m": "LENGTH", "m2": "AREA"}
+KEEPS = "Optimize will not make it worse than its limit, or than now if there is no limit"
+HOLDS = "Optimize keeps to the limit; a limit on what it improves ends it"
+LARGEST_LIMIT = 1e6
 
 
 def _lists() -> Any:
@@ -64,13 +69,6 @@ def _lists() -> Any:
 
 
 ListFields: Any = _lists()
-
-
-KEPT_AT_FIRST = ("blind_ground", "blind_sector")
-UNITS = {"m": "LENGTH", "m2": "AREA"}
-KEEPS = "Optimize will not make it worse than its limit, or than now if there is no limit"
-HOLDS = "Optimize keeps to the limit; a limit on what it improves ends it"
-LARGEST_LIMIT = 1e6
 
 
 def _limits() -> Any:
@@ -91,7 +89,8 @@ def _limits() -> Any:
 
 def _limit_number(row: search.Figure) -> Any:
     about = f"{row.about}: at {'least' if row.higher else 'most'}; {bridge.NONE}: no limit"
-    rule, least = row.rule, bridge.NONE
+    rule = row.rule
+    least = bridge.NONE
     if isinstance(rule, studies.Whole):
         return whole(row.label, about, least, min=least, max=rule.maximum)
     return number(

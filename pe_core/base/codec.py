@@ -72,7 +72,7 @@ class Node:
         """Return a value below this one."""
         name = self.value.get("name") if isinstance(self.value, Mapping) else None
         owner = name if isinstance(name, str) else self.owner
-        return Node(value, self.source, path, self.folder, owner)
+        return Node(value, self.source, path, self.folder, owner=owner)
 
     @property
     def table(self) -> Mapping[str, Any]:
@@ -234,7 +234,7 @@ def declared(
         own = () if each.part.inline else (each.key,)
         key = ".".join(filter(None, (path, *own, *names)))
         if each.setting is not None:
-            yield Declared(key, each.setting, cls, held_as, rows)
+            yield Declared(key, each.setting, cls, held_as, rows=rows)
         for inner, is_several in () if each.rule is not None else classes_in(each.hint):
             several = rows or is_several
             yield from declared(inner, key, each.name, rows=several)
@@ -242,10 +242,12 @@ def declared(
 
 @functools.cache
 def fields_of(cls: Any) -> tuple[DocumentField, ...]:
-    hints, settings = typing.get_type_hints(cls, include_extras=True), settings_of(cls)
+    hints = typing.get_type_hints(cls, include_extras=True)
+    settings = settings_of(cls)
     found = []
     for each in fields(cls):
-        hint, own = hints[each.name], Part()
+        hint = hints[each.name]
+        own = Part()
         if typing.get_origin(hint) is typing.Annotated:
             hint, own = typing.get_args(hint)
         made = each.default_factory is not MISSING
@@ -309,13 +311,14 @@ def _value(each: DocumentField, node: Node) -> Any:
         return _by_rule(each.rule, node)
     if not each.part.by_name:
         return read_value(each.hint, node)
-    inner, found = typing.get_args(each.hint)[1], dict[str, Any]()
+    inner = typing.get_args(each.hint)[1]
+    found = dict[str, Any]()
     for row in node.items:
         name = A_NAME.checked(row.source, f"{row.path}.name", row.table.get("name"))
         if name in found:
             raise row.error("each name once", f"{name!r} twice", "name")
         rest = {key: value for key, value in row.table.items() if key != "name"}
-        found[name] = read_value(inner, Node(rest, row.source, row.path, row.folder, name))
+        found[name] = read_value(inner, Node(rest, row.source, row.path, row.folder, owner=name))
     return found
 
 
@@ -328,7 +331,8 @@ def read_value(hint: Any, node: Node) -> Any:
         return BY_TYPE[hint].checked(node.source, node.path, node.value)
     if is_dataclass(hint):
         return read_fields(typing.cast(type, hint), node)
-    origin, inner = typing.get_origin(hint), typing.get_args(hint)
+    origin = typing.get_origin(hint)
+    inner = typing.get_args(hint)
     if origin in (types.UnionType, typing.Union):
         return read_value(_nearest(inner, node), node)
     if issubclass(origin, Mapping):
@@ -356,7 +360,9 @@ def _nearest(hints: Sequence[Any], node: Node) -> Any:
 
 def _by_rule(rule: ValueRule, node: Node) -> Any:
     """Return a value that meets a rule; degrees become radians."""
-    source, path, value = node.source, node.path, node.value
+    source = node.source
+    path = node.path
+    value = node.value
     items = listed(value, 3) if isinstance(rule, Triple | Pair) else None
     if not is_angle(rule):
         return rule.checked(source, path, value)

@@ -48,7 +48,10 @@ class InputError(ValueError):
     """
 
     def __init__(self, source: object, field: str, expected: str, found: object) -> None:
-        self.source, self.field, self.expected, self.found = str(source), field, expected, found
+        self.source = str(source)
+        self.field = field
+        self.expected = expected
+        self.found = found
         self._found_text = visible(found) if isinstance(found, str) else _short(found)
         message = _cut(self._found_text, MAX_FOUND_LENGTH)
         if expected:

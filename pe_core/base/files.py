@@ -44,7 +44,8 @@ _FILE_TYPES = {
 _writing_files: set[object] = set()
 """A mark for each call that is writing files, or `ENDING`."""
 ENDING = "ending"
-END_WAIT_S, END_POLL_S = 5.0, 0.01
+END_WAIT_S = 5.0
+END_POLL_S = 0.01
 """How long a process that ends at once waits for a file that a thread is writing."""
 NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 """Each digit can match in one way only: otherwise the time would grow with the square of a text."""
@@ -291,8 +292,9 @@ def encode_like(text: str, old: bytes) -> bytes:
     ends = [end for _, end in before if end]
     usual = max([*ends, "\n"], key=ends.count)
     lines = [line + (end and usual) for line, end in after]
-    pairs = [line for line, _ in before], [line for line, _ in after]
-    for block in SequenceMatcher(None, *pairs, autojunk=False).get_matching_blocks():
+    for block in SequenceMatcher(
+        None, [line for line, _ in before], [line for line, _ in after], autojunk=False
+    ).get_matching_blocks():
         for number in range(block.size):
             line, end = after[block.b + number]
             lines[block.b + number] = line + (end and (before[block.a + number][1] or usual))
@@ -329,10 +331,12 @@ def _read(path: Path, max_bytes: int) -> bytes:
 
 def _chunks(handle: int, size: int, max_bytes: int) -> Iterator[bytes]:
     """Yield the file in chunks, up to one byte more than `max_bytes`."""
-    left, wanted = max_bytes + 1, size + 1
+    left = max_bytes + 1
+    wanted = size + 1
     while left > 0 and (chunk := os.read(handle, min(left, wanted))):
         yield chunk
-        left, wanted = left - len(chunk), max(size + 1 - len(chunk), CHUNK)
+        left = left - len(chunk)
+        wanted = max(size + 1 - len(chunk), CHUNK)
 
 
 def _require_size(path: Path, size: int, max_bytes: int) -> None:

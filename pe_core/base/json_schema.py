@@ -33,7 +33,9 @@ def schema_of_setting(setting: Setting) -> Schema:
 
 def _properties(cls: type) -> tuple[dict[str, Schema], list[str], bool]:
     """Return the schema of each key of a class, the required keys, and whether there are others."""
-    properties, required, is_open = dict[str, Schema](), list[str](), False
+    properties = dict[str, Schema]()
+    required = list[str]()
+    is_open = False
     for each in fields_of(cls):
         if each.part.inline and is_dataclass(each.hint):
             inner, needed, more = _properties(typing.cast(type, each.hint))
@@ -75,7 +77,8 @@ def _schema_of_hint(hint: Any) -> Schema:
         return schema_of_rule(BY_TYPE[hint])
     if is_dataclass(hint):
         return schema_of(typing.cast(type, hint))
-    origin, inner = typing.get_origin(hint), typing.get_args(hint)
+    origin = typing.get_origin(hint)
+    inner = typing.get_args(hint)
     if origin in (types.UnionType, typing.Union):
         some = [_schema_of_hint(each) for each in inner if each is not type(None)]
         return some[0] if len(some) == 1 else {"anyOf": some}

@@ -69,7 +69,7 @@ class Triple:
 
     def checked(self, source: object, field: str, value: Any) -> tuple[float, float, float]:
         """Return the value, or raise `InputError`."""
-        first, second, third = vector(source, field, value, 3, self.rule)
+        first, second, third = vector(source, field, value, count=3, rule=self.rule)
         return first, second, third
 
 
@@ -103,7 +103,8 @@ class Several:
         return tuple(items)
 
 
-FLAG, NAMES = Toggle(), Texts()
+FLAG = Toggle()
+NAMES = Texts()
 
 
 @dataclass(frozen=True, slots=True)

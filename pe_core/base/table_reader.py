@@ -33,7 +33,8 @@ class Table:
     """
 
     def __init__(self, data: Any, source: str, path: str = "") -> None:
-        self.source, self.path = source, path
+        self.source = source
+        self.path = path
         if not isinstance(data, Mapping):
             raise InputError(source, path or "document", "a table", type(data).__name__)
         self._data = data

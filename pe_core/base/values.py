@@ -23,11 +23,14 @@ DEGREE_DECIMALS = 9  # Decimals of degrees in a file, where these give the angle
 MAX_DECIMALS = 17
 NEAR_ULPS = 2
 """Search range round the converted degrees, in units of the last place."""
-TO_RADIANS, TO_DEGREES = math.pi / 180.0, 180.0 / math.pi
+TO_RADIANS = math.pi / 180.0
+TO_DEGREES = 180.0 / math.pi
 
 MAX_NAME = 255  # Maximum characters of a name, as in file systems and in Blender
 MAX_PATH = 4096  # Maximum characters of a path, as in Linux
 NUMBER_NAMES = {2: "two", 3: "three"}
+DECIMALS = 9
+"""Entropies and shares are rounded to this: below it, builds of NumPy differ in the last bit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +93,8 @@ class Number:
     @property
     def _range(self) -> str:
         """The range as text, after a blank."""
-        low, high = f"{self.minimum:.12g}", f"{self.maximum:.12g}"
+        low = f"{self.minimum:.12g}"
+        high = f"{self.maximum:.12g}"
         if self._is_plain:
             return ""
         if self.minimum == -self.maximum:
@@ -171,8 +175,6 @@ WEIGHT = Number(0.0, cap=1e9)
 A_NAME = Name()
 A_TEXT = Name("a text", MAX_PATH)
 A_PATH = Name("the name of a file", MAX_PATH)
-DECIMALS = 9
-"""Entropies and shares are rounded to this: below it, builds of NumPy differ in the last bit."""
 
 
 def real(value: Any) -> float:
@@ -196,7 +198,8 @@ def vector(
 ) -> tuple[float, ...]:
     """Return `count` numbers that meet one rule, or raise one `InputError` for all of them. `more`
     is appended to what the message expects."""
-    items, worst = listed(values, count), math.nan
+    items = listed(values, count)
+    worst = math.nan
     if items is not None and len(items) == count:
         try:
             return tuple(rule.checked(source, field, v) for v in items)
@@ -210,7 +213,7 @@ def pair(
 ) -> tuple[float, float]:
     """Return two numbers, low < high (with `same`: low <= high), or raise `InputError`."""
     more = ", low before high"
-    low, high = vector(source, field, values, 2, rule, more)
+    low, high = vector(source, field, values, count=2, rule=rule, more=more)
     if low < high or (same and low == high):
         return low, high
     raise InputError(source, field, rule.expected_text(count=2) + more, shown([low, high]))
@@ -280,9 +283,12 @@ def degrees_in_file(angle: float) -> float:
         rounded = round(degrees, decimals) + 0.0
         if math.radians(rounded) == angle:
             return rounded
-    neighbours, low, high = [degrees], degrees, degrees
+    neighbours = [degrees]
+    low = degrees
+    high = degrees
     for _ in range(NEAR_ULPS):
-        low, high = math.nextafter(low, -math.inf), math.nextafter(high, math.inf)
+        low = math.nextafter(low, -math.inf)
+        high = math.nextafter(high, math.inf)
         neighbours += [low, high]
     return min(neighbours, key=lambda near: abs(math.radians(near) - angle))
 

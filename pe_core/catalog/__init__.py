@@ -115,7 +115,8 @@ def add(name: str, table: Mapping[str, Any], folder: Path | None = None) -> None
 def add_file(path: Path) -> list[str]:
     """Add the presets of a file, a table each by its name; return their names. `InputError` when
     the file is no TOML, or a preset cannot be added; then none of them is."""
-    tables, added = load_toml(path, "catalogue", decode_text(read_bytes(path))), []
+    tables = load_toml(path, "catalogue", decode_text(read_bytes(path)))
+    added = []
     try:
         for name, table in tables.items():
             add(name, table, path.parent)

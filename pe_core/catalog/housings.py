@@ -14,6 +14,20 @@ KEYS = {
     "box": frozenset({"shape", "size", "optical_center", "source"}),
 }
 SHEET_KEYS = frozenset({"mass", "power", "data_rate", "source"})
+SCAN_ABOVE_BASE_M = {
+    "VLP-16": 0.0377,
+    "VLS-128": 0.06611,
+    "HDL-32E": 0.09081,
+    "Pandar40P": 0.047,
+    "OT128": 0.09,
+    "XT32": 0.0464,
+    "QT128": 0.0582,
+    "QT128C2X": 0.0582,
+    "QT64": 0.0504,
+}
+"""By a word of the model's name: `base_scan_joint` of tier4's sensor_component_description
+(03ba094) for Hesai, VLP-16 and VLS-128, of tier4's velodyne_simulator (daf518d) for HDL-32E."""
+WORD = re.compile(r"[^\s()/]+")
 
 
 def read_housing(name: str, table: Any) -> Housing:
@@ -60,26 +74,10 @@ def _cylinder(name: str, table: Mapping[str, Any]) -> tuple[Any, Any]:
 
 def _box(name: str, table: Mapping[str, Any]) -> tuple[Any, Any]:
     """Return size (3,) and optical centre (3,) of a box [m]."""
-    size = vector(name, "housing.size", table.get("size"), 3, LENGTH)
+    size = vector(name, "housing.size", table.get("size"), count=3, rule=LENGTH)
     front = (size[0] / 2.0, 0.0, size[2] / 2.0)
     given = table.get("optical_center", front)
-    return size, vector(name, "housing.optical_center", given, 3, NEAR)
-
-
-SCAN_ABOVE_BASE_M = {
-    "VLP-16": 0.0377,
-    "VLS-128": 0.06611,
-    "HDL-32E": 0.09081,
-    "Pandar40P": 0.047,
-    "OT128": 0.09,
-    "XT32": 0.0464,
-    "QT128": 0.0582,
-    "QT128C2X": 0.0582,
-    "QT64": 0.0504,
-}
-"""By a word of the model's name: `base_scan_joint` of tier4's sensor_component_description
-(03ba094) for Hesai, VLP-16 and VLS-128, of tier4's velodyne_simulator (daf518d) for HDL-32E."""
-WORD = re.compile(r"[^\s()/]+")
+    return size, vector(name, "housing.optical_center", given, count=3, rule=NEAR)
 
 
 def scan_above_base(model: str | None) -> float:

@@ -97,7 +97,8 @@ def _bins(w: Floats, ends: tuple[float, float], count: int) -> NDArray[np.int32]
 def spans_of_boxes(near: Floats, far: Floats, low: Floats, high: Floats) -> Spans:
     """Range of w / depth in boxes ``near <= depth <= far, low <= w <= high``, clipped to -1..1."""
     front = near > 0.0
-    min_depth, max_depth = np.where(front, near, 1.0), np.where(far > 0.0, far, 1.0)
+    min_depth = np.where(front, near, 1.0)
+    max_depth = np.where(far > 0.0, far, 1.0)
     minimum = np.where(low >= 0.0, low / max_depth, np.where(front, low / min_depth, -1.0))
     maximum = np.where(high <= 0.0, high / max_depth, np.where(front, high / min_depth, 1.0))
     return np.maximum(minimum - BOX_MARGIN, -1.0), np.minimum(maximum + BOX_MARGIN, 1.0)
@@ -107,7 +108,9 @@ def spans_of_triangles(depth: Floats, w: Floats) -> Spans:
     """Range of w / depth in triangles with corners (3, G), clipped to -1..1. If a corner is behind
     the sensor, the maximum depth bounds the part in front: a triangle with w > 0 at all corners
     keeps a positive range, and the same holds for w < 0."""
-    minimum, maximum, farthest = corner_min(w), corner_max(w), corner_max(depth)
+    minimum = corner_min(w)
+    maximum = corner_max(w)
+    farthest = corner_max(depth)
     farthest = np.where(farthest > 0.0, farthest, 1.0)
     behind = corner_min(depth) <= 0.0
     ratio = w / np.where(depth > 0.0, depth, 1.0)
@@ -151,17 +154,21 @@ def row_spans(
     cut along their sides; the others get their whole rectangles.
     """
     u, v = within
-    top, bottom = raster.rows(u[0]).astype(np.int64), raster.rows(u[1]).astype(np.int64)
-    left, right = raster.columns(v[0]).astype(np.int64), raster.columns(v[1]).astype(np.int64)
+    top = raster.rows(u[0]).astype(np.int64)
+    bottom = raster.rows(u[1]).astype(np.int64)
+    left = raster.columns(v[0]).astype(np.int64)
+    right = raster.columns(v[1]).astype(np.int64)
     n = bottom - top + 1
     item = np.repeat(np.arange(len(n)), n)
     row = top[item] + count_up(n)
-    first, last = left[item], right[item]
+    first = left[item]
+    last = right[item]
     cut_runs = np.flatnonzero(((n > TALL) & cut & (left < right))[item])
     if len(cut_runs):
         cut_item = item[cut_runs]
-        low, high = _crossed(raster, row[cut_runs], cut_item, sides, reach)
-        low, high = np.maximum(low, v[0][cut_item]), np.minimum(high, v[1][cut_item])
+        low, high = _crossed(raster, row[cut_runs], cut_item, sides, reach=reach)
+        low = np.maximum(low, v[0][cut_item])
+        high = np.minimum(high, v[1][cut_item])
         first[cut_runs] = raster.columns(low)
         last[cut_runs] = np.where(low > high, -1, raster.columns(high))
     not_empty = np.flatnonzero(first <= last)
@@ -172,8 +179,10 @@ def _crossed(raster: Raster, row: Ints, item: Ints, sides: list[Floats], reach: 
     """Minimum and maximum v of shapes within rows."""
     step = (raster.u[1] - raster.u[0]) / raster.count
     u0 = raster.u[0] + row * step
-    u0, u1 = u0 - MARGIN, u0 + (step + MARGIN)
-    low, high = np.full(len(row), -2.0), np.full(len(row), 2.0)
+    u1 = u0 + (step + MARGIN)
+    u0 = u0 - MARGIN
+    low = np.full(len(row), -2.0)
+    high = np.full(len(row), 2.0)
     slack = (reach * SIDE_MARGIN)[item]
     for side in sides:
         a, b, c = side[:, item]

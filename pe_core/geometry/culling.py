@@ -69,8 +69,9 @@ class Targets:
 
     def spans(self, face: CubeFace, raster: Raster, cut: NDArray[np.bool_]) -> RowSpans:
         """Return the bins that triangles may cover, cut along the edges for those in `cut` (G,)."""
-        u, v = self.triangles.u, self.triangles.v
-        return row_spans(raster, (u, v), self.sides(face), self.reach, cut)
+        u = self.triangles.u
+        v = self.triangles.v
+        return row_spans(raster, (u, v), self.sides(face), self.reach, cut=cut)
 
     @property
     def reach(self) -> Floats:
@@ -89,12 +90,14 @@ class Targets:
         Triangles seen edge-on, or with zero area, are never hit."""
         side = _product(self.edges[0], which, d)
         next_side = _product(self.edges[1], which, d)
-        low, high = np.minimum(side, next_side), np.maximum(side, next_side)
+        low = np.minimum(side, next_side)
+        high = np.maximum(side, next_side)
         pairs = np.flatnonzero((low >= 0.0) | (high <= 0.0))
         x, y, z = (w[pairs] for w in d)
         side = _product(self.edges[2], which[pairs], (x, y, z))
         inside = (np.minimum(low[pairs], side) >= 0.0) | (np.maximum(high[pairs], side) <= 0.0)
-        pairs, within = pairs[inside], np.flatnonzero(inside)
+        pairs = pairs[inside]
+        within = np.flatnonzero(inside)
         which = which[pairs]
         toward = _product(self.normal, which, (x[within], y[within], z[within]))
         not_parallel = np.flatnonzero(toward)
@@ -148,7 +151,8 @@ class FaceLook:
         boxes = self._shown(np.arange(len(self.tree.boxes[-1])), len(self.tree.boxes) - 1)
         if not len(boxes.number):
             return None
-        u, v = boxes.u, boxes.v
+        u = boxes.u
+        v = boxes.v
         return (float(u[0].min()), float(u[1].max())), (float(v[0].min()), float(v[1].max()))
 
     def largest(self, count_rays: CountRays | Select, min_count: int) -> tuple[int, VisibleBoxes]:
@@ -190,10 +194,12 @@ class FaceLook:
     def _shown(self, boxes: Ints, level: int) -> VisibleBoxes:
         """Return which of these boxes of a level are visible on the face."""
         low, high = self.tree.boxes[level][boxes].transpose(1, 2, 0) - self.origin[:, None]
-        (near, u0, v0), (far, u1, v1) = self.face.split(low), self.face.split(high)
+        near, u0, v0 = self.face.split(low)
+        far, u1, v1 = self.face.split(high)
         if self.face.sign < 0.0:
             near, far = far, near
-        u, v = spans_of_boxes(near, far, u0, u1), spans_of_boxes(near, far, v0, v1)
+        u = spans_of_boxes(near, far, u0, u1)
+        v = spans_of_boxes(near, far, v0, v1)
         x, y, z = np.maximum(np.maximum(low, -high), 0.0)
         distance = np.sqrt(x * x + y * y + z * z) * (1.0 - BOX_MARGIN)
         shown = (far > 0.0) & (u[0] <= u[1]) & (v[0] <= v[1])

@@ -143,7 +143,8 @@ def top_heights(triangles: Floats, space: PerceptionSpace) -> Floats:
     x = space.centers(0)[column // ny]
     y = space.centers(1)[column % ny]
     corners = triangles[face]
-    dx, dy = corners[..., 0] - x[:, None], corners[..., 1] - y[:, None]
+    dx = corners[..., 0] - x[:, None]
+    dy = corners[..., 1] - y[:, None]
     areas = np.stack(
         [dx[:, i] * dy[:, j] - dx[:, j] * dy[:, i] for i, j in ((1, 2), (2, 0), (0, 1))], axis=1
     )
@@ -156,7 +157,8 @@ def top_heights(triangles: Floats, space: PerceptionSpace) -> Floats:
 
 def _candidates(triangles: Floats, space: PerceptionSpace) -> tuple[NDArray, NDArray]:
     """(triangle, column) pairs whose column centre lies in the triangle's bounding rectangle."""
-    first, last = [], []
+    first = []
+    last = []
     for axis in (0, 1):
         w = (triangles[:, :, axis] - space.origin[axis]) / space.interval - 0.5
         limit = space.shape[axis] - 1
@@ -164,7 +166,8 @@ def _candidates(triangles: Floats, space: PerceptionSpace) -> tuple[NDArray, NDA
         last.append(np.clip(np.floor(w.max(axis=1)), -1, limit).astype(int))
     wide, high = (np.maximum(hi - lo + 1, 0) for lo, hi in zip(first, last, strict=True))
     n = wide * high
-    step, rows = count_up(n), np.repeat(np.maximum(high, 1), n)
+    step = count_up(n)
+    rows = np.repeat(np.maximum(high, 1), n)
     i = np.repeat(first[0], n) + step // rows
     j = np.repeat(first[1], n) + step % rows
     return np.repeat(np.arange(len(triangles)), n), i * space.shape[1] + j

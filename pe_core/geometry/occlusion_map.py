@@ -49,7 +49,8 @@ class OcclusionMap:
     perhaps a gap."""
 
     def __init__(self, look: FaceLook, raster: Raster) -> None:
-        self.raster, self._look = raster, look
+        self.raster = raster
+        self._look = look
         self.near = np.full(raster.count**2, np.inf, np.float32)
         self.far = np.full(raster.count**2, np.inf, np.float32)
         boxes = look.largest(raster.touches, len(look.tree.number))[1].number  # all of them
@@ -95,7 +96,8 @@ def _in_bins(targets: Targets, look: FaceLook, raster: Raster) -> Iterator[_Edge
     edges = [0, *(np.flatnonzero(np.diff(ends)) + 1).tolist(), len(counts)]
     for a, b in pairwise(edges):
         n = counts[a:b]
-        item, row = np.repeat(spans.item[a:b], n), np.repeat(spans.row[a:b], n)
+        item = np.repeat(spans.item[a:b], n)
+        row = np.repeat(spans.row[a:b], n)
         yield shown.pairs(item, row, np.repeat(spans.first[a:b], n) + count_up(n))
 
 
@@ -111,7 +113,8 @@ class _Depths:
         self._edges = targets.sides(look.face)
         self._slack = targets.reach * SIDE_MARGIN
         depth, _, _ = look.face.split(targets.triangles.corners.transpose(2, 1, 0))
-        self._least, self._most = np.maximum(corner_min(depth), 0.0), corner_max(depth)
+        self._least = np.maximum(corner_min(depth), 0.0)
+        self._most = corner_max(depth)
 
     def pairs(self, item: Ints, row: Ints, column: Ints) -> _EdgePairs:
         """Compute triangles (P,) in bins (P,): minimum and maximum depth are at a bin's corners."""
@@ -139,7 +142,7 @@ class _Depths:
             self._side[item],
             near.astype(np.float32),
             far.astype(np.float32),
-            inside,
+            middle=inside,
         )
 
 
@@ -153,7 +156,9 @@ class _Sheet:
     """The triangles that are seen from one side."""
 
     def __init__(self, raster: Raster, side: float, look: FaceLook) -> None:
-        self._window, self._side, self._look = raster, side, look
+        self._window = raster
+        self._side = side
+        self._look = look
         self._far = np.zeros(raster.count**2, np.float32)
         self._middle = np.zeros(raster.count**2, bool)
         self._owned: list[Ints] = []
@@ -178,8 +183,10 @@ class _Sheet:
 
     def _outline(self) -> Ints:
         """Bins that edges touch where the sheet ends or folds."""
-        edges, own = self._look.tree.edges, np.concatenate(self._owned)
-        edge, turn = edges.edge[own], edges.turn[own]
+        edges = self._look.tree.edges
+        own = np.concatenate(self._owned)
+        edge = edges.edge[own]
+        turn = edges.turn[own]
         net = np.bincount(edge.reshape(-1), turn.reshape(-1), edges.count)
         item, k = np.nonzero(net[edge])
         corners = self._look.tree.triangles[own[item]] - self._look.origin
@@ -193,7 +200,11 @@ class _Sheet:
         reach = np.maximum(dot(a[some], a[some]), dot(b[some], b[some]))
         within = [(w[0][some], w[1][some]) for w in spans]
         shown = row_spans(
-            self._window, (within[0], within[1]), [plane, -plane], reach, np.ones(len(some), bool)
+            self._window,
+            (within[0], within[1]),
+            [plane, -plane],
+            reach,
+            cut=np.ones(len(some), bool),
         )
         n = shown.last - shown.first + 1
         return np.repeat(shown.row * self._window.count + shown.first, n) + count_up(n)

@@ -110,11 +110,11 @@ def meets_cylinder(triangles: Floats, half: Floats) -> NDArray[np.bool_]:
     """Whether triangles (N, 3, 3) overlap the upright cylinder round the origin. Between the two
     end planes a triangle is a polygon of parts of its edges and sections with the planes. It
     overlaps if such a segment is within the radius of the axis, or the axis crosses it."""
-    radius, top = half[0], half[2]
+    radius = half[0]
+    top = half[2]
     meets = _axis_crosses(triangles, top)
     for start in range(3):
-        ends = triangles[:, start], triangles[:, (start + 1) % 3]
-        meets |= _nearest_on_edge(*ends, top) <= radius
+        meets |= _nearest_on_edge(triangles[:, start], triangles[:, (start + 1) % 3], top) <= radius
     for height in (-top, top):
         meets |= _nearest_on_section(triangles, height) <= radius
     return meets

@@ -56,14 +56,14 @@ class Pose:
     )
 
     def __post_init__(self) -> None:
-        position = vector("pose", "position", self.position, 3, METRES)
+        position = vector("pose", "position", self.position, count=3, rule=METRES)
         object.__setattr__(self, "position", position)
-        object.__setattr__(self, "rpy", vector("pose", "rpy", self.rpy, 3, ROTATION))
+        object.__setattr__(self, "rpy", vector("pose", "rpy", self.rpy, count=3, rule=ROTATION))
 
     @classmethod
     def from_degrees(cls, position: ArrayLike, rotation_deg: ArrayLike = (0.0, 0.0, 0.0)) -> "Pose":
         """Return a pose with roll, pitch and yaw in degrees, as in files and the user interface."""
-        degrees = vector("pose", "rotation", rotation_deg, 3, ROTATION_DEG)
+        degrees = vector("pose", "rotation", rotation_deg, count=3, rule=ROTATION_DEG)
         roll, pitch, yaw = (math.radians(d) for d in degrees)
         return cls(position, (roll, pitch, yaw))  # type: ignore[arg-type]  # checked when made
 
@@ -128,9 +128,12 @@ class Pose:
 
 def rotation_matrix(roll: float, pitch: float, yaw: float) -> Floats:
     """Return ``Rz(yaw) Ry(pitch) Rx(roll)``, (3, 3): Blender's XYZ Euler, URDF's rpy [rad]."""
-    cr, sr = math.cos(roll), math.sin(roll)
-    cp, sp = math.cos(pitch), math.sin(pitch)
-    cy, sy = math.cos(yaw), math.sin(yaw)
+    cr = math.cos(roll)
+    sr = math.sin(roll)
+    cp = math.cos(pitch)
+    sp = math.sin(pitch)
+    cy = math.cos(yaw)
+    sy = math.sin(yaw)
     return np.array(
         [
             [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
@@ -177,7 +180,9 @@ def checked_rotation(source: object, field: str, rotation: Floats) -> Floats:
 
 def rotate(rotation: Floats, points: Floats) -> Floats:
     """Return points (..., 3) rotated by a matrix (3, 3)."""
-    x, y, z = points[..., 0], points[..., 1], points[..., 2]
+    x = points[..., 0]
+    y = points[..., 1]
+    z = points[..., 2]
     return np.stack([row[0] * x + row[1] * y + row[2] * z for row in rotation], axis=-1)
 
 
@@ -189,6 +194,10 @@ def dot(a: Floats, b: Floats) -> Floats:
 
 def cross(a: Floats, b: Floats) -> Floats:
     """Return the row-wise cross product of (..., 3); ``cross(b, a)`` is bitwise the negative."""
-    ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
-    bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
+    ax = a[..., 0]
+    ay = a[..., 1]
+    az = a[..., 2]
+    bx = b[..., 0]
+    by = b[..., 1]
+    bz = b[..., 2]
     return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)

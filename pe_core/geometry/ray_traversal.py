@@ -190,7 +190,9 @@ class RayWalk:
     """Rays (3, B) from one point (3,) [m] that are followed down a tree."""
 
     def __init__(self, tree: TriangleTree, origin: Floats, directions: Floats) -> None:
-        self._tree, self._origin, self._directions = tree, origin, directions
+        self._tree = tree
+        self._origin = origin
+        self._directions = directions
         margin = MARGIN * np.abs(tree.boxes[-1] - origin).max() if tree.boxes else 0.0
         self._shift = np.concatenate([-origin - margin, -origin + margin])
 
@@ -208,9 +210,11 @@ class RayWalk:
 
     def _entered(self, pairs: RayBoxes, level: int, distance: Floats) -> list[RayBoxes]:
         """Return the boxes one level lower that rays enter, as pairs, in parts."""
-        total, parts = len(self._tree.boxes[level - 1]), []
+        total = len(self._tree.boxes[level - 1])
+        parts = []
         for block in blocks(len(pairs.box), PAIRS_AT_ONCE):
-            box, ray = pairs.box[block], pairs.ray[block]
+            box = pairs.box[block]
+            ray = pairs.ray[block]
             first, last = self._inside(self._tree.rows[level][box], ray)
             np.minimum(last, distance[ray].astype(np.float32), out=last)
             inner, pair = at = np.nonzero((first <= last * SPARE) & (last > 0.0))
@@ -242,12 +246,15 @@ class RayWalk:
         low = np.minimum(np.minimum(sides[0], sides[1]), sides[2])
         high = np.maximum(np.maximum(sides[0], sides[1]), sides[2])
         inner, pair = np.nonzero((low >= 0.0) | (high <= 0.0))
-        a, b, c = a[:, inner, pair], b[:, inner, pair], c[:, inner, pair]
+        a = a[:, inner, pair]
+        b = b[:, inner, pair]
+        c = c[:, inner, pair]
         normal = _cross(b - a, c - a)
         toward = _product(normal, (x[pair], y[pair], z[pair]))
         not_parallel = np.flatnonzero(toward)
         distance = _product(normal, a)[not_parallel] / toward[not_parallel]
-        inner, pair = inner[not_parallel], pair[not_parallel]
+        inner = inner[not_parallel]
+        pair = pair[not_parallel]
         triangle = np.minimum(pairs.box[pair] * BRANCH + inner, len(self._tree.number) - 1)
         meet(pairs.ray[pair], self._tree.number[triangle], distance)
 

@@ -28,92 +28,6 @@ FINER = 2.0
 """Maximum ratio of bins to rays along a side, for meshes with many triangles."""
 SORTING_SHARE = 0.8
 """Rays are sorted again when at most this share of them is not finished."""
-
-
-class BinnedRays:
-    """Rays in the bins of a raster that covers exactly their directions. `ray` (R,) are the rays'
-    numbers, `u` and `v` (R,) their directions on the face; `triangles` is the number of triangles
-    of the mesh."""
-
-    def __init__(self, ray: Ints, u: Floats, v: Floats, directions: Floats, triangles: int) -> None:
-        along = np.sqrt(len(ray))
-        fine = max(along, min(FINER * along, np.sqrt(triangles) / 2.0))
-        side = 2 ** int(np.ceil(np.log2(fine + 1.0)))
-        self._triangles = triangles
-        across, down = ((float(w.min()), float(w.max())) for w in (u, v))
-        self.raster = Raster(across, down, min(side, MAX_BINS))
-        n = self.raster.count
-        bins = self.raster.rows(u) * n + self.raster.columns(v)
-        order = stable_order(bins)
-        self.ray, self.u, self.v = ray[order], u[order], v[order]
-        self.directions = directions[:, order]
-        counts = np.bincount(bins, minlength=n * n)
-        self._starts = np.concatenate([[0], np.cumsum(counts)])
-        sums = np.zeros((n + 1, n + 1), np.int32)
-        rows = np.cumsum(counts.reshape(n, n), axis=1, dtype=np.int32)
-        np.cumsum(rows, axis=0, out=sums[1:, 1:])
-        self._sums = sums.reshape(-1)
-
-    @classmethod
-    def within(cls, look: FaceLook, ends: Ends, d: Floats, ray: Ints) -> "BinnedRays | None":
-        """Return the rays that pass a face within a rectangle; None if there are none. `d` (3, B)
-        are the directions of all rays, `ray` the numbers of those that pass the face."""
-        depth, u, v = (w[ray] for w in look.face.split(d))
-        u, v = u / depth, v / depth
-        (u0, u1), (v0, v1) = ends
-        index = np.flatnonzero((u >= u0) & (u <= u1) & (v >= v0) & (v <= v1))
-        ray = ray[index]
-        return cls(ray, u[index], v[index], d[:, ray], len(look.tree.number)) if len(ray) else None
-
-    def but_nearer(self, distance: Floats, than: float) -> "BinnedRays | None":
-        """Return the rays without a hit nearer than `than` [m], None if there are none; all if few
-        have one."""
-        left = np.flatnonzero(distance[self.ray] >= than)
-        if not len(left):
-            return None
-        if len(left) > SORTING_SHARE * len(self.ray):
-            return self
-        return BinnedRays(
-            self.ray[left], self.u[left], self.v[left], self.directions[:, left], self._triangles
-        )
-
-    def count_in(self, u: Spans, v: Spans) -> Ints:
-        """Return the number of rays in the bins of each rectangle, from cumulative sums."""
-        n = self.raster.count + 1
-        top, bottom = self.raster.rows(u[0]) * n, (self.raster.rows(u[1]) + 1) * n
-        left, right = self.raster.columns(v[0]), self.raster.columns(v[1]) + 1
-        ray_count = self._sums[bottom + right] - self._sums[top + right]
-        ray_count -= self._sums[bottom + left]
-        ray_count += self._sums[top + left]
-        return np.where(self.raster.touches(u, v), ray_count, 0)
-
-    def any_in(self, u: Spans, v: Spans) -> NDArray[np.bool_]:
-        """Whether there is a ray in the bins of each rectangle."""
-        return self.count_in(u, v) > 0
-
-    def ray_boxes(self, boxes: VisibleBoxes, distance: Floats) -> RayBoxes:
-        """Return pairs of a box and a ray through its rectangle, but no ray with a nearer hit."""
-        (u0, u1), (v0, v1) = boxes.u, boxes.v
-        none_cut = np.zeros(len(u0), np.bool_)
-        first, count = self.in_bins(
-            spans := row_spans(self.raster, (boxes.u, boxes.v), [], u0, none_cut)
-        )
-        which = np.repeat(spans.item, count)
-        at = np.repeat(first, count) + count_up(count)
-        u, v, ray = self.u[at], self.v[at], self.ray[at]
-        passed = (u0[which] <= u) & (u <= u1[which]) & (v0[which] <= v) & (v <= v1[which])
-        passed &= boxes.near[which] <= distance[ray]
-        kept_pairs = np.flatnonzero(passed)
-        which = which[kept_pairs]
-        return RayBoxes(boxes.number[which], ray[kept_pairs], boxes.near[which].astype(np.float32))
-
-    def in_bins(self, spans: RowSpans) -> tuple[Ints, Ints]:
-        """Return the first ray in each run of bins, and the number of rays in it."""
-        row = spans.row * self.raster.count
-        first = self._starts[row + spans.first]
-        return first, self._starts[row + (spans.last + 1)] - first
-
-
 PAIRS_AT_ONCE = 1 << 15
 MANY = np.iinfo(np.int64).max
 """A number larger than any index or count."""
@@ -132,6 +46,106 @@ MIN_RAYS_TO_CUT = 16
 MAX_BOXES = 1 << 13  # Maximum boxes whose triangles are tested at once, to limit memory
 
 
+class BinnedRays:
+    """Rays in the bins of a raster that covers exactly their directions. `ray` (R,) are the rays'
+    numbers, `u` and `v` (R,) their directions on the face; `triangles` is the number of triangles
+    of the mesh."""
+
+    def __init__(self, ray: Ints, u: Floats, v: Floats, directions: Floats, triangles: int) -> None:
+        along = np.sqrt(len(ray))
+        fine = max(along, min(FINER * along, np.sqrt(triangles) / 2.0))
+        side = 2 ** int(np.ceil(np.log2(fine + 1.0)))
+        self._triangles = triangles
+        across, down = ((float(w.min()), float(w.max())) for w in (u, v))
+        self.raster = Raster(across, down, min(side, MAX_BINS))
+        n = self.raster.count
+        bins = self.raster.rows(u) * n + self.raster.columns(v)
+        order = stable_order(bins)
+        self.ray = ray[order]
+        self.u = u[order]
+        self.v = v[order]
+        self.directions = directions[:, order]
+        counts = np.bincount(bins, minlength=n * n)
+        self._starts = np.concatenate([[0], np.cumsum(counts)])
+        sums = np.zeros((n + 1, n + 1), np.int32)
+        rows = np.cumsum(counts.reshape(n, n), axis=1, dtype=np.int32)
+        np.cumsum(rows, axis=0, out=sums[1:, 1:])
+        self._sums = sums.reshape(-1)
+
+    @classmethod
+    def within(cls, look: FaceLook, ends: Ends, d: Floats, ray: Ints) -> "BinnedRays | None":
+        """Return the rays that pass a face within a rectangle; None if there are none. `d` (3, B)
+        are the directions of all rays, `ray` the numbers of those that pass the face."""
+        depth, u, v = (w[ray] for w in look.face.split(d))
+        u = u / depth
+        v = v / depth
+        (u0, u1), (v0, v1) = ends
+        index = np.flatnonzero((u >= u0) & (u <= u1) & (v >= v0) & (v <= v1))
+        ray = ray[index]
+        return (
+            cls(ray, u[index], v[index], d[:, ray], triangles=len(look.tree.number))
+            if len(ray)
+            else None
+        )
+
+    def but_nearer(self, distance: Floats, than: float) -> "BinnedRays | None":
+        """Return the rays without a hit nearer than `than` [m], None if there are none; all if few
+        have one."""
+        left = np.flatnonzero(distance[self.ray] >= than)
+        if not len(left):
+            return None
+        if len(left) > SORTING_SHARE * len(self.ray):
+            return self
+        return BinnedRays(
+            self.ray[left],
+            self.u[left],
+            self.v[left],
+            self.directions[:, left],
+            triangles=self._triangles,
+        )
+
+    def count_in(self, u: Spans, v: Spans) -> Ints:
+        """Return the number of rays in the bins of each rectangle, from cumulative sums."""
+        n = self.raster.count + 1
+        top = self.raster.rows(u[0]) * n
+        bottom = (self.raster.rows(u[1]) + 1) * n
+        left = self.raster.columns(v[0])
+        right = self.raster.columns(v[1]) + 1
+        ray_count = self._sums[bottom + right] - self._sums[top + right]
+        ray_count -= self._sums[bottom + left]
+        ray_count += self._sums[top + left]
+        return np.where(self.raster.touches(u, v), ray_count, 0)
+
+    def any_in(self, u: Spans, v: Spans) -> NDArray[np.bool_]:
+        """Whether there is a ray in the bins of each rectangle."""
+        return self.count_in(u, v) > 0
+
+    def ray_boxes(self, boxes: VisibleBoxes, distance: Floats) -> RayBoxes:
+        """Return pairs of a box and a ray through its rectangle, but no ray with a nearer hit."""
+        u0, u1 = boxes.u
+        v0, v1 = boxes.v
+        none_cut = np.zeros(len(u0), np.bool_)
+        first, count = self.in_bins(
+            spans := row_spans(self.raster, (boxes.u, boxes.v), sides=[], reach=u0, cut=none_cut)
+        )
+        which = np.repeat(spans.item, count)
+        at = np.repeat(first, count) + count_up(count)
+        u = self.u[at]
+        v = self.v[at]
+        ray = self.ray[at]
+        passed = (u0[which] <= u) & (u <= u1[which]) & (v0[which] <= v) & (v <= v1[which])
+        passed &= boxes.near[which] <= distance[ray]
+        kept_pairs = np.flatnonzero(passed)
+        which = which[kept_pairs]
+        return RayBoxes(boxes.number[which], ray[kept_pairs], boxes.near[which].astype(np.float32))
+
+    def in_bins(self, spans: RowSpans) -> tuple[Ints, Ints]:
+        """Return the first ray in each run of bins, and the number of rays in it."""
+        row = spans.row * self.raster.count
+        first = self._starts[row + spans.first]
+        return first, self._starts[row + (spans.last + 1)] - first
+
+
 @dataclass(frozen=True, slots=True)
 class Hits:
     """First hits of B rays: `distance` (B,) [m], inf for a miss; `face` (B,), -1 for a miss."""
@@ -144,7 +158,8 @@ class VisibleTriangles:
     """A mesh for rays from one point (3,) in its frame [m]."""
 
     def __init__(self, tree: TriangleTree, origin: Floats) -> None:
-        self.tree, self.origin = tree, np.asarray(origin, dtype=float)
+        self.tree = tree
+        self.origin = np.asarray(origin, dtype=float)
 
     @property
     def triangles(self) -> Floats:
@@ -164,7 +179,8 @@ class VisibleTriangles:
 
     def _follow(self, d: Floats, hits: Hits) -> None:
         """Follow each of a few rays (3, B) down the tree; the results go into `hits`."""
-        levels, rays = len(self.tree.boxes), d.shape[1]
+        levels = len(self.tree.boxes)
+        rays = d.shape[1]
         if levels and rays:
             none = RayBoxes(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0, np.float32))
             box = np.repeat(np.arange(len(self.tree.boxes[-1])), rays)
@@ -199,34 +215,42 @@ def _cast(look: FaceLook, rays: BinnedRays, walk: RayWalk, hits: Hits) -> None:
         if unfinished is None:
             return
         if unfinished is not rays:
-            rays, boxes = unfinished, boxes[np.flatnonzero(unfinished.any_in(boxes.u, boxes.v))]
+            rays = unfinished
+            boxes = boxes[np.flatnonzero(unfinished.any_in(boxes.u, boxes.v))]
         few, many = look.opened(boxes[:count], level, rays.count_in, FEW_RAYS if fine else 0)
         for some in blocks(len(many.number), MAX_BOXES):
             _scatter(look.triangles(many.number[some], rays.any_in), look, rays, hits)
         if fine:
             starts = [rays.ray_boxes(some, hits.distance) for some in few]
             walk.follow(starts, hits.distance, partial(_keep, hits))
-        boxes, count = boxes[count:], 2 * count
+        boxes = boxes[count:]
+        count = 2 * count
 
 
 def _scatter(triangles: Facing, look: FaceLook, rays: BinnedRays, hits: Hits) -> None:
     """Test triangles, nearest first, against the rays in the bins that they may cover."""
     near = min_distance(triangles.corners)
     order = np.argsort(near, kind="stable")
-    targets, near = Targets(triangles[order]), near[order]
-    u, v = targets.triangles.u, targets.triangles.v
+    targets = Targets(triangles[order])
+    near = near[order]
+    u = targets.triangles.u
+    v = targets.triangles.v
     spans = targets.spans(look.face, rays.raster, rays.count_in(u, v) > MIN_RAYS_TO_CUT)
     first, count = rays.in_bins(spans)
     with_rays = np.flatnonzero(count)
-    item, first, count = spans.item[with_rays], first[with_rays], count[with_rays]
+    item = spans.item[with_rays]
+    first = first[with_rays]
+    count = count[with_rays]
     number = look.tree.number[targets.triangles.number]
     portion = np.cumsum(count) // PAIRS_AT_ONCE  # to fit the CPU cache and memory
     edges = [0, *(np.flatnonzero(np.diff(portion)) + 1).tolist(), len(count)]
     for part in (slice(a, b) for a, b in pairwise(edges)):
         n = count[part]
-        which, ray = np.repeat(item[part], n), np.repeat(first[part], n) + count_up(n)
+        which = np.repeat(item[part], n)
+        ray = np.repeat(first[part], n) + count_up(n)
         unfinished = np.flatnonzero(near[which] <= hits.distance[rays.ray[ray]])
-        which, ray = which[unfinished], ray[unfinished]
+        which = which[unfinished]
+        ray = ray[unfinished]
         x, y, z = rays.directions
         met, distance = targets.met(which, (x[ray], y[ray], z[ray]))
         _keep(hits, rays.ray[ray[met]], number[which[met]], distance)
@@ -237,7 +261,10 @@ def _keep(hits: Hits, ray: Ints, face: Ints, distance: Floats) -> None:
     before = hits.distance[ray]
     better = (distance < before) | ((distance == before) & (face < hits.face[ray]))
     better = np.flatnonzero(better & (distance > 0.0))
-    ray, face, distance, before = ray[better], face[better], distance[better], before[better]
+    ray = ray[better]
+    face = face[better]
+    distance = distance[better]
+    before = before[better]
     np.minimum.at(hits.distance, ray, distance)
     hits.face[ray[distance < before]] = MANY
     first = distance == hits.distance[ray]

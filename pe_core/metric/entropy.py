@@ -15,7 +15,8 @@ from ..base.arrays import Floats
 from ..base.setting import Panel, check_settings, required_setting, setting
 from ..base.values import Number
 
-AP_MIN, AP_MAX = 0.001, 0.999
+AP_MIN = 0.001
+AP_MAX = 0.999
 """The paper's clamp of AP "for numerical stability"."""
 GAUSSIAN_2D = 1.0 + math.log(2.0 * math.pi)
 BLIND_PRECISION = (1.0 / AP_MIN - 1.0) ** -2

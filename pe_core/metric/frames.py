@@ -102,7 +102,8 @@ class Frames:
     def fused(self, kinds: Sequence[CurveOf], added: Sequence[ArrayLike], floor: float) -> Floats:
         """Return 1 / sigma^2 after the last frame, when each group adds the same at each frame.
         `added` is what each group adds to the floor: 1 / sigma^2 - f, arrays of one shape."""
-        precision, last = np.asarray(floor), None
+        precision = np.asarray(floor)
+        last = None
         for at, groups in self.times([self.rate(kind) for kind in kinds]):
             prior = floor if last is None else predicted(precision, self.q * (at - last), floor)
             precision = updated(prior, [added[k] for k in sorted(groups)])

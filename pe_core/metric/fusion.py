@@ -47,7 +47,8 @@ Areas = tuple[CurveOf, slice, NDArray[np.floating]]
 DIGITS = 11
 """Binary digits of a pixel area that are used: the rest is below 1 part in 2048."""
 SHIFT = 24 - DIGITS
-FIRST_OCTAVE, OCTAVES = -32, 64
+FIRST_OCTAVE = -32
+OCTAVES = 64
 """Table from 2^-32 px on: far below the rounding of a camera's exact area."""
 _CODES = np.arange(OCTAVES << DIGITS - 1, dtype=np.int32) + (127 + FIRST_OCTAVE << DIGITS - 1)
 """Leading bits, exponent first, of the single-precision numbers in the table."""
@@ -206,7 +207,8 @@ class PlaneFusion:
     """Fusion on planes of (ny, nz) voxels, under the model of a `Fusion`."""
 
     def __init__(self, fusion: Fusion, shape: tuple[int, int]) -> None:
-        self._fusion, self._shape = fusion, shape
+        self._fusion = fusion
+        self._shape = shape
         self._tables: dict[tuple[str, CurveOf, int], Floats] = {}
         """By content, kind and number of blind groups: two for each kind, and one more for each
         number of groups that occurs (by the floor rule, one)."""
@@ -222,7 +224,8 @@ class PlaneFusion:
             entropies = np.take(self._alone(kind, blind), m, mode="clip")
         else:
             entropies = entropy_of(self._counted(counts, blind, slice(None)))
-        starts, stops = [own.start for _, own, _ in areas], [own.stop for _, own, _ in areas]
+        starts = [own.start for _, own, _ in areas]
+        stops = [own.stop for _, own, _ in areas]
         rows = slice(min(starts, default=0), max(stops, default=0))  # with any area
         if rows.stop > rows.start:
             precision = self._counted(counts, blind, rows)
@@ -307,7 +310,8 @@ class PlaneFusion:
 
 def _planes(groups: Sequence[Group], plane: int) -> tuple[list[GroupCounts], list[Areas]]:
     """One plane of the groups with integer m, and of those with areas that see any plane."""
-    counts, areas = [], []
+    counts = []
+    areas = []
     for kind, measured in groups:
         if not isinstance(measured, VisibleRows):
             counts.append((kind, measured[plane]))
@@ -369,8 +373,9 @@ class LeaveOneOut:
                 if not visible.position.size:
                     sums.append((0.0, 0.0, 0.0))
                     continue
-                weight, precision = weighing.at(visible), others.at(visible)
-                self._add_rest(group, precision, rank, visible, plane)
+                weight = weighing.at(visible)
+                precision = others.at(visible)
+                self._add_rest(group, precision, rank, visible, plane=plane)
                 lost = entropy_of(precision)
                 lost -= whole.at(visible)
                 lost *= weight  # in place: a new array costs as much as the product
@@ -394,10 +399,13 @@ class LeaveOneOut:
             rest = RowValues(*_on_plane(group.total, plane)).at(visible) - visible.m
             precision += self._fused.added(visible.kind, rest)
             return
-        kind, others = group.rests[rank][0], RowValues(*_on_plane(group.rests[rank], plane))
-        rows, nz = visible.rows, others.values.shape[-1]
+        kind = group.rests[rank][0]
+        others = RowValues(*_on_plane(group.rests[rank], plane))
+        rows = visible.rows
+        nz = others.values.shape[-1]
         added = np.zeros((rows.stop - rows.start, nz))
-        start, stop = max(rows.start, others.rows.start), min(rows.stop, others.rows.stop)
+        start = max(rows.start, others.rows.start)
+        stop = min(rows.stop, others.rows.stop)
         if start < stop:  # the sum over the others may cover other rows
             m = others.values[start - others.rows.start : stop - others.rows.start]
             added[start - rows.start : stop - rows.start] = self._fused.added(kind, m)
@@ -416,7 +424,8 @@ class LeaveOneOut:
             self._fused.added(group.total[0], total.values)
             for group, total in zip(self._groups, totals, strict=True)
         ]
-        others, so_far = [], np.full(shape, BLIND_PRECISION)
+        others = []
+        so_far = np.full(shape, BLIND_PRECISION)
         for total, more in zip(totals, added, strict=True):
             others.append(RowValues(total.rows, so_far[total.rows].copy()))
             so_far[total.rows] += more
@@ -434,7 +443,8 @@ class _FusionGroup:
     groups count in whole numbers: the sum less the sensor's count is exact."""
 
     def __init__(self, sensors: Sequence[Group], total: Group) -> None:
-        self.sensors, self.total = sensors, total
+        self.sensors = sensors
+        self.total = total
         self.rests: list[Group] = []
         if len(sensors) > 1 and any(isinstance(m, VisibleRows) for _, m in sensors):
             self.rests = [

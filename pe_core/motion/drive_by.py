@@ -136,7 +136,7 @@ def drive_by(
     `InputError` when a sensor has an AP curve of its own, or a class has none.
     """
     confirmation = confirmation or Confirmation()
-    sight = StorySight(story, rig, vehicle, model or PerceptionModel(), rates or {})
+    sight = StorySight(story, rig, vehicle, model or PerceptionModel(), rates=rates or {})
     whole = sight.ap()
     alone = {sensor.name: sight.ap([sensor.name]) for sensor in rig}
     track = sight.track(confirmation)

@@ -44,7 +44,7 @@ def story_scenes(story: Story, where: Floats, headings: Floats, rig: Rig) -> Sto
     parts: list[Ints] = []
     total = 0
     for number, members in enumerate(groups):
-        part = _scenes_of(members, number, story, where, rig)
+        part = _scenes_of(members, number, story, where, rig=rig)
         parts.append(part)
         watched = np.arange(len(members) * len(story.times)).reshape(len(members), -1)
         rows[members] = total + watched
@@ -56,7 +56,7 @@ def story_scenes(story: Story, where: Floats, headings: Floats, rig: Rig) -> Sto
     rows = rows[sorted(k for members in groups for k in members)]
     seen = np.zeros(total, bool)
     seen[rows] = True
-    return StoryScenes(_objects(story, where, headings, np.concatenate(parts), seen), rows)
+    return StoryScenes(_objects(story, where, headings, np.concatenate(parts), seen=seen), rows)
 
 
 def _scenes_of(members: list[int], number: int, story: Story, where: Floats, rig: Rig) -> Ints:
@@ -100,7 +100,9 @@ def _may_hide(k: int, story: Story, where: Floats, rig: Rig) -> Flags:
 
 def _objects(story: Story, where: Floats, headings: Floats, boxes: Ints, seen: Flags) -> Objects:
     """Return boxes (body, frame, scene) as objects; `seen` (N,): whether one has to be seen."""
-    actor, frame, scenes = boxes[:, 0], boxes[:, 1], boxes[:, 2]
+    actor = boxes[:, 0]
+    frame = boxes[:, 1]
+    scenes = boxes[:, 2]
     bodies = [each.body for each in story.actors]
     small = np.array([body.box for body in bodies])
     large = np.array([body.hiding for body in bodies])
@@ -110,4 +112,4 @@ def _objects(story: Story, where: Floats, headings: Floats, boxes: Ints, seen: F
     names = sorted(set(classes))
     labels = np.array([names.index(name) for name in classes])[actor]
     centers = np.column_stack([where[actor, frame], low + sizes[:, 2] / 2.0])
-    return Objects(centers, sizes, headings[actor, frame], labels, names, scenes)
+    return Objects(centers, sizes, headings[actor, frame], labels, class_names=names, scenes=scenes)

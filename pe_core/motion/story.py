@@ -54,7 +54,7 @@ class Actor:
 
     def __post_init__(self) -> None:
         who = f"body {A_NAME.checked('story', 'name', self.name)!r}"
-        rows = [vector(who, "path", row, 3, METRE) for row in listed(self.path) or []]
+        rows = [vector(who, "path", row, count=3, rule=METRE) for row in listed(self.path) or []]
         times = [SECOND.checked(who, "path", row[0]) for row in rows]
         if not rows or times != sorted(set(times)):
             raise InputError(who, "path", "[s, m, m] at times that increase", shown(self.path))
@@ -161,7 +161,8 @@ class Story:
         low, high = outline(vehicle)
         sign, plane = (-1.0, low[0]) if self.speed < 0.0 else (1.0, high[0])
         times = self.times if times is None else times
-        where, headings = [], []
+        where = []
+        headings = []
         for actor in self.actors:
             at, heading = actor.at(times)
             x = plane + sign * at[:, 0] - self.speed * times
@@ -200,7 +201,8 @@ class StoryTable(Story):
 
 def _read_story(node: Node) -> Story:
     """Return a story from its table; a `preset` is changed by the other keys."""
-    preset, base = node.at("preset"), None
+    preset = node.at("preset")
+    base = None
     table = {**node.table, "name": node.table.get("name", preset.value)}
     if table["name"] is None:
         raise node.error("a name, or a preset", "none", "name")

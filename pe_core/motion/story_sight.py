@@ -67,7 +67,8 @@ class StorySight:
 
     def track(self, confirmation: Confirmation) -> Track:
         """Return the tracks, by the best stream at each frame (`clock`)."""
-        confirmed, kept = [], []
+        confirmed = []
+        kept = []
         for rate, names in streams(self._rig, self._frames_hz).items():
             clock = self._clock(rate)
             found = self.ap(names)[:, clock.frames]

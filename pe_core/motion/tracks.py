@@ -81,7 +81,8 @@ class Confirmation:
         half = len(masks) // 2  # two states, with and without the oldest bit, lead to each
         state = np.zeros((*found.shape[:-1], len(masks), len(chain.shares)))
         state[..., 0, :] = chain.shares
-        reached, done = np.zeros(found.shape), np.zeros(found.shape[:-1])
+        reached = np.zeros(found.shape)
+        done = np.zeros(found.shape[:-1])
         for k in range(found.shape[-1]):
             hit = state * chain.found(found[..., k])[..., None, :]
             moved = np.zeros_like(state)

@@ -94,7 +94,9 @@ class Boxes(ShortRepr):
         if self.file is not None:
             object.__setattr__(self, "file", A_PATH.checked("boxes", "file", self.file))
         if self.origin is not None:
-            object.__setattr__(self, "origin", vector("boxes", "origin", self.origin, 3, ORIGIN))
+            object.__setattr__(
+                self, "origin", vector("boxes", "origin", self.origin, count=3, rule=ORIGIN)
+            )
         if (count := len(set(names.tolist()))) > MAX_CLASSES:
             expected = f"at most {MAX_CLASSES} names (is this the column of the class?)"
             raise InputError(self.source, "class", expected, f"{count:,}")
@@ -235,7 +237,8 @@ def voxelised(boxes: Boxes, space: PerceptionSpace) -> Voxelised:
     a voxel) gets the column or layer of its own centre. A class without boxes in the space has no
     mass. `InputError` when no box is in the space. The last two results are cached.
     """
-    shapes, inside = [], 0
+    shapes = []
+    inside = 0
     for name in boxes.classes:
         shape, count = _class_counts(_Footprints(boxes, np.flatnonzero(boxes.names == name)), space)
         shapes.append(shape)
@@ -254,8 +257,11 @@ class _Footprints:
     of `math`, which are the same in all builds of NumPy."""
 
     def __init__(self, boxes: Boxes, index: Ints) -> None:
-        self.x, self.y, self.z = boxes.x[index], boxes.y[index], boxes.z[index]
-        self.along, self.across = boxes.length[index] / 2.0, boxes.width[index] / 2.0
+        self.x = boxes.x[index]
+        self.y = boxes.y[index]
+        self.z = boxes.z[index]
+        self.along = boxes.length[index] / 2.0
+        self.across = boxes.width[index] / 2.0
         self.up = boxes.height[index] / 2.0
         yaws = boxes.yaw[index].tolist()
         self.cos, self.sin = (np.array([f(a) for a in yaws]) for f in (math.cos, math.sin))
@@ -277,16 +283,20 @@ def _class_counts(boxes: _Footprints, space: PerceptionSpace) -> tuple[Shape, in
         np.subtract.at(steps, (i, end), layers[which])
         np.add.at(columns, which, end - start)
     thin = np.flatnonzero(columns == 0)
-    i, j = voxel_of(boxes.x[thin], space, 0), voxel_of(boxes.y[thin], space, 1)
+    i = voxel_of(boxes.x[thin], space, 0)
+    j = voxel_of(boxes.y[thin], space, 1)
     inside = (i >= 0) & (j >= 0)
-    thin, i, j = thin[inside], i[inside], j[inside]
+    thin = thin[inside]
+    i = i[inside]
+    j = j[inside]
     np.add.at(steps, (i, j), layers[thin])
     np.subtract.at(steps, (i, j + 1), layers[thin])
     columns[thin] = 1
     rises = np.zeros(nz + 1, np.int64)
     np.add.at(rises, first, columns)
     np.subtract.at(rises, last, columns)
-    ground, profile = np.cumsum(steps, axis=1)[:, :-1], np.cumsum(rises)[:-1]
+    ground = np.cumsum(steps, axis=1)[:, :-1]
+    profile = np.cumsum(rises)[:-1]
     shape = normed(ground, profile)
     for values in shape:
         read_only(values)  # the caller gets the cached arrays
@@ -323,7 +333,8 @@ def _across(boxes: _Footprints, which: Ints, dx: Floats) -> tuple[Floats, Floats
     """Where a line along y, at `dx` from the boxes' centres, enters and leaves their rectangles.
     Both are offsets in y from the centre: the line is clipped to the strip between the long sides
     and to the strip between the short ones."""
-    cos, sin = boxes.cos[which], boxes.sin[which]
+    cos = boxes.cos[which]
+    sin = boxes.sin[which]
     long_low, long_high = _strip(sin * dx, boxes.across[which], cos)
     short_low, short_high = _strip(-cos * dx, boxes.along[which], sin)
     return np.maximum(long_low, short_low), np.minimum(long_high, short_high)
@@ -333,8 +344,10 @@ def _strip(middle: Floats, half: Floats, slope: Floats) -> tuple[Floats, Floats]
     """Solve |slope * y - middle| <= half for y; all y where the slope is zero."""
     parallel = slope == 0.0
     slope = np.where(parallel, 1.0, slope)
-    center, reach = middle / slope, half / np.abs(slope)
-    low, high = center - reach, center + reach
+    center = middle / slope
+    reach = half / np.abs(slope)
+    low = center - reach
+    high = center + reach
     return np.where(parallel, -np.inf, low), np.where(parallel, np.inf, high)
 
 

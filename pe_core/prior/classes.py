@@ -26,6 +26,19 @@ RULES = {
     "any_heading": SHARE,
 }
 LANE = Number(cap=1e9, unit="m")
+LANE_M = 3.75
+"""Width of a motorway's lane: Germany's RAA; an Interstate's is 12 ft (3.66 m)."""
+LANES = (-LANE_M, 0.0, LANE_M)
+"""Middles of three lanes; the vehicle drives in the middle one. An assumption."""
+LANE_EDGES = (-1.5 * LANE_M, -0.5 * LANE_M, 0.5 * LANE_M, 1.5 * LANE_M)
+IN_LANE_M = 0.3
+"""Standard deviation of a vehicle's position across its lane. An assumption."""
+OFF_LANES = 0.2
+"""Share of vehicles elsewhere: ramps, shoulders, the other carriageway. An assumption."""
+OFF_LANES_M = 13.93
+"""Their lateral scale: that of cars in KITTI tracking (Laplace share 0.73)."""
+CELLS = 2048
+"""Cells of a table of masses along an axis: 8 and 4 cm in the paper's space."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +87,7 @@ class ObjectClass:
 
     def __post_init__(self) -> None:
         who = f"prior class {A_NAME.checked('prior class', 'name', self.name)!r}"
-        object.__setattr__(self, "size", vector(who, "size", self.size, 3, LENGTH))
+        object.__setattr__(self, "size", vector(who, "size", self.size, count=3, rule=LENGTH))
         for name, rule in RULES.items():
             object.__setattr__(self, name, rule.checked(who, name, getattr(self, name)))
         lanes = listed(self.lanes) or []
@@ -99,30 +112,48 @@ def _road_class(
 
 
 ROAD_CLASSES = (
-    _road_class("car", (4.6, 1.9, 1.7), 0.195, (39.4, 12.82, 20.03, 0.533), (0.362, 0.115)),
     _road_class(
-        "pedestrian", (0.8, 0.7, 1.75), 0.120, (32.2, 659.55, 16.15, 0.171), (0.102, 0.059), 1.0
+        "car",
+        (4.6, 1.9, 1.7),
+        height_spread=0.195,
+        density=(39.4, 12.82, 20.03, 0.533),
+        spread=(0.362, 0.115),
     ),
-    _road_class("cyclist", (1.76, 0.65, 1.74), 0.267, (28.7, 170.45, 14.89, 0.033), (0.265, 0.122)),
-    _road_class("truck", (7.5, 2.55, 3.0), 0.785, (58.5, 20.1, 22.33, 0.365), (3.470, 0.441)),
-    _road_class("cone", (0.4, 0.4, 0.9), 0.232, (14.8, 34.25, 10.05, 0.024), (0.092, 0.075), 1.0),
+    _road_class(
+        "pedestrian",
+        (0.8, 0.7, 1.75),
+        height_spread=0.120,
+        density=(32.2, 659.55, 16.15, 0.171),
+        spread=(0.102, 0.059),
+        any_heading=1.0,
+    ),
+    _road_class(
+        "cyclist",
+        (1.76, 0.65, 1.74),
+        height_spread=0.267,
+        density=(28.7, 170.45, 14.89, 0.033),
+        spread=(0.265, 0.122),
+    ),
+    _road_class(
+        "truck",
+        (7.5, 2.55, 3.0),
+        height_spread=0.785,
+        density=(58.5, 20.1, 22.33, 0.365),
+        spread=(3.470, 0.441),
+    ),
+    _road_class(
+        "cone",
+        (0.4, 0.4, 0.9),
+        height_spread=0.232,
+        density=(14.8, 34.25, 10.05, 0.024),
+        spread=(0.092, 0.075),
+        any_heading=1.0,
+    ),
 )
 """Positions: fitted by maximum likelihood to the boxes with a score of 0.4 and more that
 CenterPoint finds in the 150 scenes of nuScenes val (boxes from the public AB3DMOT repository).
 Spreads: the same boxes. Sizes: rounded between the means of nuScenes, Argoverse 2 and Waymo's
 anchor boxes. Headings: an assumption; pedestrians and cones face any direction."""
-
-LANE_M = 3.75
-"""Width of a motorway's lane: Germany's RAA; an Interstate's is 12 ft (3.66 m)."""
-LANES = (-LANE_M, 0.0, LANE_M)
-"""Middles of three lanes; the vehicle drives in the middle one. An assumption."""
-LANE_EDGES = (-1.5 * LANE_M, -0.5 * LANE_M, 0.5 * LANE_M, 1.5 * LANE_M)
-IN_LANE_M = 0.3
-"""Standard deviation of a vehicle's position across its lane. An assumption."""
-OFF_LANES = 0.2
-"""Share of vehicles elsewhere: ramps, shoulders, the other carriageway. An assumption."""
-OFF_LANES_M = 13.93
-"""Their lateral scale: that of cars in KITTI tracking (Laplace share 0.73)."""
 
 
 def _highway_class(
@@ -135,15 +166,41 @@ def _highway_class(
     off_lanes: float = OFF_LANES,
     lanes: tuple[float, ...] = LANES,
 ) -> ObjectClass:
-    spread_y = (OFF_LANES_M, IN_LANE_M, off_lanes)
-    return ObjectClass(name, size, height_spread, decay_x, *spread_y, lanes, share, *spread)
+    return ObjectClass(
+        name, size, height_spread, decay_x, OFF_LANES_M, IN_LANE_M, off_lanes, lanes, share, *spread
+    )
 
 
 HIGHWAY_CLASSES = (
-    _highway_class("car", (4.6, 1.9, 1.7), 0.195, 58.1, 0.4, (0.362, 0.115)),
-    _highway_class("truck", (10.8, 2.7, 3.5), 0.327, 59.5, 0.4, (5.287, 0.235)),
-    _highway_class("cyclist", (2.11, 0.77, 1.74), 0.267, 45.4, 0.1, (0.265, 0.122)),
-    _highway_class("cone", (0.4, 0.4, 0.9), 0.232, 21.7, 0.1, (0.092, 0.075), 0.0, LANE_EDGES),
+    _highway_class(
+        "car", (4.6, 1.9, 1.7), height_spread=0.195, decay_x=58.1, share=0.4, spread=(0.362, 0.115)
+    ),
+    _highway_class(
+        "truck",
+        (10.8, 2.7, 3.5),
+        height_spread=0.327,
+        decay_x=59.5,
+        share=0.4,
+        spread=(5.287, 0.235),
+    ),
+    _highway_class(
+        "cyclist",
+        (2.11, 0.77, 1.74),
+        height_spread=0.267,
+        decay_x=45.4,
+        share=0.1,
+        spread=(0.265, 0.122),
+    ),
+    _highway_class(
+        name="cone",
+        size=(0.4, 0.4, 0.9),
+        height_spread=0.232,
+        decay_x=21.7,
+        share=0.1,
+        spread=(0.092, 0.075),
+        off_lanes=0.0,
+        lanes=LANE_EDGES,
+    ),
 )
 """Cars, trucks, motorcyclists (named "cyclist") and the cones of road works.
 
@@ -188,10 +245,6 @@ def sampled_positions(
     centres are the same."""
     x, y = _masses(cls, space.x, space.y)
     return _inverted(x, space.x, u), _inverted(y, space.y, v)
-
-
-CELLS = 2048
-"""Cells of a table of masses along an axis: 8 and 4 cm in the paper's space."""
 
 
 @lru_cache(maxsize=16)

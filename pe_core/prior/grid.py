@@ -41,7 +41,8 @@ class Grid(ShortRepr):
 
     def __post_init__(self) -> None:
         require_kind("grid", "space", self.space, PerceptionSpace)
-        shape, array = self.space.shape, numbers(self.weights)
+        shape = self.space.shape
+        array = numbers(self.weights)
         if array is None or array.shape not in (shape, shape[:2]):
             found: Any = "no array" if array is None else f"shape {array.shape}"
             raise InputError("grid", "weights", f"shape {shape[:2]} or {shape}", found)

@@ -42,6 +42,12 @@ DOCUMENTED = {"car": 8.2, "pedestrian": 5.1, "cyclist": 1.0, "truck": 2.4, "cone
 space (6019 frames of 150 scenes; boxes from the public AB3DMOT repository). The detector ends at
 about 54 m. Argoverse 2's labels have more (five logs: 22 cars, 7 pedestrians, 3 cyclists, 2 trucks
 and 1 cone), KITTI tracking's fewer, of the front camera's view alone (4, 2, 0.2, 0.2)."""
+FROM_BOXES = "boxes"
+FROM_GRID = "grid"
+UNIFORM = "uniform"
+MODELS = (*SHIPPED, UNIFORM, FROM_BOXES, FROM_GRID)
+EVERYWHERE = (-math.inf, math.inf)
+ALONG = Number(infinite=True, unit="m")
 
 
 def checked_densities(values: Any, names: Sequence[str]) -> Densities:
@@ -63,14 +69,6 @@ def density_of(name: str, given: Densities) -> float:
     if name not in densities:
         raise InputError("prior", "density", f"a number of {name!r} in the space at once", "none")
     return densities[name]
-
-
-FROM_BOXES, FROM_GRID, UNIFORM = "boxes", "grid", "uniform"
-MODELS = (*SHIPPED, UNIFORM, FROM_BOXES, FROM_GRID)
-
-
-EVERYWHERE = (-math.inf, math.inf)
-ALONG = Number(infinite=True, unit="m")
 
 
 @dataclass(frozen=True, slots=True)
@@ -306,7 +304,8 @@ class Prior(ShortRepr):
     def _weights(self, name: str, space: PerceptionSpace) -> Floats:
         """w(s, c) over the ground (nx, ny)."""
         weights = np.ones(space.shape[:2])
-        x, y = space.centers(0), space.centers(1)
+        x = space.centers(0)
+        y = space.centers(1)
         for focus in self.focus:
             if focus.classes is None or name in focus.classes:
                 rows = (x > focus.x[0]) & (x < focus.x[1])

@@ -28,10 +28,13 @@ ROOM_M = 4.0
 """A part counts as a room if two of its sides are at least this long [m]..."""
 FAR_LARGER = 1.5
 """...and this many times as long as those of all smaller parts together."""
-BINS, ENOUGH = 256, 100_000
+BINS = 256
+ENOUGH = 100_000
 """Bins along an axis for the surface of a mesh, and about how many triangles are sampled."""
 FEW_RUNS = 1000  # Below this number of runs, a loop over them is faster
-SMALLEST_M, LARGEST_M, WIDEST_M = 0.1, 60.0, 25.0
+SMALLEST_M = 0.1
+LARGEST_M = 60.0
+WIDEST_M = 25.0
 """Minimum and maximum length of a vehicle's longest side; maximum of its second longest."""
 CAR_M = 4.5  # Length of a typical car, for comparison
 ACROSS_M = 2.1
@@ -101,7 +104,7 @@ class MeshAxes:
             raise InputError("vehicle", "forward", expected, self.forward)
         object.__setattr__(self, "scale", SCALE.checked("vehicle", "scale", self.scale))
         if self.rotation_deg is not None:
-            angles = vector("vehicle", "rotation", self.rotation_deg, 3, ROTATION_DEG)
+            angles = vector("vehicle", "rotation", self.rotation_deg, count=3, rule=ROTATION_DEG)
             object.__setattr__(self, "rotation_deg", angles)
 
 
@@ -196,7 +199,8 @@ def _areas(triangles: Floats) -> Floats:
 
 
 def _lopsided(positions: Floats, area: Floats) -> float:
-    low, high = float(positions.min()), float(positions.max())
+    low = float(positions.min())
+    high = float(positions.max())
     total = float(area.sum())
     if not (high > low and total > 0.0):
         return 0.0
@@ -207,7 +211,8 @@ def _lopsided(positions: Floats, area: Floats) -> float:
 
 def _part_bounds(triangles: Floats, parts: NDArray[np.int32], count: int) -> PartBounds:
     starts = np.concatenate([[0], np.flatnonzero(np.diff(parts)) + 1])  # runs of one part
-    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+    low = np.full((count, 3), np.inf)
+    high = np.full((count, 3), -np.inf)
     run_low, run_high = _bounds_of_runs(triangles, starts)
     np.minimum.at(low, parts[starts], run_low)
     np.maximum.at(high, parts[starts], run_high)
@@ -221,7 +226,8 @@ def _bounds_of_runs(triangles: Floats, starts: NDArray[np.int64]) -> tuple[Float
         pairs = [corner_bounds(triangles[a:b]) for a, b in zip(starts, stops, strict=True)]
         return np.array([low for low, _ in pairs]), np.array([high for _, high in pairs])
     a, b, c = (triangles[:, k] for k in range(3))
-    lowest, highest = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+    lowest = np.minimum(np.minimum(a, b), c)
+    highest = np.maximum(np.maximum(a, b), c)
     low = np.minimum.reduceat(lowest, starts, axis=0)
     return low, np.maximum.reduceat(highest, starts, axis=0)
 

@@ -16,6 +16,45 @@ from .mesh import BodyShape
 from .vehicle import Vehicle
 from .vehicle_description import is_called
 
+ROOF = {
+    "roof": (0.0, 0.0, 0.0),
+    "roof front": (0.92, 0.0, 0.0),
+    "roof front left": (0.88, 0.8, 45.0),
+    "roof left": (0.0, 0.9, 90.0),
+    "roof rear left": (-0.88, 0.8, 135.0),
+    "roof rear": (-0.92, 0.0, 180.0),
+}
+"""Shares of the roof's half length and half width; yaw [deg]. Each on the left has one right."""
+LOW = (0.33, 0.3, 0.6)
+BELT = (0.4, 0.4, 0.9)
+HIGH = (0.62, 0.5, 1.3)
+"""Heights of bumpers, of grille and doors, of tailgates: a share of the vehicle's, limits [m]."""
+SIDES = {
+    "grille": (0.0, 0.0, 0.0, BELT),
+    "bumper front": (0.0, 0.0, 0.0, LOW),
+    "bumper front middle left": (0.0, 0.38, 0.0, LOW),
+    "bumper front left": (0.0, 0.0, 45.0, LOW),
+    "fender front left": (0.88, 0.0, 90.0, LOW),
+    "side left": (0.0, 0.0, 90.0, BELT),
+    "fender rear left": (-0.88, 0.0, 90.0, LOW),
+    "bumper rear left": (0.0, 0.0, 135.0, LOW),
+    "bumper rear middle left": (0.0, 0.38, 180.0, LOW),
+    "bumper rear": (0.0, 0.0, 180.0, LOW),
+    "tailgate": (0.0, 0.0, 180.0, HIGH),
+}
+"""Where the ray passes across its way, in shares of half length and width; its yaw; its height."""
+ROOF_SHARE = 0.85
+LEVEL = 0.8
+"""The roof: faces higher than this share of the height whose unit normal is so far upright."""
+NEAR_M = 0.1
+"""The body's outline at a height is that of triangles nearer to it than this."""
+MIRRORS = ("mirror",)
+TIP_M = 0.02
+"""Words of parts; points this near to the outermost one are the tip of a mirror."""
+CABIN = (0.45, 0.9)
+"""Where mirrors are without such parts: in the front half, between shares of the height."""
+WAYS = {"left": 1.0, "right": -1.0}
+
 
 @dataclass(frozen=True, slots=True)
 class NamedPlace:
@@ -35,41 +74,6 @@ class NamedPlace:
         return round(x, 3), round(y, 3), round(z, 3)
 
 
-ROOF = {
-    "roof": (0.0, 0.0, 0.0),
-    "roof front": (0.92, 0.0, 0.0),
-    "roof front left": (0.88, 0.8, 45.0),
-    "roof left": (0.0, 0.9, 90.0),
-    "roof rear left": (-0.88, 0.8, 135.0),
-    "roof rear": (-0.92, 0.0, 180.0),
-}
-"""Shares of the roof's half length and half width; yaw [deg]. Each on the left has one right."""
-LOW, BELT, HIGH = (0.33, 0.3, 0.6), (0.4, 0.4, 0.9), (0.62, 0.5, 1.3)
-"""Heights of bumpers, of grille and doors, of tailgates: a share of the vehicle's, limits [m]."""
-SIDES = {
-    "grille": (0.0, 0.0, 0.0, BELT),
-    "bumper front": (0.0, 0.0, 0.0, LOW),
-    "bumper front middle left": (0.0, 0.38, 0.0, LOW),
-    "bumper front left": (0.0, 0.0, 45.0, LOW),
-    "fender front left": (0.88, 0.0, 90.0, LOW),
-    "side left": (0.0, 0.0, 90.0, BELT),
-    "fender rear left": (-0.88, 0.0, 90.0, LOW),
-    "bumper rear left": (0.0, 0.0, 135.0, LOW),
-    "bumper rear middle left": (0.0, 0.38, 180.0, LOW),
-    "bumper rear": (0.0, 0.0, 180.0, LOW),
-    "tailgate": (0.0, 0.0, 180.0, HIGH),
-}
-"""Where the ray passes across its way, in shares of half length and width; its yaw; its height."""
-ROOF_SHARE, LEVEL = 0.85, 0.8
-"""The roof: faces higher than this share of the height whose unit normal is so far upright."""
-NEAR_M = 0.1
-"""The body's outline at a height is that of triangles nearer to it than this."""
-MIRRORS, TIP_M = ("mirror",), 0.02
-"""Words of parts; points this near to the outermost one are the tip of a mirror."""
-CABIN = (0.45, 0.9)
-"""Where mirrors are without such parts: in the front half, between shares of the height."""
-
-
 def named_places(vehicle: Vehicle) -> Mapping[str, NamedPlace]:
     """Return the places by name: ``"roof"``, ``"mirror left"``, ``"bumper rear right"``.
 
@@ -85,9 +89,6 @@ def named_places(vehicle: Vehicle) -> Mapping[str, NamedPlace]:
     return places | {f"mirror {name}": _mirror(body, way) for name, way in WAYS.items()}
 
 
-WAYS = {"left": 1.0, "right": -1.0}
-
-
 def _both(rows: Mapping[str, tuple]) -> dict[str, tuple]:
     """Return rows with those of the right after those of the left."""
     both = {}
@@ -100,7 +101,8 @@ def _both(rows: Mapping[str, tuple]) -> dict[str, tuple]:
 
 def _roof(body: Vehicle) -> Floats:
     """Return the lowest and the highest corner (2, 3) of the roof [m]."""
-    triangles, (low, high) = body.triangles, body.bounds
+    triangles = body.triangles
+    low, high = body.bounds
     normals = cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     is_level = np.abs(normals[:, 2]) > LEVEL * np.sqrt(dot(normals, normals))
     share = (triangles[:, :, 2].min(axis=1) - low[2]) / max(high[2] - low[2], 1e-9)
@@ -117,7 +119,8 @@ def _on_roof(body: Vehicle, roof: Floats, x: float, y: float, yaw_deg: float) ->
 def _on_side(
     body: Vehicle, x: float, y: float, yaw_deg: float, height: tuple[float, float, float]
 ) -> NamedPlace:
-    (share, least, most), (bottom, top) = height, (float(b[2]) for b in body.bounds)
+    share, least, most = height
+    bottom, top = (float(b[2]) for b in body.bounds)
     z = bottom + min(max(share * (top - bottom), least), most)
     low, high = body.triangle_bounds
     at_level = (low[2] < z + NEAR_M) & (high[2] > z - NEAR_M)
@@ -138,7 +141,8 @@ def _met(body: Vehicle, aim: Floats, out: Floats, yaw_deg: float) -> NamedPlace:
 
 
 def _mirror(body: Vehicle, way: float) -> NamedPlace:
-    (low, high), corners = body.bounds, body.triangles.reshape(-1, 3)
+    low, high = body.bounds
+    corners = body.triangles.reshape(-1, 3)
     named = [k for k, name in enumerate(body.part_names) if is_called(name, MIRRORS, ())]
     is_there = np.repeat(np.isin(body.parts, named), 3)
     if not is_there.any():
@@ -147,13 +151,15 @@ def _mirror(body: Vehicle, way: float) -> NamedPlace:
     points = corners[is_there] if is_there.any() else corners
     aside = points[:, 1] * way
     tip = points[aside > aside.max() - TIP_M]
-    ahead, height = tip[:, 0].max(), (tip[:, 2].min() + tip[:, 2].max()) / 2.0
+    ahead = tip[:, 0].max()
+    height = (tip[:, 2].min() + tip[:, 2].max()) / 2.0
     out = np.array([0.0, way, 0.0])
     return _place(np.array([ahead, way * aside.max(), height]), out, 90.0 * way)
 
 
 def _place(point: Floats, out: Floats, yaw_deg: float) -> NamedPlace:
-    (x, y, z), (a, b, c) = (np.round(point, 3) + 0.0).tolist(), out.tolist()
+    x, y, z = (np.round(point, 3) + 0.0).tolist()
+    a, b, c = out.tolist()
     return NamedPlace((x, y, z), (a, b, c), yaw_deg)
 
 

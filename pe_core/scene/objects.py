@@ -84,12 +84,12 @@ class Objects(ShortRepr):
         """Return objects of the same classes as one set, with their scenes."""
         keys = ("centers", "sizes", "yaws", "labels", "scenes")
         c, s, y, n, own = (np.concatenate([getattr(p, key) for p in parts]) for key in keys)
-        return cls(c, s, y, n, parts[0].class_names, own)
+        return cls(c, s, y, n, class_names=parts[0].class_names, scenes=own)
 
     def some(self, which: NDArray) -> "Objects":
         """Return the objects that `which` selects, by indices or flags (N,)."""
         c, s, y, n = (w[which] for w in (self.centers, self.sizes, self.yaws, self.labels))
-        return Objects(c, s, y, n, self.class_names, self.scenes[which])
+        return Objects(c, s, y, n, class_names=self.class_names, scenes=self.scenes[which])
 
 
 def _checked(

@@ -203,8 +203,8 @@ class Housing:
     def __post_init__(self) -> None:
         put = object.__setattr__
         put(self, "shape", choice("housing", "shape", self.shape, SHAPES))
-        put(self, "size", vector("housing", "size", self.size, 3, LENGTH))
-        center = vector("housing", "optical_center", self.optical_center, 3, NEAR)
+        put(self, "size", vector("housing", "size", self.size, count=3, rule=LENGTH))
+        center = vector("housing", "optical_center", self.optical_center, count=3, rule=NEAR)
         put(self, "optical_center", center)
         if self.source:
             put(self, "source", A_TEXT.checked("housing", "source", self.source))
@@ -242,7 +242,8 @@ def cuts_body(
     faces = vehicle.faces_near(middle, reach)
     near = rotate(rotation.T, vehicle.triangles[faces] - middle)  # along the housing's axes
     overlapping = ((near.min(axis=1) <= half) & (near.max(axis=1) >= -half)).all(axis=1)
-    near, faces = near[overlapping], faces[overlapping]
+    near = near[overlapping]
+    faces = faces[overlapping]
     if not len(faces):
         return ()
     inside = (meets_box if housing.shape == "box" else meets_cylinder)(near, half)

@@ -27,13 +27,18 @@ LOSS_DB = Number(0.0, 100.0, unit="dB", noun="loss")
 DEFAULT_CLEARANCE_M = 0.02
 """Distance from the vehicle's surface at which a flush-mounted sensor is evaluated."""
 CLEARANCE = Number(0.0, 1.0, below=True, unit="m")
-AROUND, BELOW_DEG, ENCLOSED = 256, 10.0, 0.9
+AROUND = 256
+BELOW_DEG = 10.0
+ENCLOSED = 0.9
 """Number of directions of the inside test, lowest elevation below the horizon, and the share of
 directions that must hit the body. A sensor under the body is not inside: it sees out sideways."""
-SIDES, LIFT_M, GRAZING = 64, 1e-3, 0.2
+SIDES = 64
+LIFT_M = 1e-3
+GRAZING = 0.2
 """Open side of a surface: number of directions, distance of the start points from the surface, and
 minimum cosine between a direction and the normal, as rays along the surface are no evidence."""
-SHAFT_M, SHAFT_FROM_M = 0.3, 0.1
+SHAFT_M = 0.3
+SHAFT_FROM_M = 0.1
 """Half width of the shaft that has to be empty (wider than a window is high), and distance of its
 start from the position: nearer triangles may be the surface on which the sensor is mounted."""
 
@@ -277,7 +282,8 @@ def _with_clearance(
 ) -> Floats:
     """Return a position at least `clearance` from the surface; moved to the open side if nearer."""
     candidates = triangles[tree.near(position, clearance * 1.001 + 1e-9)]
-    low, high = candidates.min(axis=1), candidates.max(axis=1)
+    low = candidates.min(axis=1)
+    high = candidates.max(axis=1)
     gap = np.maximum(np.maximum(low - position, position - high), 0.0)
     near = candidates[dot(gap, gap) < clearance**2]
     if not len(near):
@@ -292,7 +298,8 @@ def _with_clearance(
     if length == 0.0:
         return position
     lift = clearance * normal / length
-    point, direction = points[nearest], lift / np.sqrt(dot(lift, lift))
+    point = points[nearest]
+    direction = lift / np.sqrt(dot(lift, lift))
     ahead, back = (
         VisibleTriangles(tree, point + side * lift).first_hit(side * direction[None]).distance[0]
         for side in (1.0, -1.0)
@@ -357,7 +364,8 @@ def open_shares(vehicle: Vehicle, point: Floats, normal: Floats) -> tuple[float,
     """Return which shares of rays from a point (3,) of a surface miss the body: on the side of its
     unit normal (3,), and on the other."""
     rays = spiral(SIDES, 90.0)
-    towards, shares = dot(rays, normal), []
+    towards = dot(rays, normal)
+    shares = []
     for side in (1.0, -1.0):
         origin = point + side * LIFT_M * normal
         hits = vehicle.first_hit_from(origin, rays[side * towards > GRAZING])
@@ -372,6 +380,7 @@ def spiral(count: int, below_deg: float) -> Floats:
     rows = []
     for k in range(count):
         z = low + (1.0 - low) * (k + 0.5) / count
-        flat, angle = math.sqrt(1.0 - z * z), k * math.pi * (3.0 - math.sqrt(5.0))
+        flat = math.sqrt(1.0 - z * z)
+        angle = k * math.pi * (3.0 - math.sqrt(5.0))
         rows.append((flat * math.cos(angle), flat * math.sin(angle), z))
     return read_only(np.array(rows))

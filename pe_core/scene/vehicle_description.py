@@ -16,37 +16,45 @@ from .mesh import BodyShape, size_words
 from .vehicle import Vehicle
 
 LONGER = 1.15  # Minimum ratio of two sides for one to count as longer
-EVEN, UNEVEN = 0.01, 5.0
+EVEN = 0.01
+UNEVEN = 5.0
 """Limits for `BodyShape.lopsided`: across the vehicle it is below EVEN; along the other two axes it
 is above 1.5 EVEN, and above UNEVEN times the value across."""
 FRONT = ("hood", "bonnet", "headl", "windshield", "windscreen", "grill", "front")
 REAR = ("tail", "trunk", "boot", "rear", "back")
-WHEELS, NO_WHEELS = ("wheel", "tire", "tyre"), ("steering", "spare", "arch", "well")
+WHEELS = ("wheel", "tire", "tyre")
+NO_WHEELS = ("steering", "spare", "arch", "well")
 """Beginnings of words in the names of parts: parts at the front, parts at the rear, wheels, and
 parts whose names contain a word for wheels but that are none."""
 WORD = re.compile("[A-Z]*[a-z]+|[A-Z]+")
 APART = 0.25
 """Minimum distance of front parts from rear parts, as a share of the body's side on that axis."""
-LOW, LEVEL = -0.1, 0.1
+LOW = -0.1
+LEVEL = 0.1
 """Limits for the centre of the wheels relative to the body's centre, as a share of the side: below
 LOW along the up axis, and within LEVEL across the vehicle."""
 ON_GROUND = 0.05
 """Tolerance for a bottom, or a middle, at coordinate 0, as a share of the side."""
-BINS, QUARTER = 40, 10
+BINS = 40
+QUARTER = 10
 """Number of slices along a body, and how many of them are one end."""
 LOWER = 0.15
 """Minimum height difference of the two ends, as a share of the body's height."""
 LOW_END = 0.85
 """Maximum height of a hood, a bed or a boot, as a share of the body's height."""
-UPRIGHT, SLOPED = 1, 3
+UPRIGHT = 1
+SLOPED = 3
 """Maximum number of slices in which a bed's end rises to the cabin, behind its upright rear window;
 minimum number of slices of a windshield."""
-TRIANGLES, POINTS = 20_000, 1_000_000
+TRIANGLES = 20_000
+POINTS = 1_000_000
 """Maximum number of sampled triangles, and approximate number of sample points in total."""
-MIN_STEPS, MAX_STEPS = 8, 128
+MIN_STEPS = 8
+MAX_STEPS = 128
 """Range of the number of steps along an edge."""
 LENGTH = Number(0.0, above=True, cap=100.0, unit="m", noun="length")
-UNKNOWN, FIELD_M = "not known", 100.0
+UNKNOWN = "not known"
+FIELD_M = 100.0
 """Text for 0 in Blender's panel, and maximum of its fields."""
 AXLE_APART_M = 0.3
 """Minimum distance of two axles along the vehicle; nearer wheels are on one or on twin axles."""
@@ -56,7 +64,8 @@ UP = 2
 
 def front_by_names(shape: BodyShape) -> tuple[int, float] | None:
     """Return the forward axis (0, 1 or 2) and its sign, by the names of parts; None if unclear."""
-    front, rear = named_parts(shape, FRONT, REAR), named_parts(shape, REAR, FRONT)
+    front = named_parts(shape, FRONT, REAR)
+    rear = named_parts(shape, REAR, FRONT)
     if not front or not rear:
         return None
     offset = np.mean(front, axis=0) - np.mean(rear, axis=0)
@@ -118,7 +127,8 @@ def along(shape: BodyShape, up: int) -> int | None:
 
 def _up_by_wheels(shape: BodyShape) -> int | None:
     wheels = wheel_center(shape)
-    size, (low, high) = np.array(shape.size), shape.bounds
+    size = np.array(shape.size)
+    low, high = shape.bounds
     if wheels is None or not size[1:].all():
         return None
     _, *shift = (wheels - (low + high) / 2.0) / np.where(size > 0.0, size, 1.0)
@@ -261,7 +271,8 @@ def guessed_reference(vehicle: Vehicle | None) -> Reference | None:
     if vehicle is None or len(wheels) < 2:
         return None
     by_x = sorted(wheels, key=lambda center: center[0])
-    rear, front = by_x[0], by_x[-1]
+    rear = by_x[0]
+    front = by_x[-1]
     if front[0] - rear[0] < AXLE_APART_M:
         return None
     low, high = vehicle.bounds

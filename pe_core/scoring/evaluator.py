@@ -60,10 +60,15 @@ class Evaluator:
         samples = SAMPLES_OR_GRID.checked("evaluator", "samples", samples)
         if workers is not None:
             workers = WORKERS.checked("evaluator", "workers", workers)
-        in_range = vector("evaluator", "shift", shift, 3, SHIFT)
+        in_range = vector("evaluator", "shift", shift, count=3, rule=SHIFT)
         shift = in_range[0], in_range[1], in_range[2]
-        self.space, self.prior, self.vehicle, self.samples = space, prior, vehicle, samples
-        self._shift, self._model, self._workers = shift, model, workers
+        self.space = space
+        self.prior = prior
+        self.vehicle = vehicle
+        self.samples = samples
+        self._shift = shift
+        self._model = model
+        self._workers = workers
         classes = len(prior.class_names)
         require_room_for_samples(samples, columns_bytes(space, classes))
         require_room_for(space, lambda any_space: columns_bytes(any_space, classes))
@@ -71,14 +76,17 @@ class Evaluator:
         densities = prior.densities(space)
         self._scorer: GridScorer | SampledScorer
         if samples == 0:
-            self._scorer = GridScorer(space, densities, vehicle, fusion, workers)
+            self._scorer = GridScorer(space, densities, vehicle, fusion, workers=workers)
         else:
-            self._scorer = SampledScorer(space, densities, vehicle, fusion, samples, shift)
+            self._scorer = SampledScorer(
+                space, densities, vehicle, fusion, samples=samples, shift=shift
+            )
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the arguments: another process makes an evaluator of its own from them."""
-        what = self.space, self.prior, self.vehicle
-        again = partial(Evaluator, *what, samples=self.samples, shift=self._shift)
+        again = partial(
+            Evaluator, self.space, self.prior, self.vehicle, samples=self.samples, shift=self._shift
+        )
         return partial(again, model=self._model, workers=self._workers), ()
 
     def score(self, rig: Rig, *, watch: Watch | None = None) -> Score:

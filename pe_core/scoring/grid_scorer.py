@@ -67,7 +67,8 @@ def require_room_for(space: PerceptionSpace, needed: Callable[[PerceptionSpace],
     """Refuse a score of a grid that takes more memory than there is. `needed` returns the memory
     that a score of a space takes [bytes]. The message of the `InputError` has how much it takes,
     how much there is, and what would fit."""
-    there, amount = available_bytes(), needed(space)
+    there = available_bytes()
+    amount = needed(space)
     if there is not None and amount > there:
         fitting = next((s.interval for s in _coarser(space) if needed(s) <= there), None)
         ways = [f"samples = {FIRST_SAMPLES}"]
@@ -83,7 +84,8 @@ def samples_bytes(samples: int, columns: int) -> int:
 def require_room_for_samples(samples: int, columns: int) -> None:
     """Refuse a sample that takes more memory than there is; `columns` is the prior's part [bytes].
     The message of the `InputError` says how many voxels would fit."""
-    there, amount = available_bytes(), samples_bytes(samples, columns)
+    there = available_bytes()
+    amount = samples_bytes(samples, columns)
     if samples and there is not None and amount > there:
         max_samples = max(0, there - columns) // SAMPLE_BYTES
         fitting = 1 << max(0, max_samples.bit_length() - 1)
@@ -122,7 +124,9 @@ class GridScorer:
         fusion: Fusion,
         workers: int | None,
     ) -> None:
-        self._space, self._vehicle, self._fusion = space, vehicle, fusion
+        self._space = space
+        self._vehicle = vehicle
+        self._fusion = fusion
         self._planes = PlaneFusion(fusion, space.shape[1:])
         self._workers = workers or os.cpu_count() or 1
         self._blocks = list(blocks(space.shape[0], BLOCK_PLANES))
@@ -191,21 +195,24 @@ class GridScorer:
             more = parts_by_sums(rig, float(whole.entropy.sum()), blind, sums_by_sensor)
             by_part |= {members: Sums(*row) for members, row in more.items()}
         return Score(
-            self._mean(whole.entropy),
-            self._mean(whole.coverage),
-            0.0,
-            self._classes(whole),
-            self._zones(columns),
-            {s.name: self._sensor(s, rig, by_part, ready[s.name]) for s in rig if by_sensor},
-            self._space.size,
-            ground_map(columns),
+            entropy=self._mean(whole.entropy),
+            coverage=self._mean(whole.coverage),
+            stderr=0.0,
+            per_class=self._classes(whole),
+            per_zone=self._zones(columns),
+            per_sensor={
+                s.name: self._sensor(s, rig, by_part, ready[s.name]) for s in rig if by_sensor
+            },
+            voxels=self._space.size,
+            ground_map=ground_map(columns),
         )
 
     def needs(self, groups: Grouped, space: PerceptionSpace) -> int:
         """Return about how many bytes it takes to score groups of sensors in a space."""
         firsts = [sensors[0] for sensors in groups]
         kernels = {s.detector: self._kernel(s) for s in firsts}
-        vehicle, classes = self._vehicle, len(self._names)
+        vehicle = self._vehicle
+        classes = len(self._names)
         total = columns_bytes(space, classes) + self._workers * block_voxels(space) * PLANE_BYTES
         total += 0 if vehicle is None else len(vehicle.triangles) * TREE_BYTES
         for key, kernel in kernels.items():
@@ -293,14 +300,16 @@ class GridScorer:
 
     def _weights(self, plane: int) -> Floats:
         """Return the prior (ny, nz) of a plane's voxels; 0 inside the vehicle's volume."""
-        ground, outside = self._grounds[plane], self._outside(plane)
+        ground = self._grounds[plane]
+        outside = self._outside(plane)
         pairs = zip(ground.T, self._profiles.T, strict=True)
         weights = reduce(add, (np.multiply.outer(*pair) for pair in pairs))
         return weights if outside is None else weights * outside
 
     def _mass(self, plane: int) -> Floats:
         """Return the prior (ny, C) of a plane's columns, by class."""
-        outside, ground = self._outside(plane), self._grounds[plane]
+        outside = self._outside(plane)
+        ground = self._grounds[plane]
         return ground if outside is None else ground * (outside @ self._profiles)
 
     def _outside(self, plane: int) -> Floats | None:
@@ -343,7 +352,8 @@ class GridScorer:
         self, sensor: Sensor, rig: Rig, by_part: Mapping[Members, Sums], ready: Any
     ) -> SensorScore:
         names = tuple(s.name for s in rig)
-        whole, alone = by_part[names], by_part[(sensor.name,)]
+        whole = by_part[names]
+        alone = by_part[(sensor.name,)]
         without = by_part.get(tuple(n for n in names if n != sensor.name))
         failed = H_BLIND if without is None else self._mean(without.entropy)
         lost = rounded(failed - self._mean(whole.entropy))

@@ -66,7 +66,8 @@ def _rest(group: Sequence[Measurement], total: Measurement, rank: int) -> Measur
 
 def _sums_of_others(added: Sequence[Floats]) -> list[Floats]:
     """Return for each array the sum of all others."""
-    others, so_far = [], np.zeros_like(added[0])
+    others = []
+    so_far = np.zeros_like(added[0])
     for one in added:
         others.append(so_far.copy())
         so_far += one

@@ -88,10 +88,11 @@ class SampledScorer:
     ) -> None:
         self._fusion = fusion
         tops = None if vehicle is None else vehicle.top(space)
-        self._sample: VoxelSample = draw(densities, space, samples, tops, shift)
+        self._sample: VoxelSample = draw(densities, space, samples, tops, shift=shift)
         self._distance = np.hypot(*self._sample.centers[:, :2].T)
         outside_masses(densities, space, tops)  # raises InputError when no weight is left
-        x, y = self._sample.centers[:, 0], self._sample.centers[:, 1]
+        x = self._sample.centers[:, 0]
+        y = self._sample.centers[:, 1]
         masks = {name: mask for name, mask in zone_masks(x, y).items() if mask.any()}
         self._zones = {n: (np.flatnonzero(m), rounded(float(np.mean(m)))) for n, m in masks.items()}
         self._bins = _ZoneBins(masks, self._sample.run)
@@ -236,6 +237,7 @@ class SampledScorer:
             largest = H_BLIND - H_BEST + np.log(groups)
             return rounded(RULE_OF_THREE / 2.0 * largest / len(entropies))
         run = self._sample.run
-        sums, sizes = np.bincount(run, entropies, BLOCKS), np.bincount(run, minlength=BLOCKS)
+        sums = np.bincount(run, entropies, BLOCKS)
+        sizes = np.bincount(run, minlength=BLOCKS)
         means = sums[sizes > 0] / sizes[sizes > 0]
         return rounded(float(np.std(means, ddof=1)) / np.sqrt(len(means)))

@@ -44,7 +44,8 @@ AZIMUTH, HEIGHT, RING = range(3)
 and height, in which beams are spaced. The third one samples the distance."""
 BLOCKS = 16
 """Number of runs of the sequence for the standard error; each run is a lattice."""
-MIN_SAMPLES, MAX_SAMPLES = 1024, 2**24
+MIN_SAMPLES = 1024
+MAX_SAMPLES = 2**24
 """Fewer samples are useless; more than 16.8 million need more memory than a grid score."""
 SAMPLES = Whole(MIN_SAMPLES, MAX_SAMPLES, "voxels")
 FIRST_SAMPLES = 262_144
@@ -177,13 +178,16 @@ def draw(
     ground = np.sum([d.ground for d in densities], axis=0)
     i, j = _draw_column(ground, space, u[:, RING], u[:, AZIMUTH])
     k, classes = _draw_height(densities, i, j, u[:, HEIGHT])
-    x, y = space.centers(0)[i], space.centers(1)[j]
+    x = space.centers(0)[i]
+    y = space.centers(1)[j]
     rows = np.argsort(x * x + y * y, kind="stable")
     if excluded is not None:
         rows = rows[(space.centers(2)[k] >= excluded[i, j])[rows]]
     index = np.stack([i, j, k], axis=1)[rows]
     names = tuple(d.name for d in densities)
-    return VoxelSample(index, space.center_of(index), rows * BLOCKS // count, names, classes[rows])
+    return VoxelSample(
+        index, space.center_of(index), rows * BLOCKS // count, names, classes=classes[rows]
+    )
 
 
 def _draw_column(ground: Floats, space: PerceptionSpace, u: Floats, v: Floats) -> tuple[Ints, Ints]:
@@ -205,7 +209,8 @@ def _rings(space: PerceptionSpace) -> tuple[Ints, Ints]:
     """Sort columns by ring (one voxel wide) and azimuth; return rings and column indices (N,). It
     is cached, because a search draws samples of several sizes from one space."""
     x, y = np.meshgrid(space.centers(0), space.centers(1), indexing="ij")
-    x, y = x.reshape(-1), y.reshape(-1)
+    x = x.reshape(-1)
+    y = y.reshape(-1)
     ring = np.floor(np.sqrt(x * x + y * y) / space.interval).astype(np.int64)
     # y on the unit square sorts like the azimuth, and has the same bits on every system.
     around = y / np.maximum(np.abs(x) + np.abs(y), np.finfo(float).tiny)

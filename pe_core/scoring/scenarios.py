@@ -18,6 +18,8 @@ from ..metric.entropy import CurveOf
 from ..metric.fusion import group_sum
 from ..scene.rig import Rig, Sensor, SensorModel
 
+Members = tuple[str, ...]
+
 
 class Scenarios:
     """Rigs of the same sensors, in the same or other poses; sensors may be missing.
@@ -50,9 +52,6 @@ class Scenarios:
 def mean_or_worst(entropies: Sequence[float], worst: bool) -> float:
     """Return the mean of several entropies, or the highest [nats]."""
     return max(entropies) if worst else rounded(float(np.mean(entropies)))
-
-
-Members = tuple[str, ...]
 
 
 def parts_of(rig: Rig) -> list[Members]:

@@ -31,7 +31,8 @@ FARTHEST_M = 80.0
 """Maximum distance of lone objects: a reach of this value means "at least"."""
 POINTS = (1, 5, 20)
 """Numbers of points of all LiDARs together by which objects are counted."""
-NEAR_M, FAR_M = 10.0, 40.0
+NEAR_M = 10.0
+FAR_M = 40.0
 ZONES = ("front", "rear", "left", "right", "near", "mid", "far")
 """Half planes before, behind, left and right of the vehicle's centre, and rings round it: nearer
 than NEAR_M, farther than FAR_M, and between."""
@@ -89,7 +90,8 @@ def paired_error(one: Scatter | None, other: Scatter | None, figure: FigureKey) 
     independent."""
     if one is None or other is None or one.sample != other.sample:
         return None
-    a, b = one.residuals.get(figure), other.residuals.get(figure)
+    a = one.residuals.get(figure)
+    b = other.residuals.get(figure)
     if a is None or b is None or len(a) != len(b):
         return None
     return standard_error([x - y for x, y in zip(a, b, strict=True)])
@@ -227,7 +229,8 @@ def zone_masks(x: NDArray[np.float64], y: NDArray[np.float64]) -> dict[str, NDAr
     """Return, by zone, a mask of the points (x, y) [m], broadcast together, that lie in it."""
     x, y = np.broadcast_arrays(x, y)
     square = x * x + y * y
-    near, far = square < NEAR_M**2, square > FAR_M**2
+    near = square < NEAR_M**2
+    far = square > FAR_M**2
     masks = (x > 0.0, x < 0.0, y > 0.0, y < 0.0, near, ~near & ~far, far)
     return dict(zip(ZONES, masks, strict=True))
 
@@ -245,7 +248,10 @@ class ScoreProgress:
     """Tells a `Watch` the completed share of some work; raises `ScoreStopped` if it says stop."""
 
     def __init__(self, watch: Watch | None, total: float) -> None:
-        self._watch, self._total, self._done, self._stopped = watch, total, 0.0, False
+        self._watch = watch
+        self._total = total
+        self._done = 0.0
+        self._stopped = False
         self.add(0.0)
 
     def add(self, work: float = 1.0) -> None:
@@ -400,7 +406,12 @@ class Score(Tabular):
 def sensor_score(entropy: float, coverage: float, lost: float, occlusion: Occlusion) -> SensorScore:
     """Return the score of one sensor; `occlusion` counts its occluded beams."""
     return SensorScore(
-        entropy, coverage, lost, occlusion.rays, occlusion.occluded, occlusion.by_part
+        entropy,
+        coverage,
+        lost,
+        occlusion.rays,
+        occluded=occlusion.occluded,
+        occluded_by=occlusion.by_part,
     )
 
 

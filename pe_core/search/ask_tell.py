@@ -54,12 +54,16 @@ class SearchRun:
     ) -> None:
         name = checked_method("search_run", method, schedule is not None)
         self._options: tuple[Any, ...] = seed, schedule or Schedule(), 1, BATCH, evaluations
-        self._coding, self._ask = Parametrization(rig, search_space), METHODS[name].ask
+        self._coding = Parametrization(rig, search_space)
+        self._ask = METHODS[name].ask
         self._journal = Journal(checked_entries(journal, "search_run", "journal"), "search_run")
         self.best: Rig | None = None
-        self.value, self.evaluations, self.is_done = math.inf, 0, False
+        self.value = math.inf
+        self.evaluations = 0
+        self.is_done = False
         self._batches = self._questions()
-        self._batch, self._given = next(self._batches), 0
+        self._batch = next(self._batches)
+        self._given = 0
         self._told: dict[int, float] = {}
         self._values: list[float] = []
         self._advance()
@@ -87,7 +91,8 @@ class SearchRun:
         `InputError` when a placement was not asked for, or was told before; when there are more or
         fewer values than placements; or a value is no number.
         """
-        rigs, values = list(rigs), list(values)
+        rigs = list(rigs)
+        values = list(values)
         if len(rigs) != len(values):
             expected = f"{len(rigs)}, one for each rig"
             raise InputError("search_run", "values", expected, len(values))
@@ -117,12 +122,16 @@ class SearchRun:
                 self._values.append(value)
                 self.evaluations += 1
                 if value < self.value:
-                    self.best, self.value = rig, value
+                    self.best = rig
+                    self.value = value
             try:
                 self._batch = self._batches.send(self._values)
             except StopIteration:
-                self.is_done, self._batch = True, []
-            self._given, self._told, self._values = 0, {}, []
+                self.is_done = True
+                self._batch = []
+            self._given = 0
+            self._told = {}
+            self._values = []
 
     def _questions(self) -> Generator[list[Rig], list[float], None]:
         """Yield the placements of each question; is sent their values."""
@@ -134,7 +143,8 @@ class SearchRun:
         questions = self._ask(Given(self._coding, start, entropy, *self._options))
         question = next(questions, None)
         while question is not None and left > 0:
-            candidates, cutoff = question.candidates, question.cutoff
+            candidates = question.candidates
+            cutoff = question.cutoff
             rigs = [each.rig for each in candidates if each is not None][:left]
             values = iter((yield rigs))
             left -= len(rigs)

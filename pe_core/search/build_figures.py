@@ -36,11 +36,19 @@ if TYPE_CHECKING:
 CELL_M = 0.01  # Side of the squares in which a frontal area is counted [m]
 AROUND_M = 2.0  # So far round the body housings are seen from the front [m]
 CHUNKS = 300  # The body is drawn in at most so many parts, each in little memory
-TURNS, LAYERS = 360, 36
+TURNS = 360
+LAYERS = 36
 """Azimuths and elevations of the cells of a field of view."""
 RAYS = 20_000  # Directions that fill the cells: 5 to 40 fall on one
 ALONE = "one sensor alone"  # Why there is no distance and no common field
 RELATIVE = 1e-9  # Relative rounding error that is allowed for sums
+HOUSING = "housing"
+FIELD = "field"
+SUM = "sum"
+AT = ROUNDING_M
+SUMS = ("mass", "power", "data_rate", "price")
+"""Figures that add up over the sensors' data sheets, wherever these are."""
+LIMIT = {unit: Number(0.0, cap=1e6, unit=unit) for unit in ("m", "m2", "deg", "kg", "W", "Mbit/s")}
 
 
 @dataclass(frozen=True)
@@ -132,7 +140,8 @@ def _overlap(placed: Placement) -> float:
     """Weakest link of the best chain that joins all sensors: a maximum spanning tree [deg]."""
     first, *fields = (_field(s.model, s.pose.rpy) for s in placed.rig)
     links = [_common(first, each) for each in fields]
-    weakest, left = 360.0, set(range(len(fields)))
+    weakest = 360.0
+    left = set(range(len(fields)))
     while left:
         joined = max(left, key=lambda k: links[k])
         weakest = min(weakest, links[joined])
@@ -171,7 +180,6 @@ def _sum(key: str, placed: Placement) -> float:
     return sum(getattr(sheet_of(s.model, s.sheet), key) for s in placed.rig)
 
 
-HOUSING, FIELD, SUM = "housing", "field", "sum"
 KNOWN: dict[str, Callable[[str, Placement, Sensor], bool]] = {
     "": lambda key, placed, sensor: True,
     HOUSING: lambda key, placed, sensor: sensor.name in placed.housings,
@@ -243,10 +251,6 @@ class BuildFigure(Figure):
                 yield f"limits.{self.key}{named}", partial(breaks, some)
 
 
-AT = ROUNDING_M
-SUMS = ("mass", "power", "data_rate", "price")
-"""Figures that add up over the sensors' data sheets, wherever these are."""
-LIMIT = {unit: Number(0.0, cap=1e6, unit=unit) for unit in ("m", "m2", "deg", "kg", "W", "Mbit/s")}
 LIMIT[""] = Number(0.0, cap=1e12)
 """What a limit may be, by the unit of its figure."""
 

@@ -29,7 +29,9 @@ holds exactly the placement that was scored."""
 ROUNDING_M = 0.5 * 10.0**-POSITION_DECIMALS
 ROUNDING_RAD = math.radians(0.5 * 10.0**-ANGLE_DECIMALS_DEG)
 """Rounding may move a placement at a bound so far beyond it."""
-METRE, RADIAN, SHARE = "m", "rad", "share"
+METRE = "m"
+RADIAN = "rad"
+SHARE = "share"
 SLACK = 1.0 + 1e-9
 """A search within a computed distance must find that distance again, in spite of rounding."""
 LEVEL_WITHIN = 1e-9
@@ -37,7 +39,8 @@ LEVEL_WITHIN = 1e-9
 PROBED_FACES = 8
 """If so many faces have the same open side, all faces are taken to have it."""
 Bounds = tuple[float, float]
-START_M, START_TURN = 0.003, 0.002
+START_M = 0.003
+START_TURN = 0.002
 """A start is on its mount if it is no farther away than a gasket is thick, and turned by at most
 0.1 deg [m, rad]."""
 ANY_ANGLE = {axis: (-math.tau, math.tau) for axis in ("roll", "pitch", "yaw")}
@@ -111,7 +114,8 @@ class MountSurface:
 
     def __init__(self, who: str, mount: SurfaceMount, vehicle: Vehicle | None) -> None:
         self.vehicle, self.triangles = _faces(who, mount, vehicle)
-        self._who, self._mount = who, mount
+        self._who = who
+        self._mount = mount
         self._tree = TriangleTree(self.triangles)
         self._outward: dict[int, Floats] = {}
         # The side of the probed faces if all agree, as in most meshes; else 0.0.
@@ -241,7 +245,8 @@ class BoxDomain:
     """Free coordinates of a sensor, each in its bounds."""
 
     def __init__(self, pose: Pose, bounds: Mapping[str, Bounds]) -> None:
-        values, self._pose = start_values(pose_values(pose), bounds), pose
+        values = start_values(pose_values(pose), bounds)
+        self._pose = pose
         self.axes = tuple(axis for axis in AXES if axis in bounds)
         self.variables = tuple(variable_of(axis, bounds[axis]) for axis in self.axes)
         self.start = tuple(values[axis] for axis in self.axes)
@@ -259,7 +264,8 @@ class BoxDomain:
 class SlotDomain:
     """One of a list of poses; its variable is a share from 0 to 1 of the list."""
 
-    axes, variables = ("slot",), (DesignVariable(0.0, 1.0, SHARE),)
+    axes = ("slot",)
+    variables = (DesignVariable(0.0, 1.0, SHARE),)
 
     def __init__(self, who: str, mount: SlotMount, pose: Pose) -> None:
         self._slots = mount.slots
@@ -294,7 +300,8 @@ class SurfaceDomain:
         bounds: Mapping[str, Bounds],
         anywhere: bool = False,
     ) -> None:
-        self.mount, self.surface = mount, surface
+        self.mount = mount
+        self.surface = surface
         self._standoff_point = standoff_point(mount, housing)
         self._angle_axes = tuple(axis for axis in TURNS if axis in bounds)
         self.axes = *POSITION_AXES, *self._angle_axes
@@ -311,7 +318,7 @@ class SurfaceDomain:
         self._angles = start_values(dict(zip(TURNS, rpy, strict=True)), bounds)
         self.start = (*foot.tolist(), *(self._angles[axis] for axis in self._angle_axes))
         if not anywhere:
-            self._check_start(who, pose, bounds, foot, normal)
+            self._check_start(who, pose, bounds, foot, normal=normal)
 
     def base(self, pose: Pose) -> Floats:
         """Return the point (3,) of a sensor at a pose from which the stand-off is measured [m]."""
@@ -323,7 +330,7 @@ class SurfaceDomain:
         normal = self.surface.outward(face)
         angles = {**self._angles, **dict(zip(self._angle_axes, values[3:], strict=True))}
         rpy = [angles[axis] for axis in TURNS]
-        pose = pose_on(self.mount, foot, normal, rpy, self._standoff_point)
+        pose = pose_on(self.mount, foot, normal, rpy, point=self._standoff_point)
         return pose, (*foot.tolist(), *values[3:])
 
     def _check_start(
@@ -424,7 +431,9 @@ def snap_to_mount(
         return rounded(mount.nearest(sensor.pose.position).pose)
     who = f"sensor {sensor.name!r}"
     surface = MountSurface(who, mount, vehicle)
-    domain = SurfaceDomain(who, mount, surface, sensor.pose, housing, ANY_ANGLE, anywhere=True)
+    domain = SurfaceDomain(
+        who, mount, surface, sensor.pose, housing=housing, bounds=ANY_ANGLE, anywhere=True
+    )
     *foot, roll, pitch, yaw = domain.start
     if mount.orientation == "normal":
         roll = pitch = 0.0

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from .key_figures import KeyFigures
 
 NO_FIGURE = "-"
-LOWER, HIGHER = "lower is better", "higher is better"
+LOWER = "lower is better"
+HIGHER = "higher is better"
 
 
 def reciprocal(value: float) -> float:

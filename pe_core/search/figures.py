@@ -17,10 +17,18 @@ from ..scoring.sight.blind_ground import BLIND_TO_M, BlindSector, shown_end, sho
 from .build_figures import BUILD_FIGURES, Placement
 from .figure import Figure
 
-REQUIREMENTS, ENTROPY, COVERAGE, AP = "requirements", "entropy", "coverage", "ap"
-BLIND_GROUND, BLIND_SECTOR, REACH = "blind_ground", "blind_sector", "reach"
-TRAFFIC_AP, PRICE = "traffic_ap", "price"
-WORST_LOSS, MARGIN, BLIND_ZONES = "worst_loss", "margin", "blind_zones"
+REQUIREMENTS = "requirements"
+ENTROPY = "entropy"
+COVERAGE = "coverage"
+AP = "ap"
+BLIND_GROUND = "blind_ground"
+BLIND_SECTOR = "blind_sector"
+REACH = "reach"
+TRAFFIC_AP = "traffic_ap"
+PRICE = "price"
+WORST_LOSS = "worst_loss"
+MARGIN = "margin"
+BLIND_ZONES = "blind_zones"
 STORY_MARGIN = "story_margin"
 AP_RINGS = {"ap_near": "near", "ap_mid": "mid", "ap_far": "far", TRAFFIC_AP: ""}
 """Figures that are expected AP in traffic, and their rings; empty: all distances."""

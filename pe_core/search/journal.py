@@ -50,7 +50,9 @@ class Journal:
     journal in messages."""
 
     def __init__(self, entries: Iterable[EvaluatedRig] = (), source: str = "journal") -> None:
-        self._entries, self._position, self._source = list(entries), 0, source
+        self._entries = list(entries)
+        self._position = 0
+        self._source = source
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the entries: a search that begins anew replays them."""
@@ -71,7 +73,8 @@ class Journal:
         `InputError` when the journal has another placement here."""
         if self._position == len(self._entries):
             return None
-        entry, digest = self._entries[self._position], _digest(rig, level)
+        entry = self._entries[self._position]
+        digest = _digest(rig, level)
         if entry.digest != digest:
             expected = "the placements this search asks for (of the same version, on such a system)"
             field = f"evaluated[{self._position}]"

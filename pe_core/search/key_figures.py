@@ -123,12 +123,14 @@ class Reading:
     @property
     def text(self) -> str:
         """The value in words, and where something is wanted whether it is met."""
-        row, told = self.figure, self.figure.text(self.value, self.is_cut)
+        row = self.figure
+        told = self.figure.text(self.value, self.is_cut)
         if row.key == REQUIREMENTS:
             return f"{self.value:.0f} of {self.wanted:.0f} met" if self.value is not None else told
         if self.met is None or self.value is None or self.wanted is None:
             return told
-        sign, off = ">=" if row.higher else "<=", row.text(abs(self.value - self.wanted))
+        sign = ">=" if row.higher else "<="
+        off = row.text(abs(self.value - self.wanted))
         found = "met" if self.met else f"not met, off by {off}"
         return f"{told} ({found}: wanted {sign} {row.text(self.wanted)})"
 

@@ -17,6 +17,8 @@ from .figures import AP, ENTROPY, FIGURES, REQUIREMENTS
 TABLE = "limits"
 NUMBERED = frozenset({ENTROPY, AP})
 """Figures that a search does not keep as they are at its start: it improves them."""
+LIMITED = tuple(key for key, row in FIGURES.items() if row.rule is not None or key == REQUIREMENTS)
+"""Figures that may have a limit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,9 +135,6 @@ def _field(key: str) -> tuple[str, Any, Any]:
     about = f"{row.about}: at {'least' if row.higher else 'most'}"
     return key, Limit | None, setting(None, LimitRule(row.rule, key in NUMBERED), about)
 
-
-LIMITED = tuple(key for key, row in FIGURES.items() if row.rule is not None or key == REQUIREMENTS)
-"""Figures that may have a limit."""
 
 if TYPE_CHECKING:
 

@@ -16,6 +16,14 @@ from ..base.values import A_NAME, A_PATH, ANY, Angle, Number, listed
 from ..geometry.poses import Pose
 from ..scene.vehicle import Vehicle
 
+UPRIGHT = "upright"
+ORIENTATIONS = (UPRIGHT, "normal", "facing")
+SLOPE = Angle(0.0, 180.0)
+STANDOFF = Number(0.0, 10.0, unit="m")
+SIDES = Pair(ANY)
+Range = tuple[float, float]
+NO_MOUNT = "the name of an [[optimize.mount]]"
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MountArea(ShortRepr):
@@ -39,7 +47,8 @@ class MountArea(ShortRepr):
     parts: Sequence[str] = ()
 
     def __post_init__(self) -> None:
-        put, who = object.__setattr__, "mount"
+        put = object.__setattr__
+        who = "mount"
         try:
             put(self, "triangles", Vehicle(self.triangles).triangles)  # checked as a body's are
         except InputError as error:
@@ -58,15 +67,6 @@ class MountArea(ShortRepr):
 
     def __hash__(self) -> int:
         return hash((self.file, self.parts, len(self.triangles)))
-
-
-UPRIGHT = "upright"
-ORIENTATIONS = (UPRIGHT, "normal", "facing")
-SLOPE = Angle(0.0, 180.0)
-STANDOFF = Number(0.0, 10.0, unit="m")
-SIDES = Pair(ANY)
-Range = tuple[float, float]
-NO_MOUNT = "the name of an [[optimize.mount]]"
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +122,8 @@ class SurfaceMount:
     )
 
     def __post_init__(self) -> None:
-        put, who = object.__setattr__, "mount"
+        put = object.__setattr__
+        who = "mount"
         names = listed(self.parts)
         if not isinstance(self.area, MountArea | None):
             raise InputError(who, "area", "a MountArea", shown(self.area))
@@ -195,7 +196,8 @@ class Constraints:
     no_go: Sequence[NoGo] = ()
 
     def __post_init__(self) -> None:
-        put, who = object.__setattr__, "optimize"
+        put = object.__setattr__
+        who = "optimize"
         check_settings(self, who)
         areas = listed(self.no_go)
         if areas is None or not all(isinstance(area, NoGo) for area in areas):
@@ -230,7 +232,8 @@ class Mounting(ShortRepr):
     constraints: Annotated[Constraints, Part(inline=True)] = field(default_factory=Constraints)
 
     def __post_init__(self) -> None:
-        put, who = object.__setattr__, "optimize"
+        put = object.__setattr__
+        who = "optimize"
         for key in ("mounts", "on"):
             if not isinstance(table := getattr(self, key), Mapping):
                 raise InputError(who, key, "a mapping of names", shown(table))
@@ -264,7 +267,8 @@ class Mounting(ShortRepr):
 def _links(
     field: str, links: Any, is_count: Callable[[int], bool], expected: str
 ) -> tuple[tuple[str, ...], ...]:
-    checked, given = [], listed(links)
+    checked = []
+    given = listed(links)
     if given is None:
         raise InputError("optimize", field, "a list of names' lists", shown(links))
     for link in given:

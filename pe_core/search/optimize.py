@@ -127,17 +127,33 @@ def optimize(
     levels = [
         as_objective(o) for o in (objective if isinstance(objective, Sequence) else [objective])
     ]
-    parametrization, schedule = Parametrization(rig, search_space), schedule or Schedule()
+    parametrization = Parametrization(rig, search_space)
+    schedule = schedule or Schedule()
     start = feasible_start(parametrization, seed)
-    first = Step(start.rig, levels[0].entropy(start.rig), 1, 0.0, 0, False)
+    first = Step(
+        start.rig,
+        levels[0].entropy(start.rig),
+        evaluations=1,
+        fraction=0.0,
+        round=0,
+        improved=False,
+    )
     yield first
     if parametrization.variables:
         executor_source = executor if callable(executor) else lambda: executor
         batch = 1 if executor is None else BATCH
-        options = (seed, schedule, len(levels), batch, evaluations)
-        given = Given(parametrization, start, first.entropy, *options)
+        given = Given(
+            parametrization=parametrization,
+            start=start,
+            entropy=first.entropy,
+            seed=seed,
+            schedule=schedule,
+            levels=len(levels),
+            batch=batch,
+            evaluations=evaluations,
+        )
         budget = evaluations or sys.maxsize
-        yield from _steps(first, chosen.ask(given), levels, budget, executor_source)
+        yield from _steps(first, chosen.ask(given), levels, budget, executor_source=executor_source)
 
 
 def _steps(
@@ -148,13 +164,24 @@ def _steps(
     executor_source: ExecutorSource,
 ) -> Iterator[Step]:
     """Answer a method's questions, one step for each candidate, until it or the budget ends."""
-    question, done = next(questions, None), 0
+    question = next(questions, None)
+    done = 0
     while question is not None and step.evaluations < budget:
         objective = levels[question.level]
         if question.level > step.level:  # the incumbent is evaluated on the new level
-            entropy, count = objective.entropy(step.best), step.evaluations + 1
-            place = step.fraction, question.round, True, question.level
-            yield (step := Step(step.best, entropy, count, *place))
+            entropy = objective.entropy(step.best)
+            count = step.evaluations + 1
+            yield (
+                step := Step(
+                    step.best,
+                    entropy,
+                    count,
+                    step.fraction,
+                    round=question.round,
+                    improved=True,
+                    level=question.level,
+                )
+            )
             if step.evaluations == budget:
                 return
         question = _within(question, budget - step.evaluations)
@@ -164,7 +191,7 @@ def _steps(
             answers.append(answer)
             done += 1
             fraction = max(done / question.total, (step.evaluations + 1) / budget)
-            yield (step := _next_step(step, candidate, answer, question, fraction))
+            yield (step := _next_step(step, candidate, answer, question, fraction=fraction))
             if step.evaluations == budget:
                 return
         try:
@@ -199,11 +226,23 @@ def _next_step(
     fraction: float,
 ) -> Step:
     """Return the step after a candidate; None where no feasible candidate was sampled."""
-    best, entropy, count, improved = step.best, step.entropy, step.evaluations, False
+    best = step.best
+    entropy = step.entropy
+    count = step.evaluations
+    improved = False
     if candidate is not None and answer is not None:
         count += 1
         improved = answer < entropy and question.level == step.level
         if improved:
-            best, entropy = candidate.rig, answer
-    place = min(fraction, 1.0), question.round, improved, step.level
-    return Step(best, entropy, count, *place, question.ends)
+            best = candidate.rig
+            entropy = answer
+    return Step(
+        best=best,
+        entropy=entropy,
+        evaluations=count,
+        fraction=min(fraction, 1.0),
+        round=question.round,
+        improved=improved,
+        level=step.level,
+        ends=question.ends,
+    )

@@ -66,7 +66,8 @@ class Follower:
 
 def mirrored(pose: Pose) -> Pose:
     """Return the mirror image of a pose across y = 0, rounded."""
-    (x, y, z), (roll, pitch, yaw) = pose.position, pose.rpy
+    x, y, z = pose.position
+    roll, pitch, yaw = pose.rpy
     return rounded(Pose((x, -y, z), (-roll, pitch, -yaw)))
 
 
@@ -94,7 +95,8 @@ def followers(rig: Rig, mounting: Mounting, vehicle: Vehicle | None) -> tuple[Fo
 
 def _links(rig: Rig, mounting: Mounting) -> Iterator[Follower]:
     for first, second in mounting.pairs:
-        image, pose = mirrored(rig[first].pose), rig[second].pose
+        image = mirrored(rig[first].pose)
+        pose = rig[second].pose
         if not is_same_pose(image, pose):
             expected = f"the mirror image of {first!r} across y = 0, {pose_text(image)}"
             raise InputError(f"sensor {second!r}", "position", expected, pose_text(pose))
@@ -133,7 +135,8 @@ def _check_names(rig: Rig, mounting: Mounting) -> None:
 def rig_on_mounts(rig: Rig, space: SearchSpace) -> Rig:
     """Return a rig whose sensors are on their mounts: one that is not takes the nearest pose there.
     Mirror images and groups follow their leaders. `InputError` as of `Parametrization`."""
-    mounting, surfaces = space.mounting, dict[str, MountSurface]()
+    mounting = space.mounting
+    surfaces = dict[str, MountSurface]()
     _check_names(rig, mounting)
     poses = {sensor.name: _pose_on_mount(sensor, space, surfaces) for sensor in rig}
     links = [Follower(second, first) for first, second in mounting.pairs]
@@ -200,12 +203,14 @@ class Parametrization:
         self.models = tuple(rig[name].model.name for name in moved)
         vector = tuple(value for domain in self._domains.values() for value in domain.start)
         self.start = Candidate(rig, vector)
-        self.rules = rules_of(rig, space, self._moving(), self._clear(), self._domains)
+        self.rules = rules_of(rig, space, self._moving(), self._clear(), domains=self._domains)
 
     def candidate(self, vector: Sequence[float]) -> Candidate:
         """Return the placement that a vector (N,) of values stands for. The vector of the candidate
         is the given one after rounding, and after projection onto a surface."""
-        poses, values, start = dict[str, Pose](), list[float](), 0
+        poses = dict[str, Pose]()
+        values = list[float]()
+        start = 0
         for name, domain in self._domains.items():
             count = len(domain.variables)
             poses[name], placed_values = domain.placed(vector[start : start + count])
@@ -258,8 +263,10 @@ def _blocks(domains: Iterable[Domain]) -> Iterator[range]:
 
 
 def _domain(sensor: Sensor, space: SearchSpace, surfaces: dict[str, MountSurface]) -> Domain:
-    mounting, name = space.mounting, sensor.name
-    mount, bounds = mounting.mount_of(name), space.bounds.get(name, {})
+    mounting = space.mounting
+    name = sensor.name
+    mount = mounting.mount_of(name)
+    bounds = space.bounds.get(name, {})
     who = f"sensor {name!r}"
     if name in space.fixed:
         return BoxDomain(sensor.pose, {})
@@ -270,7 +277,7 @@ def _domain(sensor: Sensor, space: SearchSpace, surfaces: dict[str, MountSurface
         if key not in surfaces:
             surfaces[key] = MountSurface(f"mount {key!r}", mount, space.vehicle)
         return SurfaceDomain(
-            who, mount, surfaces[key], sensor.pose, space.housings.get(name), bounds
+            who, mount, surfaces[key], sensor.pose, housing=space.housings.get(name), bounds=bounds
         )
     return BoxDomain(sensor.pose, bounds)
 

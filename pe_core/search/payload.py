@@ -74,7 +74,8 @@ class Payload:
 def send_payload(executor: Executor, objects: Iterable[object]) -> SentPayload:
     """Send objects to all workers of an executor, unless they have them. Raises `Unreadable` when
     an object cannot be pickled."""
-    sent, needed = _SENT.get(executor), {id(part): part for part in objects}
+    sent = _SENT.get(executor)
+    needed = {id(part): part for part in objects}
     if sent is None or not sent.payload.covers(needed.values()):
         earlier = () if sent is None else sent.payload.objects
         both = {id(part): part for part in earlier} | needed  # levels of a search take turns
@@ -147,7 +148,8 @@ def unpickled(packed: PackedPayload, content: bytes) -> Any:
         worker = _worker()
         if getattr(worker, "key", None) != packed.key:
             data = packed.data or _INITIAL[packed.key]
-            worker.objects, worker.key = pickle.loads(data), packed.key
+            worker.objects = pickle.loads(data)
+            worker.key = packed.key
         return _Unpickler(io.BytesIO(content)).load()
     except Exception as error:  # whatever unpickling raises
         raise Unreadable(str(error)) from None

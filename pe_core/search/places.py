@@ -24,13 +24,15 @@ from .limits import Limits
 from .mounts import Constraints, Mounting, SurfaceMount
 from .search_space import MIN_HEIGHT_M, SearchSpace, rules_of
 
-PLACES, POOL = Whole(1, 20_000), 6
+PLACES = Whole(1, 20_000)
+POOL = 6
 """How many places there may be, and points that are drawn for each."""
 PLASTIC = 1.32471795724474602596
 """Of the R2 sequence, which fills a square evenly (Roberts, 2018)."""
 NO_HEADING_M = 0.05
 """A place nearer to the vehicle's middle than this has no outward direction: it looks ahead."""
-LOW, IN_BODY = f"lower than {MIN_HEIGHT_M:g} m", "the sensor would be in the body"
+LOW = f"lower than {MIN_HEIGHT_M:g} m"
+IN_BODY = "the sensor would be in the body"
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,11 +65,14 @@ def surface_points(triangles: Floats, count: int) -> tuple[Floats, Ints]:
     number = np.arange(count * POOL)
     at = (number + 0.5) / len(number) * area[-1]
     face = np.minimum(np.searchsorted(area, at, side="right"), len(area) - 1)
-    a, b = (0.5 + number / PLASTIC) % 1.0, (0.5 + number / PLASTIC**2) % 1.0
+    a = (0.5 + number / PLASTIC) % 1.0
+    b = (0.5 + number / PLASTIC**2) % 1.0
     outside = a + b > 1.0  # the other half of the parallelogram
-    a, b = np.where(outside, 1.0 - a, a), np.where(outside, 1.0 - b, b)
+    a = np.where(outside, 1.0 - a, a)
+    b = np.where(outside, 1.0 - b, b)
     pool = triangles[face, 0] + a[:, None] * edges[0][face] + b[:, None] * edges[1][face]
-    order, away = [int(np.argmax(pool[:, 2]))], np.full(len(pool), np.inf)
+    order = [int(np.argmax(pool[:, 2]))]
+    away = np.full(len(pool), np.inf)
     while len(order) < count:
         step = pool - pool[order[-1]]
         away = np.minimum(away, dot(step, step))
@@ -102,7 +107,10 @@ class MountingPlaces:
     ) -> None:
         if vehicle is None:
             raise InputError("where", "vehicle", "a vehicle with a surface", "none")
-        kind, self._rig, self._sensor, self._vehicle = kind_of(sensor), rig, sensor, vehicle
+        kind = kind_of(sensor)
+        self._rig = rig
+        self._sensor = sensor
+        self._vehicle = vehicle
         self._housings = housings_of([*rig, sensor])
         own_parts = parts or vehicle.part_names
         anywhere = SurfaceMount(own_parts, kind.stand_off_m, max_slope=math.pi)
@@ -110,7 +118,8 @@ class MountingPlaces:
         self.surface = MountSurface("where", self._mount, vehicle)
         self._base = standoff_point(self._mount, self._housings.get(sensor.name) if mount else None)
         self._turned = kind.outward(sensor.model) and self._mount.orientation != "facing"
-        self._middle, self._look_at = (vehicle.bounds[0] + vehicle.bounds[1]) / 2.0, look_at
+        self._middle = (vehicle.bounds[0] + vehicle.bounds[1]) / 2.0
+        self._look_at = look_at
         moving = {sensor.name}
         space = SearchSpace(
             mounting=Mounting(constraints=constraints),
@@ -118,7 +127,7 @@ class MountingPlaces:
             housings=self._housings,
             figure_limits=limits,
         )
-        self._rules = rules_of(self.with_sensor(sensor.pose), space, moving, moving, {})
+        self._rules = rules_of(self.with_sensor(sensor.pose), space, moving, moving, domains={})
         count = PLACES.checked("where", "places", count)
         faces = self.surface.faces
         self._points, chosen = surface_points(self.surface.triangles[faces], count)
@@ -131,7 +140,7 @@ class MountingPlaces:
             normal = self.surface.outward(face)
             x, y, z = point.tolist()
             pitch, yaw = self._angles(x, y, z) if self._turned else (0.0, 0.0)
-            pose = pose_on(self._mount, point, normal, (0.0, pitch, yaw), self._base)
+            pose = pose_on(self._mount, point, normal, (0.0, pitch, yaw), point=self._base)
             yield SurfacePlace((x, y, z), tuple(normal.tolist()), pose, self._reason(pose))
 
     def _angles(self, x: float, y: float, z: float) -> tuple[float, float]:

@@ -35,7 +35,8 @@ class Processes(Executor):
     """
 
     def __init__(self, count: int) -> None:
-        self._count, self._lock = count, threads().RLock()
+        self._count = count
+        self._lock = threads().RLock()
         self._payload: tuple[str, bytes] | None = None
         self._pool = self._new_pool()
 
@@ -122,7 +123,9 @@ class LazyProcesses:
     as those of `start_processes`; `common` is read when they start."""
 
     def __init__(self, count: int | None = None, common: Iterable[object] = ()) -> None:
-        self._count, self._common, self._began = count, common, time.monotonic()
+        self._count = count
+        self._common = common
+        self._began = time.monotonic()
         self._thread: Any = None
         self._processes: Processes | None = None
         self._ended = False

@@ -38,9 +38,11 @@ PAPER_FREE = ("x", "y", "z", "pitch")
 """What the paper searches; roll and yaw are fixed "for symmetry of the placement"."""
 HEADROOM_M = 0.75  # How far above the vehicle's top a sensor may be mounted by default
 MIN_HEIGHT_M = 0.2  # The least height of a sensor by default
-REACH_M, REACH_RAD = 1.0, math.radians(30.0)
+REACH_M = 1.0
+REACH_RAD = math.radians(30.0)
 """Half widths of the first neighbourhood of Algorithm 1 [m, rad]."""
-FLOOR_M, FLOOR_RAD = 0.01, math.radians(0.3)
+FLOOR_M = 0.01
+FLOOR_RAD = math.radians(0.3)
 """It ends when a neighbourhood is at or below both: mounts are not made more exactly."""
 DECAY = 0.5  # Each neighbourhood of Algorithm 1 over the one before, k
 Bounds = tuple[float, float]
@@ -108,7 +110,9 @@ class SearchSpace(ShortRepr):
             A sensor on a surface moves on it, whichever of x, y, z are free; a sensor in a slot, or
             one that follows another, has no bounds.
         """
-        limits, mounting, bounds = limits or {}, mounting or Mounting(), {}
+        limits = limits or {}
+        mounting = mounting or Mounting()
+        bounds = {}
         for sensor in rig:
             axes = free if isinstance(free, tuple) else free.get(sensor.name, PAPER_FREE)
             given = limits.get(sensor.name, {})
@@ -123,7 +127,14 @@ class SearchSpace(ShortRepr):
                 turns = (axis for axis in axes if axis not in POSITION_AXES)
                 axes = (*(axis for axis in POSITION_AXES if axis in given), *turns)
             bounds[sensor.name] = {a: given.get(a, default[a]) for a in axes}
-        space = cls(bounds, mounting, vehicle, housings or {}, fixed, figure_limits or Limits())
+        space = cls(
+            bounds,
+            mounting,
+            vehicle,
+            housings or {},
+            fixed=fixed,
+            figure_limits=figure_limits or Limits(),
+        )
         return space.checked(rig)
 
     def placement(self, rig: Rig) -> Placement:
@@ -203,7 +214,8 @@ class Schedule:
     @property
     def scales(self) -> list[float]:
         """Factor on the first neighbourhood in each round: 1, k, k^2, ...: seven."""
-        scales, scale = [], 1.0
+        scales = []
+        scale = 1.0
         while scale * REACH_M > FLOOR_M or scale * REACH_RAD > FLOOR_RAD:
             scales.append(scale)
             scale *= DECAY
@@ -302,7 +314,8 @@ def _body(name: str, vehicle: Vehicle) -> Rule:
 
     def inside(trial: Placement) -> bool:
         sensor = trial.rig[name]
-        housing, position = trial.housings.get(name), np.array(sensor.pose.position)
+        housing = trial.housings.get(name)
+        position = np.array(sensor.pose.position)
         if housing is not None and cuts_body(sensor.pose, housing, vehicle):
             return True
         through_glass = sensor.model.sees_through_glass

@@ -26,7 +26,8 @@ COUNT = Whole(0, 10_000)
 CURRENCY = Name("a currency", empty=True)
 Picks = tuple[int, ...]
 """A design: the number of the option that each site takes."""
-COUNTED, OF_KIND = "max_sensors", "max_of_kind"
+COUNTED = "max_sensors"
+OF_KIND = "max_of_kind"
 PRICE_SUM = "price"
 """Limits of numbers of sensors; the others are of sums, as `SUMS`."""
 MAX_STEPS = 20_000
@@ -95,8 +96,10 @@ class Choice:
     optional: bool = False
 
     def __post_init__(self) -> None:
-        put, who = object.__setattr__, "choice"
-        options, sensors = listed(self.options), listed(self.sensors)
+        put = object.__setattr__
+        who = "choice"
+        options = listed(self.options)
+        sensors = listed(self.sensors)
         if not options or not all(isinstance(item, Option) for item in options):
             raise InputError(who, "option", "at least one model with its price", "none")
         models = [option.model.name for option in options]
@@ -132,7 +135,8 @@ class Selection:
     currency: str = setting("", CURRENCY, "Currency of prices", Panel("currency", "Currency"))
 
     def __post_init__(self) -> None:
-        put, who = object.__setattr__, "selection"
+        put = object.__setattr__
+        who = "selection"
         choices = listed(self.choices)
         if choices is None or not all(isinstance(item, Choice) for item in choices):
             raise InputError(who, "choice", "a list of choices", shown(self.choices))
@@ -179,7 +183,8 @@ def sites_of(selection: Selection, rig: Rig, mounting: Mounting) -> tuple[Site, 
     allowed, or a sensor that others follow could be left out."""
     sites: list[Site] = []
     for number, choice in enumerate(selection.choices):
-        who, options = f"choice[{number}]", sorted(choice.options, key=lambda o: o.price)
+        who = f"choice[{number}]"
+        options = sorted(choice.options, key=lambda o: o.price)
         for option in choice.options:
             if selection.max_of_kind.get(kind := option.model.kind) == 0:
                 expected = f"models of kinds that are allowed (max_of_kind of {kind!r} is 0)"
@@ -187,7 +192,8 @@ def sites_of(selection: Selection, rig: Rig, mounting: Mounting) -> tuple[Site, 
         for sensors in _sites_of_choice(who, choice, rig, mounting):
             for name in sensors:
                 if any(name in site.sensors for site in sites):
-                    expected, found = "one choice for each sensor", f"two for {name!r}"
+                    expected = "one choice for each sensor"
+                    found = f"two for {name!r}"
                     raise InputError(who, "sensor", expected, found)
                 if choice.optional and any(name == group[0] for group in mounting.groups):
                     expected = "false for the leading sensor of a group"
@@ -326,7 +332,8 @@ class DesignSpace:
             if self._has_sensor(begun):
                 yield begun
             return
-        site, last = self.sites[len(begun)], len(begun) - 1
+        site = self.sites[len(begun)]
+        last = len(begun) - 1
         same_choice = last >= 0 and self.sites[last].choice == site.choice
         for pick in range(begun[last] if same_choice else 0, len(site.options)):
             yield from self._completed((*begun, pick), steps)
@@ -420,7 +427,8 @@ class DesignSearch:
         self._next = [] if self.is_complete else list(self._new(entropies))
 
     def _new(self, entropies: Mapping[Picks, float]) -> Iterator[Picks]:
-        evaluated, visited = list(entropies), set(self._asked)
+        evaluated = list(entropies)
+        visited = set(self._asked)
         worths = [(self._designs.price(picks), entropies[picks]) for picks in evaluated]
         for number in pareto_front(worths):
             if evaluated[number] in self._expanded:

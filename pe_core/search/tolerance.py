@@ -35,7 +35,8 @@ from .domains import AXES, pose_from_values
 DRAWS = 8  # Draws by default
 COMBINATIONS = 4
 """In how many ways the sensors' draws are combined; only one is used when sensors fail, too."""
-SEARCHED, FRESH = 0, 1
+SEARCHED = 0
+FRESH = 1
 """Streams of errors: those that a search evaluates with, and others for its result."""
 
 
@@ -136,7 +137,8 @@ def without_each(rig: Rig) -> list[Rig]:
 
 def _errors(tolerance: Tolerance, seed: tuple[int, ...]) -> Floats:
     """Sample the errors of one sensor, (draws, 6) [m, rad]."""
-    rng, half = np.random.default_rng(seed), tolerance.draws // 2
+    rng = np.random.default_rng(seed)
+    half = tolerance.draws // 2
     shuffled = np.stack([_middles(half)[np.argsort(rng.random(half))] for _ in AXES], axis=1)
     signs = np.where(rng.random(shuffled.shape) < 0.5, -1.0, 1.0)
     first = shuffled * signs * ([tolerance.position] * 3 + [tolerance.angle] * 3)
@@ -163,7 +165,9 @@ class RobustObjective:
     mounting errors, drawn from `seed`, are the same for every rig."""
 
     def __init__(self, evaluator: RigEvaluator, tolerance: Tolerance, seed: int = 0) -> None:
-        self._evaluator, self._tolerance, self._seed = evaluator, tolerance, seed
+        self._evaluator = evaluator
+        self._tolerance = tolerance
+        self._seed = seed
 
     def entropy(self, rig: Rig) -> float:
         """Return the mean of the entropies of a rig's cases, or the highest [nats]."""
@@ -284,7 +288,8 @@ def _robustness_of(
 
 def _error_of_draws(entropies: Sequence[float], draws: int, sensors: int) -> float:
     """Return the standard error from the scatter of each sensor's pairs of opposite draws."""
-    half, variance = draws // 2, 0.0
+    half = draws // 2
+    variance = 0.0
     if half < 2:
         return 0.0
     combinations = np.array(entropies).reshape(-1, draws)

@@ -74,11 +74,14 @@ class PlacedBoxes:
     def crossing(self, which: Ints, directions: Floats) -> tuple[Floats, Floats]:
         """Return distances (P,) at which rays from the sensor enter and leave one box each. `enter`
         is at least 0; if the ray misses, enter >= leave."""
-        enter, leave = np.zeros(len(which)), np.full(len(which), np.inf)
+        enter = np.zeros(len(which))
+        leave = np.full(len(which), np.inf)
         for k, speed in enumerate(self.along(which, directions)):
             speed = np.where(np.abs(speed) < NO_SPEED, NO_SPEED, speed)
-            offset, half = self.offsets[which, k], self.halves[which, k]
-            t0, t1 = (offset - half) / speed, (offset + half) / speed
+            offset = self.offsets[which, k]
+            half = self.halves[which, k]
+            t0 = (offset - half) / speed
+            t1 = (offset + half) / speed
             np.maximum(enter, np.minimum(t0, t1), out=enter)
             np.minimum(leave, np.maximum(t0, t1), out=leave)
         return enter, leave
@@ -105,11 +108,14 @@ class PlacedBoxes:
     def _rays_to_sides(self, lattice: Floats) -> "tuple[BoxRays, Floats]":
         """Return rays to points of a lattice (K, 2), in half sides, on each side that faces the
         sensor, and the solid angle of a K-th of the side there (R,) [sr]."""
-        items, places, pieces = [], [], []
+        items = []
+        places = []
+        pieces = []
         for axis in range(3):
             others = [k for k in range(3) if k != axis]
             facing = np.flatnonzero(np.abs(self.offsets[:, axis]) > self.halves[:, axis])
-            offset, half = self.offsets[facing], self.halves[facing]
+            offset = self.offsets[facing]
+            half = self.halves[facing]
             points = np.repeat(offset[:, None], len(lattice), axis=1)
             points[:, :, axis] -= (np.sign(offset[:, axis]) * half[:, axis])[:, None]
             for k, other in enumerate(others):
@@ -158,7 +164,8 @@ class Rivals:
         """Return, for some boxes, the other boxes of their scenes that may hide them. `balls` (N,)
         are radii of balls round all boxes [m]."""
         rivals = cls.of(scenes, which)
-        other, item = rivals.other, which[rivals.ranks()]
+        other = rivals.other
+        item = which[rivals.ranks()]
         x, y, _ = boxes.in_ground(boxes.offsets).T
         flat = np.hypot(x, y)
         near = flat - balls
@@ -183,7 +190,8 @@ class Rivals:
 def behind_others(boxes: PlacedBoxes, rivals: Rivals, rays: BoxRays) -> Flags:
     """Whether rays enter another box of `rivals` before their own; boxes have the same indices."""
     hidden = np.zeros(len(rays.item), bool)
-    first, count = rivals.first[rays.item], rivals.count[rays.item]
+    first = rivals.first[rays.item]
+    count = rivals.count[rays.item]
     for rank in range(int(count.max(initial=0))):
         some = np.flatnonzero((count > rank) & ~hidden)
         box = rivals.other[first[some] + rank]

@@ -71,7 +71,10 @@ def grid_faces(index: Ints, *, closed: bool) -> Ints:
     are left out."""
     if closed:
         index = np.hstack([index, index[:, :1]])
-    a, b, c, d = index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]
+    a = index[:-1, :-1]
+    b = index[:-1, 1:]
+    c = index[1:, 1:]
+    d = index[1:, :-1]
     faces = np.stack([np.stack([a, b, c], axis=-1), np.stack([a, c, d], axis=-1)], axis=2)
     faces = faces.reshape(-1, 3)
     pairs = ((0, 1), (1, 2), (2, 0))

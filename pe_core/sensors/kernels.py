@@ -185,12 +185,16 @@ class DefinedGrid(GridKernel):
     def __init__(
         self, measure: Definition, space: PerceptionSpace, vehicle: Vehicle | None, _: int = 0
     ) -> None:
-        self._measure, self._space, self._vehicle = measure, space, vehicle
+        self._measure = measure
+        self._space = space
+        self._vehicle = vehicle
 
     def rows(self, prepared: Sensor, planes: slice) -> VisibleRows:
         """Measure a block by the definition."""
         space = self._space
-        x, y, z = space.centers(0)[planes], space.centers(1), space.centers(2)
+        x = space.centers(0)[planes]
+        y = space.centers(1)
+        z = space.centers(2)
         centers = np.stack(np.meshgrid(x, y, z, indexing="ij"), axis=-1).reshape(-1, 3)
         m = np.asarray(self._measure(prepared, centers, space.interval, self._vehicle), dtype=float)
         return VisibleRows(slice(0, len(y)), m.reshape(len(x), len(y), len(z)))
@@ -207,7 +211,9 @@ class DefinedSample(SampleKernel):
         _: int = 0,
         occlusion: Callable[[Sensor, Vehicle | None], Occlusion] = lambda *_: Occlusion(),
     ) -> None:
-        self._measure, self._vehicle, self._occlusion = measure, vehicle, occlusion
+        self._measure = measure
+        self._vehicle = vehicle
+        self._occlusion = occlusion
         self._side = voxels.space.interval
         self._centers = np.asfortranarray(voxels.centers)  # fast for arithmetic axis by axis
 
@@ -224,11 +230,13 @@ class DefinedGround(GroundKernel):
     """Marks squares by the definition of m, of small cubes in the middle of the squares."""
 
     def __init__(self, measure: Definition, view: GroundView) -> None:
-        self._measure, self._view = measure, view
+        self._measure = measure
+        self._view = view
 
     def mark(self, sensor: Sensor) -> VisibleGround:
         """Measure small cubes, at steps of `HEIGHT_STEP_M` over the height of the posts."""
-        grid, height = self._view.grid, self._view.height
+        grid = self._view.grid
+        height = self._view.height
         side = min(grid.step, height) or FLAT_M
         marked = np.zeros(grid.shape[0] * grid.shape[1], bool)
         middles = grid.middles(np.arange(len(marked)))
@@ -250,7 +258,8 @@ class DefinedObjects(ObjectKernel):
     """Measures objects by the definition of m."""
 
     def __init__(self, measure: ObjectDefinition, view: ObjectView) -> None:
-        self._measure, self._view = measure, view
+        self._measure = measure
+        self._view = view
 
     def measure(self, sensor: Sensor) -> Floats:
         """Return m (N,) by the definition."""

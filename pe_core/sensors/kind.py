@@ -54,7 +54,9 @@ SIZES: dict[str, BoxSize] = {
     "cone": (0.4, 0.4, 0.9),
 }
 """Length, width, height [m] of the classes: the means of the road prior."""
-OUT_OF_VIEW, OUT_OF_RANGE, BETWEEN_BEAMS = "out of view", "out of range", "between beams"
+OUT_OF_VIEW = "out of view"
+OUT_OF_RANGE = "out of range"
+BETWEEN_BEAMS = "between beams"
 """Reasons why a sensor does not see a location although nothing occludes it."""
 
 

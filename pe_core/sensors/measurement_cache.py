@@ -47,7 +47,8 @@ class _Kernels(Generic[K]):
     shared by all kernels on one vehicle."""
 
     def __init__(self, make: Callable[[Sensor], K], caches: dict[str, Any] | None) -> None:
-        self._make, self._caches = make, {} if caches is None else caches
+        self._make = make
+        self._caches = {} if caches is None else caches
         self._by_key: dict[Hashable, K] = {}
 
     def kernel_of(self, sensor: Sensor, key: Hashable = None) -> K:
@@ -80,7 +81,8 @@ class MeasurementCache:
         saturation_count: Callable[[CurveOf], int],
         kernel_caches: dict[str, Any] | None = None,
     ) -> None:
-        self._voxels, self._vehicle = voxels, vehicle
+        self._voxels = voxels
+        self._vehicle = vehicle
         self._saturation_count = saturation_count
         self._kernels = _Kernels(self._new_kernel, kernel_caches)
         self._measured: dict[str, Measured] = {}
@@ -98,7 +100,8 @@ class MeasurementCache:
 
         `done` is called after each sensor; if it raises, the cache stays as it was.
         """
-        before, stayed = self._measured, self._stayed
+        before = self._measured
+        stayed = self._stayed
         measured = {}
         for s in rig:
             measured[s.name] = self.cached(s) or self._one(s)
@@ -217,13 +220,15 @@ class ObjectMeasurementCache:
         cached = self.cached(sensor)
         if cached is not None:
             return cached
-        kernel, parts = self._kernels.kernel_of(sensor), self._parts
+        kernel = self._kernels.kernel_of(sensor)
+        parts = self._parts
         m = kernel.measure(sensor) if parts is None else kernel.measure_parts(sensor, parts)
         m.flags.writeable = False
         return m
 
     def _new_kernel(self, sensor: Sensor) -> ObjectKernel:
-        kind, view = kind_of(sensor), self._view
+        kind = kind_of(sensor)
+        view = self._view
         if self._parts is not None and kind.counts_points:
             view = ObjectView(self._parts.objects, view.vehicle)
         return kind.on_objects(view)

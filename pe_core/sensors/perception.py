@@ -24,8 +24,10 @@ from ..metric.entropy import ApCurve
 from ..metric.frames import Frames
 from .kind import KINDS, ClassCurves, kind_named
 
-PAPER, SCANS = "paper", "scans"
-BEVFUSION, CENTERPOINT = "bevfusion", "centerpoint"
+PAPER = "paper"
+SCANS = "scans"
+BEVFUSION = "bevfusion"
+CENTERPOINT = "centerpoint"
 CURVE_MODELS = (PAPER, SCANS, BEVFUSION, CENTERPOINT)
 MODEL: str = setting(
     PAPER,

@@ -29,7 +29,8 @@ AngleWindow = tuple[tuple[float, float], tuple[float, float]]
 MAX_STEP_RAD = math.radians(0.5)  # Largest bin of a fan
 BINS = 240  # A window is divided into at least so many bins along its longer side
 MAX_STEPS = 720  # Of a patch, along a side
-PICTURE_ROWS, PICTURE_COLUMNS = 180, 241
+PICTURE_ROWS = 180
+PICTURE_COLUMNS = 241
 """Ranges and azimuths of a picture; one of the azimuths is the middle."""
 
 
@@ -73,7 +74,8 @@ class RayFan:
     @cached_property
     def angles(self) -> tuple[Floats, Floats]:
         """Elevations (E,) and azimuths (A,) of the rays, ascending [rad]."""
-        ((left, right), (low, high)), (rows, columns) = self.window, self.distance.shape
+        (left, right), (low, high) = self.window
+        rows, columns = self.distance.shape
         return _middles(low, high, rows), _middles(left, right, columns)
 
     def occlusion(self, inside: Flags) -> Occlusion:
@@ -116,7 +118,8 @@ class FanCache:
     """The fans of sensors on one vehicle: a sensor that has not moved needs no rays."""
 
     def __init__(self, vehicle: Vehicle | None, through_covers: bool) -> None:
-        self._vehicle, self._through = vehicle, through_covers
+        self._vehicle = vehicle
+        self._through = through_covers
         self._fans: dict[str, tuple[Sensor, RayFan]] = {}
 
     def fan(self, sensor: Sensor) -> RayFan:
@@ -143,9 +146,13 @@ def cast_fan(sensor: Sensor, vehicle: Vehicle | None, through_covers: bool) -> R
     free = RayFan.free(window)
     if vehicle is None:
         return free
-    distance, part, loss, shape = free.distance, free.part, free.loss_db, shape_of(window)
+    distance = free.distance
+    part = free.part
+    loss = free.loss_db
+    shape = shape_of(window)
     rays = rotate(sensor.pose.ground_from_sensor, directions(window, shape))
-    names, position = tuple(vehicle.part_names), sensor.pose.position
+    names = tuple(vehicle.part_names)
+    position = sensor.pose.position
     covers = dict(vehicle.covers) if through_covers else {}
     body = without_parts(vehicle, tuple(covers))
     if body is not None:
@@ -161,7 +168,7 @@ def cast_fan(sensor: Sensor, vehicle: Vehicle | None, through_covers: bool) -> R
             met = only.first_hit_from(np.asarray(position), rays).distance.reshape(shape)
             through[name] = met < distance
             loss += db * through[name]
-    return RayFan(window, distance, part, loss, names, through)
+    return RayFan(window, distance, part, loss, part_names=names, through=through)
 
 
 _reduced: WeakKeyDictionary[Vehicle, dict[tuple[str, ...], Vehicle | None]] = WeakKeyDictionary()
@@ -180,7 +187,8 @@ def without_parts(vehicle: Vehicle, parts: tuple[str, ...]) -> Vehicle | None:
         if len(kept):
             left = [k for k in range(len(names)) if k not in gone]
             numbers = np.searchsorted(left, np.asarray(vehicle.parts)[kept]).astype(np.int32)
-            shown, own = np.asarray(vehicle.triangles)[kept], [names[k] for k in left]
+            shown = np.asarray(vehicle.triangles)[kept]
+            own = [names[k] for k in left]
             cache[parts] = Vehicle(shown, numbers, own, clearance=vehicle.clearance)
     return cache[parts]
 
@@ -215,7 +223,9 @@ def field_picture_of(
     height = np.full((*flat.shape[:2], 1), target[1])
     centers = np.concatenate([flat + np.array([x, y]), height], axis=-1).reshape(-1, 3)
     seen, free = (m.reshape(PICTURE_ROWS, PICTURE_COLUMNS) for m in measured(centers))
-    return FieldPicture(seen, (free > 0.0) & (seen <= 0.0), ranges, azimuths, target[1], target[0])
+    return FieldPicture(
+        seen, (free > 0.0) & (seen <= 0.0), ranges, azimuths, height_m=target[1], target=target[0]
+    )
 
 
 def patch_of(window: AngleWindow, step: float) -> ViewPatch:

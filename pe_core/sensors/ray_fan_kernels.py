@@ -37,7 +37,8 @@ from .ray_fan import FanCache, RayFan, cast_fan, fan_rays, patch_of, window_of, 
 
 VOXEL_BYTES = 200  # Memory of a voxel of a block while it is measured (measured)
 BALL_MARGIN_M = 1e-3
-NEAR_FIELD_M, FINE_M = 10.0, 0.02
+NEAR_FIELD_M = 10.0
+FINE_M = 0.02
 """A sensor of a shorter range than this has squares of the ground tested every 2 cm [m]."""
 
 
@@ -120,7 +121,9 @@ class FanGrid(GridKernel):
     def __init__(
         self, rules: FanRules, space: PerceptionSpace, vehicle: Vehicle | None, _: int
     ) -> None:
-        self._rules, self._space, self._vehicle = rules, space, vehicle
+        self._rules = rules
+        self._space = space
+        self._vehicle = vehicle
 
     def prepare(self, sensor: Sensor) -> FanSensor:
         """Cast the rays."""
@@ -140,7 +143,9 @@ class FanGrid(GridKernel):
         """Measure plane by plane, only the columns that may be reached."""
         x, y, z = (self._space.centers(axis) for axis in range(3))
         columns = np.stack(np.meshgrid(x[planes], y, indexing="ij"), axis=-1)
-        middle, half = (z[0] + z[-1]) / 2.0, (z[-1] - z[0]) / 2.0  # of balls round columns
+        # of balls round columns
+        middle = (z[0] + z[-1]) / 2.0
+        half = (z[-1] - z[0]) / 2.0
         across = columns.reshape(-1, 2)
         centers = np.column_stack([across, np.full(len(across), middle)])
         balls = np.full(len(centers), half + BALL_MARGIN_M)
@@ -149,7 +154,8 @@ class FanGrid(GridKernel):
         n = planes.stop - planes.start
         if not len(rows):
             return VisibleRows(slice(0, 0), np.zeros((n, 0, len(z))))
-        first, last = int(rows[0]), int(rows[-1]) + 1
+        first = int(rows[0])
+        last = int(rows[-1]) + 1
         m = np.zeros((n, last - first, len(z)))
         side = self._space.interval
         for number in range(n):
@@ -163,12 +169,14 @@ class FanSample(SampleKernel):
     """Measures sampled voxels."""
 
     def __init__(self, rules: FanRules, voxels: Voxels, vehicle: Vehicle | None, _: int) -> None:
-        self._rules, self._voxels = rules, voxels
+        self._rules = rules
+        self._voxels = voxels
         self.cache = rules.cache(vehicle)
 
     def measure(self, sensor: Sensor) -> Measured:
         """Measure a sensor."""
-        voxels, fan = self._voxels, self.cache.fan(sensor)
+        voxels = self._voxels
+        fan = self.cache.fan(sensor)
         m = self._rules.voxels(sensor, voxels.centers, voxels.space.interval, fan)
         return Measured(sensor, m)
 
@@ -181,11 +189,14 @@ class FanGround(GroundKernel):
     """Marks squares with a post in them, a point of which is detected."""
 
     def __init__(self, rules: FanRules, view: GroundView) -> None:
-        self._rules, self._view, self.cache = rules, view, rules.cache(view.vehicle)
+        self._rules = rules
+        self._view = view
+        self.cache = rules.cache(view.vehicle)
 
     def mark(self, sensor: Sensor) -> VisibleGround:
         """Test the points of the posts."""
-        grid, height = self._view.grid, self._view.height
+        grid = self._view.grid
+        height = self._view.height
         marked = np.zeros(grid.shape[0] * grid.shape[1], bool)
         middles = grid.middles(np.arange(len(marked)))
         centers = np.column_stack([middles, np.full(len(middles), height / 2.0)])
@@ -216,7 +227,9 @@ class FanObjects(ObjectKernel):
     """Measures objects."""
 
     def __init__(self, rules: FanRules, view: ObjectView) -> None:
-        self._rules, self._view, self.cache = rules, view, rules.cache(view.vehicle)
+        self._rules = rules
+        self._view = view
+        self.cache = rules.cache(view.vehicle)
 
     def measure(self, sensor: Sensor) -> Floats:
         """Measure the objects; equal to the definition."""

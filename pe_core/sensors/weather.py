@@ -26,7 +26,8 @@ from ..scene.vehicle import Vehicle
 from .field_of_view import LIGHT_M_S
 from .kind import kind_of
 
-RAIN, SNOW = Number(0.0, 300.0, unit="mm/h"), Number(0.0, 50.0, unit="mm/h")
+RAIN = Number(0.0, 300.0, unit="mm/h")
+SNOW = Number(0.0, 50.0, unit="mm/h")
 WEIGHED = "Part in the weighted mean of all conditions"
 MOR = Number(1.0, 1e5, unit="m", noun="length")
 RAIN_KM = ((0.0, 0.0), (5.0, 1.00), (10.0, 1.56), (25.0, 2.77), (50.0, 4.29), (100.0, 6.64))
@@ -39,9 +40,13 @@ PULSE_S = 2e-8
 OVERLAP_M = (0.9, 1.0)
 """[FOG]: a target's differential reflectivity, half-power width of the pulse [s], and distances
 [m] from which the receiver sees some of the beam, and all of it."""
-CONTRAST, THRESHOLD = 0.5, 0.05
+CONTRAST = 0.5
+THRESHOLD = 0.05
 """Contrast of an object against its background, and the least that is found, [KO]."""
-LAMP_LUX, LAMP_M, LAMPS, SEEN_LUX = 12.0, 25.0, 2, 5.0
+LAMP_LUX = 12.0
+LAMP_M = 25.0
+LAMPS = 2
+SEEN_LUX = 5.0
 """A headlamp's least illuminance at point 75R, its distance [R112], their number; the illuminance
 to which lamps are said to reach [IIHS]."""
 
@@ -201,7 +206,8 @@ def camera_range(max_range: float, weather: Weather) -> float:
     ``E (25 / d)^2 exp(-alpha d)`` is at least 5 lux: 54.7 m in clear air, ahead of the lamps; to
     other sides this is an upper bound.
     """
-    alpha, found = weather.extinction, max_range
+    alpha = weather.extinction
+    found = max_range
     if alpha > 0.0:
         found = min(found, math.log(CONTRAST / THRESHOLD) / alpha)
     if weather.night:

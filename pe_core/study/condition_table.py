@@ -36,7 +36,8 @@ from .study import DEFAULT_SEARCH_SAMPLES, EXPECTED_AP, Study
 
 COVERS = 0.01
 """A part that occludes more of a sensor than as drawn, by this share of its rays, is told."""
-MEAN, WORST = "mean", "worst"
+MEAN = "mean"
+WORST = "worst"
 
 
 class ExpectedApEvaluator(ObjectEvaluator):
@@ -219,18 +220,18 @@ def _row(
 ) -> ConditionScore:
     objects = score.objects
     return ConditionScore(
-        AS_DRAWN if condition.state is None else condition.state.name,
-        CLEAR if condition.weather is None else condition.weather.name,
-        condition.weight,
-        score.entropy,
-        score.stderr,
-        score.coverage,
-        {name: part.entropy for name, part in score.per_class.items()},
-        {name: rounded(score.entropy + s.lost) for name, s in score.per_sensor.items()},
-        None if objects is None else objects.ap,
-        None if objects is None else {n: c.ap for n, c in objects.per_class.items()},
-        None if objects is None else {n: dict(c.reach) for n, c in objects.per_class.items()},
-        _covered(score, drawn) if condition.state is not None else None,
+        state=AS_DRAWN if condition.state is None else condition.state.name,
+        weather=CLEAR if condition.weather is None else condition.weather.name,
+        weight=condition.weight,
+        entropy=score.entropy,
+        stderr=score.stderr,
+        coverage=score.coverage,
+        per_class={name: part.entropy for name, part in score.per_class.items()},
+        without={name: rounded(score.entropy + s.lost) for name, s in score.per_sensor.items()},
+        ap=None if objects is None else objects.ap,
+        ap_per_class=None if objects is None else {n: c.ap for n, c in objects.per_class.items()},
+        reach=None if objects is None else {n: dict(c.reach) for n, c in objects.per_class.items()},
+        covered=_covered(score, drawn) if condition.state is not None else None,
     )
 
 
@@ -281,7 +282,8 @@ class ConditionObjective:
         """Return that value; inf once one of the conditions whose worst counts is not below."""
         search = self._study.search
         cases = search.tolerance.cases(rig, search.seed) if search.tolerance.is_on else [rig]
-        values, weights = list[float](), list[float]()
+        values = list[float]()
+        weights = list[float]()
         for state in dict.fromkeys(c.state for c in self._conditions):
             own = [c for c in self._conditions if c.state == state]
             rigs = [c.rig(case, self._study.vehicle) for c in own for case in cases]

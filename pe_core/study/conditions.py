@@ -22,7 +22,8 @@ from ..sensors.weather import Weather, checked_weights
 
 T = TypeVar("T", State, Weather)
 MAX_CONDITIONS = 200
-AS_DRAWN, CLEAR = "as drawn", "clear"
+AS_DRAWN = "as drawn"
+CLEAR = "clear"
 """Names of the state and of the weather of a study that has none."""
 EVERY = "*"  # Stands for all states, or all weathers, of a study
 
@@ -49,7 +50,8 @@ class StateInWeather:
     @property
     def is_as_drawn(self) -> bool:
         """Whether the vehicle is as it is drawn, in clear air."""
-        state, weather = self.state, self.weather
+        state = self.state
+        weather = self.weather
         return (state is None or state.is_as_drawn) and (weather is None or weather.is_clear)
 
     def __call__(self, rig: Rig, vehicle: Vehicle | None) -> tuple[Rig, Vehicle | None]:
@@ -153,7 +155,8 @@ class ConditionedChecker(RequirementChecker):
     ) -> None:
         self._again = partial(ConditionedChecker, requirements, vehicle, conditions, **options)
         self._as_drawn = as_drawn or RequirementChecker(requirements, vehicle, **options)
-        self.requirements, self.zones = self._as_drawn.requirements, self._as_drawn.zones
+        self.requirements = self._as_drawn.requirements
+        self.zones = self._as_drawn.zones
         self.vehicle = vehicle
         by_condition: dict[StateInWeather, list[int]] = {}
         for number, requirement in enumerate(requirements):
@@ -161,7 +164,8 @@ class ConditionedChecker(RequirementChecker):
                 by_condition.setdefault(condition, []).append(number)
         self._parts = []
         for condition, numbers in by_condition.items():
-            own, moved = [requirements[n] for n in numbers], condition.vehicle(vehicle)
+            own = [requirements[n] for n in numbers]
+            moved = condition.vehicle(vehicle)
             checker = RequirementChecker(own, moved, **options)
             self._parts.append((condition, numbers, checker))
 
@@ -175,7 +179,8 @@ class ConditionedChecker(RequirementChecker):
         drawn = self._as_drawn.steps(rig, preview=preview, cases=cases)
         parts = []
         for condition, numbers, checker in self._parts:
-            moved, others = self._under(condition, rig), [self._under(condition, c) for c in cases]
+            moved = self._under(condition, rig)
+            others = [self._under(condition, c) for c in cases]
             parts.append((condition, numbers, checker.steps(moved, preview=preview, cases=others)))
         number = 0
         for step in drawn:
@@ -196,7 +201,8 @@ class ConditionedChecker(RequirementChecker):
         """Return for each requirement the largest shortfall under its conditions."""
         largest = list(self._as_drawn.shortfalls(rig, cases))
         for condition, numbers, checker in self._parts:
-            moved, others = self._under(condition, rig), [self._under(condition, c) for c in cases]
+            moved = self._under(condition, rig)
+            others = [self._under(condition, c) for c in cases]
             for n, value in zip(numbers, checker.shortfalls(moved, others), strict=True):
                 largest[n] = max(largest[n], value)
         return tuple(largest)

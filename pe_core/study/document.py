@@ -209,7 +209,8 @@ class Document:
 
     def _search(self, node: Node) -> Search:
         """Return the search with what the tables of sensors say of it."""
-        search, rows = self.optimize.search, self.sensor
+        search = self.optimize.search
+        rows = self.sensor
         usual = self.optimize.free
         free = {row.sensor.name: usual if row.free is None else row.free for row in rows}
         limits = {row.sensor.name: row.bounds.by_axis for row in rows}

@@ -1,6 +1,9 @@
 """Names of the files in a folder of results."""
 
-RESULT, HISTORY, STUDY, MESH = "result.json", "history.csv", "study.toml", "vehicle.npz"
+RESULT = "result.json"
+HISTORY = "history.csv"
+STUDY = "study.toml"
+MESH = "vehicle.npz"
 AREAS = "areas.npz"
 """Mesh file with the areas of mounts, one part for each mount."""
 BOXES = "boxes.csv"
@@ -10,6 +13,6 @@ GRID = "prior.npy"
 OPTIMIZED = "optimized.blend"  # The file that Blender adds
 REVIEW_PAGE = "review.html"  # The review page
 SEARCH = "search.json"  # Checkpoint of a search, from which it can be resumed
-BESIDE_RESULT = (*(STUDY, MESH, AREAS, BOXES, GRID, HISTORY, SEARCH), *(OPTIMIZED, REVIEW_PAGE))
+BESIDE_RESULT = (STUDY, MESH, AREAS, BOXES, GRID, HISTORY, SEARCH, OPTIMIZED, REVIEW_PAGE)
 """All files that belong to a result.json."""
 SCHEMA = 1  # Version of the schema of result.json

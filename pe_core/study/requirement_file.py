@@ -118,7 +118,8 @@ def _merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
     """Return a preset's table with the keys of a study's: a zone of another shape replaces its."""
     merged = {**base, **own}
     for key in TABLES:
-        below, above = base.get(key, {}), own.get(key, {})
+        below = base.get(key, {})
+        above = own.get(key, {})
         if not isinstance(above, Mapping):
             continue
         if key == "zone" and any(k in SHAPES for k in above):
@@ -129,7 +130,8 @@ def _merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
 
 def _read(node: Node) -> Requirement:
     """Return a requirement from a table with all of its keys."""
-    headings, bodies = node.at("headings"), node.at("body", [])
+    headings = node.at("headings")
+    bodies = node.at("body", [])
     table = {key: value for key, value in node.table.items() if key != "headings"}
     if isinstance(bodies.value, str | Mapping):
         table["body"] = [bodies.value]

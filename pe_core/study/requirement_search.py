@@ -78,8 +78,10 @@ class RequirementConstraint:
     """The constraint that all requirements of a study are met, with the tolerance's errors."""
 
     def __init__(self, study: Study) -> None:
-        self._checker, search = study.checker(), study.search
-        self._tolerance, self._seed = search.tolerance, search.seed
+        self._checker = study.checker()
+        search = study.search
+        self._tolerance = search.tolerance
+        self._seed = search.seed
 
     def shortfalls(self, rig: Rig) -> tuple[float, ...]:
         """Return for each requirement 0 where it is met, else how far it is off."""
@@ -102,7 +104,8 @@ class FeasibleFirst:
     violations."""
 
     def __init__(self, objective: Objective, constraints: Sequence[FeasibilityRule]) -> None:
-        self._objective, self._constraints = objective, tuple(constraints)
+        self._objective = objective
+        self._constraints = tuple(constraints)
 
     def entropy(self, rig: Rig) -> float:
         """Return the value of a placement."""
@@ -146,7 +149,9 @@ def constraints_of(study: Study) -> tuple[FeasibilityRule, ...]:
     if keep := [key for key in KEPT if study.limits.kept(key) is not None]:
         if REACH in keep and study.targets.are_objects:
             raise InputError("limits", REACH, "a reach of voxels", "a study on objects")
-        limit = FiguresLimit(study.sight(SEARCHED), study.sight(), keep, study.limits, study.rig)
+        limit = FiguresLimit(
+            study.sight(SEARCHED), study.sight(), keep, study.limits, start=study.rig
+        )
         constraints.append(limit)
     return tuple(constraints)
 

@@ -70,7 +70,8 @@ from .conditions import (
 )
 from .mounting_file import check_pairs
 
-ENTROPY, EXPECTED_AP = "entropy", "expected_ap"
+ENTROPY = "entropy"
+EXPECTED_AP = "expected_ap"
 OBJECTIVES = (ENTROPY, EXPECTED_AP)
 """What a search improves."""
 DEFAULT_SEARCH_SAMPLES = 65_536
@@ -78,6 +79,7 @@ SEED = Whole(0, 2**63 - 1)
 """The range of whole numbers of a TOML file."""
 FEW_SCENES = 32
 """A search's coarsest level has at least so many scenes, if the study has them."""
+OPTIONAL = ("vehicle", "reference")
 
 
 @dataclass(frozen=True, slots=True)
@@ -328,7 +330,8 @@ class Study(Tabular):
     @property
     def level_samples(self) -> tuple[int, ...]:
         """Number of voxels of each level of the search, the coarsest first."""
-        search, sensors = self.search, len(self.coding().blocks)
+        search = self.search
+        sensors = len(self.coding().blocks)
         return METHODS[search.method].samples(search.samples, search.from_each_start, sensors)
 
     def sight(self, shift: Shift = CENTERED) -> Sight:
@@ -357,8 +360,14 @@ class Study(Tabular):
 
     def drive_by(self, story: Story, rig: Rig | None = None) -> DriveBy:
         """Return a story as a rig, the study's by default, sees it."""
-        what = story, rig or self.rig, self.vehicle, self.model, self.confirmation
-        return drive_by(*what, self.frames.rates)
+        return drive_by(
+            story,
+            rig or self.rig,
+            self.vehicle,
+            self.model,
+            confirmation=self.confirmation,
+            rates=self.frames.rates,
+        )
 
     def checker(self, as_drawn: RequirementChecker | None = None) -> RequirementChecker:
         """Return what holds rigs to the study's requirements.
@@ -369,12 +378,14 @@ class Study(Tabular):
         `InputError` when a zone cannot be placed round the vehicle, the rig lacks a kind of sensor,
         mounting errors are asked for that the study does not state, or nothing is known of a class.
         """
-        wanted, where = self.requirements, (self.requirements, self.vehicle)
+        wanted = self.requirements
         check_classes(wanted, self._known_classes())
         options: Any = {"model": self.model, "reference": self.reference, "space": self.space}
         if any(each.under.states or each.under.weathers for each in wanted):
-            as_drawn = ConditionedChecker(*where, self.conditions, as_drawn, **options)
-        checker = as_drawn or RequirementChecker(*where, **options)
+            as_drawn = ConditionedChecker(
+                self.requirements, self.vehicle, self.conditions, as_drawn, **options
+            )
+        checker = as_drawn or RequirementChecker(self.requirements, self.vehicle, **options)
         checker.check_rig(self.rig)
         for each in wanted:
             if each.under.mounting and not self.search.tolerance.mounts_off:
@@ -403,7 +414,8 @@ class Study(Tabular):
         """Yield the verdicts on a rig, the study's by default, one by one, with steps between."""
         if not self.requirements:
             return
-        rig, search = self.rig if rig is None else rig, self.search
+        rig = self.rig if rig is None else rig
+        search = self.search
         cases = mounting_cases(self.requirements, rig, search.tolerance, search.seed)
         yield from (checker or self.checker()).steps(rig, cases=cases)
 
@@ -460,8 +472,9 @@ class Study(Tabular):
         search = self.search
         schedule = search.schedule if search.method == SCHEDULED_METHOD else None
         options: Any = {"method": search.method, "evaluations": search.evaluations}
-        where = self.rig, self.search_space(), search.seed, schedule
-        return SearchRun(*where, **options, journal=journal)
+        return SearchRun(
+            self.rig, self.search_space(), search.seed, schedule, **options, journal=journal
+        )
 
     def coding(self) -> Parametrization:
         """Return the unknowns of the search; `InputError` when it cannot be made."""
@@ -486,7 +499,6 @@ FIELDS |= {"model": PerceptionModel, "axes": MeshAxes, "selection": Selection}
 FIELDS |= {"targets": TargetRule, "vehicle": Vehicle, "reference": Reference}
 FIELDS |= {"conditions": Conditions, "limits": Limits}
 FIELDS |= {"frames": Frames, "confirmation": Confirmation}
-OPTIONAL = ("vehicle", "reference")
 
 
 def _each(table: Any, field: str, check: Callable[[str, str, Any], Any]) -> dict[str, Any]:

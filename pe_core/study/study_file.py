@@ -187,7 +187,8 @@ def is_switch(setting: Setting) -> bool:
 
 def menu_of(setting: Setting) -> tuple[tuple[str, str, str], ...]:
     """Return text, label and meaning of each entry of a setting's menu."""
-    panel, rule = setting.panel, setting.rule
+    panel = setting.panel
+    rule = setting.rule
     assert panel is not None and isinstance(rule, OneOf | Several)
     rows = zip(rule.among, panel.menu, strict=True)
     absent = () if panel.absent is None else (panel.absent,)

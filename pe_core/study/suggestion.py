@@ -52,7 +52,8 @@ FINEST_STEP = 0.01
 """A move is the smallest of its direction to this: in metres, radians, and shares."""
 HELP_PLACES = 40
 """Places within its range that are tried for each sensor, after those steps."""
-ADD_PLACES, ADD_COMPARED = 80, 4
+ADD_PLACES = 80
+ADD_COMPARED = 4
 """Places of one more sensor of each model, and of those that are enough so many are scored."""
 SAMPLES = 2048
 """Voxels on which entropies are compared: their difference is that of one sample."""
@@ -98,10 +99,12 @@ class Suggestion:
     @property
     def sentence(self) -> str:
         """What is done, what it gains, and what it costs, in one sentence."""
-        model, name = self.rig[self.moved[0]].model, ", ".join(self.moved)
+        model = self.rig[self.moved[0]].model
+        name = ", ".join(self.moved)
         done = f"add a {model.name}{_takes(model)}" if self.added else f"move {name}{self._way}"
         gains = []
-        was, now = self.before.blind_m2, self.after.blind_m2
+        was = self.before.blind_m2
+        now = self.after.blind_m2
         if was is not None and now is not None:
             gains.append(f"blind ground {shown_end(was):.1f} to {shown_end(now):.1f} m2")
         by = self.after.entropy - self.before.entropy
@@ -114,7 +117,8 @@ class Suggestion:
     @property
     def is_gain(self) -> bool:
         """Whether less ground is blind: a blind place that moves elsewhere is not mended."""
-        was, now = self.before.blind_m2, self.after.blind_m2
+        was = self.before.blind_m2
+        now = self.after.blind_m2
         return was is None or now is None or now < was
 
     @property
@@ -184,7 +188,8 @@ def mended(
 
 def with_free_name(study: Study, sensor: Sensor) -> Sensor:
     """Return a sensor that a study could have, too: with its returns, and a name of its own."""
-    name, taken = sensor.name, [each.name for each in study.rig]
+    name = sensor.name
+    taken = [each.name for each in study.rig]
     while name in taken:
         name += "+"
     return study.with_rig(Rig([*study.rig, replace(sensor, name=name)])).rig[name]
@@ -194,8 +199,9 @@ class _Mender:
     """The requirements that a study's rig does not meet, and what was found that meets them."""
 
     def __init__(self, study: Study, names: Sequence[str], watch: Watch | None) -> None:
-        around = study.rig, study.vehicle, study.reference, study.space
-        fitting, unchecked = checkable(study.requirements, *around)
+        fitting, unchecked = checkable(
+            study.requirements, study.rig, study.vehicle, study.reference, space=study.space
+        )
         for name in unchecked.keys() & set(names):
             expected = "one that the rig can be held to"
             raise InputError("suggest", f"requirement {name!r}", expected, unchecked[name])
@@ -212,8 +218,10 @@ class _Mender:
 
     def move(self) -> None:
         """Look for the nearest placements."""
-        study, left = self._study, [*self.names]
-        coding, checker = study.coding(), self._checker_of(self._left)
+        study = self._study
+        left = [*self.names]
+        coding = study.coding()
+        checker = self._checker_of(self._left)
         most = sum(2 * len(HELP_STEPS[v.unit]) for v in coding.variables)
         most += HELP_PLACES * len(coding.blocks)
         number = 0
@@ -246,15 +254,19 @@ class _Mender:
         self, name: str, candidate: Candidate, coding: Parametrization, checker: RequirementChecker
     ) -> Candidate:
         """Return the shortest part of a move that still meets a requirement, by halving."""
-        start, end = coding.start.vector, candidate.vector
+        start = coding.start.vector
+        end = candidate.vector
         count = math.ceil(_length(candidate, coding) / FINEST_STEP - 1e-9)
-        too_short, enough, shortest = 0, count, candidate
+        too_short = 0
+        enough = count
+        shortest = candidate
         while enough - too_short > 1:
             middle = (too_short + enough) // 2
             share = middle / count
             part = coding.candidate([a + share * (b - a) for a, b in zip(start, end, strict=True)])
             if coding.allowed(part.rig) and [*self._met_by(part.rig, checker, [name])]:
-                enough, shortest = middle, part
+                enough = middle
+                shortest = part
             else:
                 too_short = middle
         return shortest
@@ -263,15 +275,24 @@ class _Mender:
         """Look for one more sensor."""
         study = self._study
         models = list({each.model.name: each.model for each in study.rig}.values())
-        where = study.vehicle, study.search.mounting.constraints, study.limits
         pairs = [(requirement, model) for requirement in self._left for model in models]
         best: dict[str, tuple[float, Rig]] = {}
         for number, (requirement, model) in enumerate(pairs):
-            checker, count, name = self._checker_of((requirement,)), 0, requirement.name
+            checker = self._checker_of((requirement,))
+            count = 0
+            name = requirement.name
             sensor = with_free_name(study, Sensor(kind_of(model).label, model))
             (verdict,) = checker.check(study.rig, preview=True)
             target = (*verdict.worst, BLIND_TO_M) if verdict.worst else None
-            places = MountingPlaces(study.rig, sensor, *where, count=ADD_PLACES, look_at=target)
+            places = MountingPlaces(
+                study.rig,
+                sensor,
+                study.vehicle,
+                study.search.mounting.constraints,
+                limits=study.limits,
+                count=ADD_PLACES,
+                look_at=target,
+            )
             for at, place in enumerate(places):
                 self._goes_on((number + at / ADD_PLACES) / len(pairs))
                 rig = places.with_sensor(place.pose)
@@ -374,8 +395,10 @@ def _steps_of_one(coding: Parametrization) -> Iterator[list[Candidate]]:
 
 def _places_of_one(coding: Parametrization, seed: int) -> Iterator[list[Candidate]]:
     """Yield placements with one sensor, or linked pair, anywhere in its range, near ones first."""
-    variables, start = coding.variables, coding.start.vector
-    rng, sampled = np.random.default_rng(seed), list[tuple[float, Candidate]]()
+    variables = coding.variables
+    start = coding.start.vector
+    rng = np.random.default_rng(seed)
+    sampled = list[tuple[float, Candidate]]()
 
     def sample(block: range) -> list[float]:
         vector = list(start)

@@ -16,6 +16,8 @@ NOT_KEPT = "figure"  # Code of the warning about a key figure that a search coul
 SUBJECTS = {FRAGILE: "placement", UNMET: "placement", NOT_KEPT: "search", "returns": "returns"}
 SUBJECTS |= {"range_term": "AP curves"}
 """What warnings without a sensor concern, by code; others concern the vehicle."""
+FRAGILE_NATS = 0.05
+"""A rise of the mean entropy up to this [nats] is within the uncertainty of voxels and mounting."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,10 +63,6 @@ class Advice:
     def to_dict(self) -> dict[str, Any]:
         """Return the warning as plain JSON data."""
         return {**asdict(self), "amount": list(self.amount)}
-
-
-FRAGILE_NATS = 0.05
-"""A rise of the mean entropy up to this [nats] is within the uncertainty of voxels and mounting."""
 
 
 def fragile(

@@ -34,7 +34,7 @@ class StandingBody:
 
     def __post_init__(self) -> None:
         choice("body", "name", self.body, BODIES)
-        place = vector("body", "place", self.place, 2, METRES)
+        place = vector("body", "place", self.place, count=2, rule=METRES)
         object.__setattr__(self, "place", (place[0], place[1]))
         object.__setattr__(self, "heading", HEADING.checked("body", "heading", self.heading))
 
@@ -118,7 +118,8 @@ def see_bodies(
     for standing in bodies:
         objects = standing.objects
         measured = ObjectMeasurementCache(objects, vehicle, kernel_caches=kernel_caches)
-        m, ap = measured.measure(rig), None
+        m = measured.measure(rig)
+        ap = None
         if BODIES[standing.body].class_name is not None:
             fused = FusedObjects(objects, np.ones(1), model or PerceptionModel())
             try:

@@ -24,11 +24,16 @@ from pe_core.search import (
 )
 from pe_core.study.study import EXPECTED_AP
 
-UNIT_M, UNIT_RAD = 0.01, math.radians(1.0)
+UNIT_M = 0.01
+UNIT_RAD = math.radians(1.0)
 """One unit: 1 cm along x, y and z of the ground frame, 1 deg of roll, pitch and yaw."""
-NEAR, FAR = 1.0, 5.0  # Steps to both sides [cm or deg]
-FLAT, STEEP = "flat", "steep"
-STEEP_NATS, STEEP_AP = 0.01, 0.001
+# Steps to both sides [cm or deg]
+NEAR = 1.0
+FAR = 5.0
+FLAT = "flat"
+STEEP = "steep"
+STEEP_NATS = 0.01
+STEEP_AP = 0.001
 """From this cost of one step on, an axis is called steep [nats; expected AP]."""
 NOTICED = 0.1  # A smaller difference says nothing, in costs of a steep axis
 SHARE = 8  # The steps evaluate at most the search's evaluations divided by this

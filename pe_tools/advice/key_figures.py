@@ -25,7 +25,8 @@ SHORT_ZONES = {
 """Short text for each zone of `scoring.zones.ZONES`, for a narrow column."""
 OCCLUDERS_NAMED = 3
 MIN_SHARE = 5e-4  # A part that hides a smaller share is not named: the share would read 0.0%
-MIN_RISE, MIN_LOSS = 0.005, 0.00005
+MIN_RISE = 0.005
+MIN_LOSS = 0.00005
 """A rise of entropy [nats] below `MIN_RISE` would read 0.00; below `MIN_LOSS` it counts as none."""
 
 
@@ -82,7 +83,7 @@ def sensor_rows(
         parts = occluded_shares(None if rig is None else rig[name], sensor_score, vehicle)
         shown = {part: share for part, share in parts.items() if share >= MIN_SHARE}
         loss = None if only else sensor_score.lost
-        rows.append(SensorRow(name, loss, zone, by_zone.get(zone, 0.0), shown))
+        rows.append(SensorRow(name, loss, zone, by_zone.get(zone, 0.0), occluded_by=shown))
     return tuple(rows)
 
 
@@ -103,7 +104,9 @@ def loss_text(loss: float | None) -> str:
 def built_lines(figures: Sequence[KeyFigures]) -> list[str]:
     """Return what can be built in two lines, of one rig, or of start and result; none without it.
     Figures that are not known are named with their sensors; prices only where there are some."""
-    last, texts, by_sensors = figures[-1], [], dict[str, list[str]]()
+    last = figures[-1]
+    texts = []
+    by_sensors = dict[str, list[str]]()
     for key, row in BUILD_FIGURES.items():
         if found := dict.fromkeys(row.text(f.values[key]) for f in figures if key in f.values):
             texts.append(f"{row.name} {' -> '.join(found)}")

@@ -23,7 +23,8 @@ from pe_core.scoring.scenarios import fused_early
 from pe_core.sensors import PerceptionModel, kind_named, kind_of, measure
 from pe_tools.wording import times
 
-SEES, HIDDEN = "sees", "occluded"
+SEES = "sees"
+HIDDEN = "occluded"
 """Reason of a sensor that measures the location, and of one whose view of it the vehicle blocks.
 The other reasons are those of the sensor's kind (`Kind.missed`)."""
 WAYS = (("ahead", "behind"), ("left", "right"), ("up", "down"))
@@ -89,15 +90,17 @@ def ask_place(
     """Evaluate a rig at the voxel that contains a point. `point` (2,): ground frame [m]; z is 0 if
     it is missing or None. One outside the space raises `InputError`. `model`: AP curves and fusion
     rule; the paper's by default."""
-    model, side = model or PerceptionModel(), space.interval
+    model = model or PerceptionModel()
+    side = space.interval
     values = listed(point, 3) or []
     if len(values) == 2 or values[2:] == [None]:
         values = [*values[:2], 0.0]
-    index = _voxel(space, vector("place", "point", values, 3, METRES))
+    index = _voxel(space, vector("place", "point", values, count=3, rule=METRES))
     center = space.center_of(np.array([index]))
-    sensors = tuple(_at_place(s, center, side, vehicle, model) for s in rig)
+    sensors = tuple(_at_place(s, center, side, vehicle, model=model) for s in rig)
     measured = {s.name: np.array([s.m]) for s in sensors}
-    fusion, distance = Fusion(model), np.hypot(*center[:, :2].T)
+    fusion = Fusion(model)
+    distance = np.hypot(*center[:, :2].T)
     fused = fusion.ranged(fused_early(rig, measured, list(measured)), distance)
     entropies, seen = fusion.entropies(fused)
     x, y, z = (float(v) for v in center[0])
@@ -135,17 +138,22 @@ def _voxel(space: PerceptionSpace, point: Sequence[float]) -> tuple[int, int, in
 def _at_place(
     sensor: Sensor, center: Floats, side: float, vehicle: Vehicle | None, model: PerceptionModel
 ) -> SensorAtPlace:
-    kind, part, reason = kind_of(sensor), None, SEES
+    kind = kind_of(sensor)
+    part = None
+    reason = SEES
     unhidden = float(measure(sensor, center, side)[0])
     m = float(measure(sensor, center, side, vehicle)[0]) if unhidden and vehicle else unhidden
     if not unhidden:
         reason = kind.missed(sensor, center[0], side)
     elif not m and vehicle is not None:
         rays = kind.rays_to(sensor, center[0], side)
-        part, reason = part_in_the_way(sensor, vehicle, *rays), HIDDEN
+        part = part_in_the_way(sensor, vehicle, *rays)
+        reason = HIDDEN
     curve = sensor.curve or model.curve(sensor.kind)
     ap = float(average_precision(ranged(m, curve, np.hypot(*center[0, :2])), curve))
-    return SensorAtPlace(sensor.name, sensor.kind, m, unhidden, ap, part, reason)
+    return SensorAtPlace(
+        sensor.name, sensor.kind, m, unhidden, ap=ap, occluded_by=part, reason=reason
+    )
 
 
 def _headline(place: AskedPlace) -> str:

@@ -22,7 +22,8 @@ from pe_tools.wording import metres
 from .advice import Advice
 from .vehicle_checks import OFF_AXIS_M, Bodywork
 
-CLEAR_M, CLEAR_ABOVE_M = 0.5, 0.75
+CLEAR_M = 0.5
+CLEAR_ABOVE_M = 0.75
 """Greatest distance from the body of a mounted sensor [m]. Above the body it is larger: there are
 racks and masts, and a search tries positions up to that height."""
 NEAR_M = 0.05  # First radius of the search for the nearest triangle, beyond the bounding box [m]
@@ -33,6 +34,7 @@ the vehicle loses."""
 MAX_RAYS = 4096  # Rays of a sensor that are cast at most
 UPSIDE_DOWN = -0.2
 """Vertical component of a sensor's unit upward axis below which its picture is upside down."""
+IMAGE_GAP_M = 0.1  # A mirror image may be this much farther from the body than its original [m]
 
 
 def occluded_shares(
@@ -108,7 +110,8 @@ class SensorAtBody:
 
 def odd_mounting(mounted: SensorAtBody) -> Iterator[Advice]:
     """Yield warnings about how a sensor is mounted on the vehicle."""
-    sensor, body = mounted.sensor, mounted.body.vehicle
+    sensor = mounted.sensor
+    body = mounted.body.vehicle
     covers = {} if body is None else kind_of(sensor).covers_met(sensor, body)
     for part, (db, share) in covers.items():
         yield Advice(sensor.name, "cover", {"db": db, "share": share}, part)
@@ -175,13 +178,11 @@ def distance_to(vehicle: Vehicle, point: Floats) -> float:
         radius *= 2.0
 
 
-IMAGE_GAP_M = 0.1  # A mirror image may be this much farther from the body than its original [m]
-
-
 def check_mirror_image(vehicle: Vehicle, sensor: Sensor, image: Pose) -> None:
     """Check that a sensor's mirror image is on the vehicle where the sensor is. A vehicle that is
     not centred, or an image in the air beside it, raises `InputError`."""
-    field, body = f"sensor {sensor.name!r}: mirror image", Bodywork(vehicle)
+    field = f"sensor {sensor.name!r}: mirror image"
+    body = Bodywork(vehicle)
     off_m = body.shape.middle[1]
     if abs(off_m) > OFF_AXIS_M:
         expected = "a vehicle whose axis is y = 0 (see the warning 'not centred')"

@@ -30,7 +30,8 @@ def ranking(names: Sequence[str], rows: Sequence[ComparedRow]) -> tuple[str, ...
 
 
 def _ranked(names: Sequence[str], row: ComparedRow) -> str:
-    noun, digits = row.how.name, row.how.decimals
+    noun = row.how.name
+    digits = row.how.decimals
     unit = {"": "", "%": "%"}.get(row.how.unit, f" {row.how.unit}")
     unit_of_gap = " points" if unit == "%" else unit
     values = {k: value for k, value in enumerate(row.told) if value is not None}
@@ -70,7 +71,8 @@ def moved_words(before: Rig, after: Rig) -> str:
     """Return which sensors moved, and how: "roof 8 cm up, rear 1.20 m ahead and turned 12 deg"."""
     moved = []
     for sensor in after:
-        old, pose = before[sensor.name].pose, sensor.pose
+        old = before[sensor.name].pose
+        pose = sensor.pose
         if pose == old:
             continue
         steps = [b - a for a, b in zip(old.position, pose.position, strict=True)]
@@ -90,7 +92,8 @@ def gain_sentence(before: Rig, after: Rig, start: KeyFigures, result: KeyFigures
     differences. Empty without a move or such an AP."""
     if start.traffic is None or result.traffic is None or before == after:
         return ""
-    first, last = start.traffic.rings, result.traffic.rings
+    first = start.traffic.rings
+    last = result.traffic.rings
     rings = [f"{name} {first[name][0]:.2f} to {ap:.2f}" for name, (ap, _) in last.items()]
     error = max(result.traffic.error_from(start.traffic, name) for name in last)
     told = f"expected AP in traffic {', '.join(rings)} (+- {math.ceil(100.0 * error) / 100.0:.2f})"
@@ -111,7 +114,8 @@ def search_cost(before: Score, after: Score, start: KeyFigures, result: KeyFigur
 def _figure_losses(start: KeyFigures, result: KeyFigures) -> Iterator[str]:
     errors = result.errors_from(start)
     for row in on_dashboard():
-        first, last = row.value(start), row.value(result)
+        first = row.value(start)
+        last = row.value(result)
         if first is None or last is None or row.cost_of(last) <= row.cost_of(first):
             continue
         texts = row.text(first), row.text(last)
@@ -146,7 +150,8 @@ def _zone_losses(before: Score, after: Score) -> Iterator[str]:
         if rise >= FIGURES[ENTROPY].least and rise > SURE * error:
             worse.append(name)
     for name in sorted(worse, key=lambda name: -rises[name])[:ZONES_NAMED]:
-        first, last = before.per_zone[name].entropy, after.per_zone[name].entropy
+        first = before.per_zone[name].entropy
+        last = after.per_zone[name].entropy
         yield f"entropy {WHERE.get(name, name)} ({first:.3f} to {last:.3f} nats)"
 
 

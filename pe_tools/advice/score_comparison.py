@@ -26,6 +26,17 @@ from pe_core.search.figures import (
 )
 
 CERTAINTY = 0.95
+TRAFFIC = "in traffic"
+NEVER = -math.inf  # Margin of a story that is never confirmed: there is no worse one
+OTHER_HARDWARE = (
+    "The rigs differ in models or numbers of sensors. On simulated rigs of LiDARs entropy was not "
+    "shown to rank better than the number of beams, and it can prefer a rig with a blind sector; "
+    "cameras and radars were not tested. Look at blind ground, and at the expected AP in traffic, "
+    "beside it (docs/validity/own)."
+)
+"""Note beside scores of rigs that differ in their sensors, not in their placement alone."""
+OTHER_RETURNS = "LiDAR returns differ, as in the paper or on the road: do not compare scores."
+AHEAD = "front"  # Direction whose reach is compared
 
 
 def sure_factor(studies: int, degrees: int = BLOCKS - 1) -> float:
@@ -93,19 +104,6 @@ def _error(score: Score, figure: FigureKey) -> float:
         return score.stderr / math.sqrt(share)  # as if its part of the sample were a random draw
     count = score.voxels if objects is None else objects.objects
     return 0.5 / math.sqrt(max(share * count, 1.0))  # maximum standard error of a share, at 0.5
-
-
-TRAFFIC = "in traffic"
-NEVER = -math.inf  # Margin of a story that is never confirmed: there is no worse one
-OTHER_HARDWARE = (
-    "The rigs differ in models or numbers of sensors. On simulated rigs of LiDARs entropy was not "
-    "shown to rank better than the number of beams, and it can prefer a rig with a blind sector; "
-    "cameras and radars were not tested. Look at blind ground, and at the expected AP in traffic, "
-    "beside it (docs/validity/own)."
-)
-"""Note beside scores of rigs that differ in their sensors, not in their placement alone."""
-OTHER_RETURNS = "LiDAR returns differ, as in the paper or on the road: do not compare scores."
-AHEAD = "front"  # Direction whose reach is compared
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,12 +182,14 @@ class ComparedRow:
     def share(self, k: int) -> float:
         """Return how long the bar of a value is, 0 to 1: the longest of the row is 1."""
         known = [value for value in self.values if value not in (None, NEVER)]
-        low, high = min([0.0, *known]), max([0.0, *known])
+        low = min([0.0, *known])
+        high = max([0.0, *known])
         return (max(self.values[k] or 0.0, low) - low) / (high - low) if high > low else 0.0
 
     def differ(self, one: int, other: int) -> bool:
         """Whether two values, given by index, differ significantly; False where one is missing."""
-        a, b = self.values[one], self.values[other]
+        a = self.values[one]
+        b = self.values[other]
         threshold = max(self.how.least, self.factor * self.errors[one][other])
         return a is not None and b is not None and abs(a - b) > threshold
 
@@ -217,24 +217,26 @@ def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...
     none = ((0.0,) * len(columns),) * len(columns)
     for sectors in zip(*(figures.sectors for figures in columns), strict=True):
         tall = f"{sectors[0].height:g} m tall, at {SECTOR_RADIUS_M:g} m"
-        rows.append(ComparedRow("rig", tall, BLIND_SECTOR, tuple(s.width for s in sectors), none))
+        rows.append(
+            ComparedRow("rig", tall, BLIND_SECTOR, tuple(s.width for s in sectors), errors=none)
+        )
     over_frames = tuple(f.over_frames for f in columns)
     if any(value is not None for value in over_frames):
-        rows.append(ComparedRow("rig", "over frames", ENTROPY, over_frames, none))
+        rows.append(ComparedRow("rig", "over frames", ENTROPY, over_frames, errors=none))
     for story in dict.fromkeys(name for own in columns for name in own.margins):
         told = [shown_margin(own.margins.get(story)) for own in columns]
         never = [own.margins.get(story, 0.0) is None for own in columns]
         margins = (NEVER if lost else margin for margin, lost in zip(told, never, strict=True))
-        rows.append(ComparedRow("story", story, STORY_MARGIN, tuple(margins), none))
+        rows.append(ComparedRow("story", story, STORY_MARGIN, tuple(margins), errors=none))
     height_text = f"{columns[0].height:g} m tall, within {columns[0].within:g} m"
     apart = {BLIND_GROUND: height_text}
     detailed = {BLIND_SECTOR, REACH, *AP_RINGS}
     for key in (key for key, row in FIGURES.items() if row.is_seen and key not in detailed):
         values = tuple(f.values.get(key) for f in columns)
-        rows.append(ComparedRow("rig", apart.get(key, ""), key, values, none))
+        rows.append(ComparedRow("rig", apart.get(key, ""), key, values, errors=none))
     for name in columns[0].reach:
         ahead = tuple(f.reach[name][0] if name in f.reach else None for f in columns)
-        rows.append(ComparedRow("class", name, REACH, ahead, none))
+        rows.append(ComparedRow("class", name, REACH, ahead, errors=none))
     return tuple(rows)
 
 
@@ -256,30 +258,32 @@ def _traffic_rows(found: Sequence[TrafficAp | None]) -> Iterator[ComparedRow]:
                 tuple(0.0 if a is None or b is None else a.error_from(b, name) for b in has_ring)
                 for a in has_ring
             )
-            yield ComparedRow(TRAFFIC, name, AP, values, errors, sure_factor(len(found)))
+            yield ComparedRow(
+                TRAFFIC, name, AP, values, errors=errors, factor=sure_factor(len(found))
+            )
 
 
 def _rows(scores: list[Score]) -> Iterator[ComparedRow]:
     for measure in (ENTROPY, COVERAGE):
         values = [getattr(score, measure) for score in scores]
-        yield _row(scores, "rig", "", measure, values)
+        yield _row(scores, "rig", "", measure, values=values)
     parts = {"zone": [s.per_zone for s in scores], "class": [s.per_class for s in scores]}
     for group, by_name in parts.items():
         for name in dict.fromkeys(name for part in by_name for name in part):
             for measure in (ENTROPY, COVERAGE):
                 values = [getattr(p[name], measure) if name in p else None for p in by_name]
-                yield _row(scores, group, name, measure, values)
+                yield _row(scores, group, name, measure, values=values)
     objects = [score.objects for score in scores]
     by_class = [{} if scored is None else scored.per_class for scored in objects]
     names = dict.fromkeys(name for classes in by_class for name in classes)
     if names:
         whole = [None if scored is None else scored.ap for scored in objects]
-        yield _row(scores, "rig", "", AP, whole)
+        yield _row(scores, "rig", "", AP, values=whole)
     for name in names:
         aps = [classes[name].ap if name in classes else None for classes in by_class]
-        yield _row(scores, "class", name, AP, aps)
+        yield _row(scores, "class", name, AP, values=aps)
         ahead = [classes[name].reach[AHEAD] if name in classes else None for classes in by_class]
-        yield _row(scores, "class", name, REACH, ahead)
+        yield _row(scores, "class", name, REACH, values=ahead)
 
 
 def _row(
@@ -287,7 +291,7 @@ def _row(
 ) -> ComparedRow:
     errors = difference_errors(scores, (group, name, measure))
     factor = sure_factor(len(scores), degrees_of(scores))
-    return ComparedRow(group, name, measure, tuple(values), errors, factor)
+    return ComparedRow(group, name, measure, tuple(values), errors=errors, factor=factor)
 
 
 def hardware_note(rigs: Iterable[Sequence[SensorModel]]) -> str:

@@ -24,6 +24,23 @@ from pe_tools.wording import percent
 from .advice import Advice
 from .warnings import hidden_sensors, hidden_words
 
+USUAL_CLASS = "pedestrian"  # Class of the reach unless the user chooses another
+SIDES = {"front": "ahead", "rear": "behind", "left": "left", "right": "right"}
+"""Text for each side of the vehicle."""
+BEARINGS = {"front": 0.0, "rear": math.pi, "left": math.pi / 2.0, "right": -math.pi / 2.0}
+"""Bearing of each side, counter-clockwise from straight ahead [rad]."""
+ANY_CLASS = "any"  # Name of the only class of a prior without classes
+CLASSES_NAMED = 8
+WHERE = {
+    "front": "ahead",
+    "rear": "behind",
+    "left": "on the left",
+    "right": "on the right",
+    "near": f"within {NEAR_M:g} m",
+    "mid": f"from {NEAR_M:g} to {FAR_M:g} m",
+    "far": f"beyond {FAR_M:g} m",
+}  # Text for each zone of `scoring.zones.ZONES`
+
 
 def object_words(found: ObjectScore) -> tuple[str, ...]:
     """Describe a score on objects in lines: expected AP, LiDAR points, and reach by class."""
@@ -56,7 +73,8 @@ def reach_words(own: FoundClass) -> str:
 
 def _ways(reaches: Iterable[tuple[float, bool]]) -> str:
     """Describe how far [m], and whether it may be more, ahead, behind, left and right."""
-    ways, missing = [], []
+    ways = []
+    missing = []
     for words, (metres, is_cut) in zip(SIDES.values(), reaches, strict=True):
         if sight.shown_reach(metres):
             ways.append(f"{sight.shown_reach(metres)} m{' and more' * is_cut} {words}")
@@ -65,15 +83,6 @@ def _ways(reaches: Iterable[tuple[float, bool]]) -> str:
     if not ways:
         return "nowhere ahead, behind, left or right"
     return f"up to {', '.join(ways)}{'; not ' * bool(missing)}{', '.join(missing)}"
-
-
-USUAL_CLASS = "pedestrian"  # Class of the reach unless the user chooses another
-SIDES = {"front": "ahead", "rear": "behind", "left": "left", "right": "right"}
-"""Text for each side of the vehicle."""
-BEARINGS = {"front": 0.0, "rear": math.pi, "left": math.pi / 2.0, "right": -math.pi / 2.0}
-"""Bearing of each side, counter-clockwise from straight ahead [rad]."""
-ANY_CLASS = "any"  # Name of the only class of a prior without classes
-CLASSES_NAMED = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,8 +120,12 @@ class Outlook:
 def outlook(view: sight.Sight, rig: Rig, class_name: str | None = None) -> Outlook:
     """Compute the outlook of a rig; for the class of the reach see `class_of`."""
     name = class_of(view.prior, class_name)
-    seen = view.expected_ap(rig), view.shares(rig), view.reach(rig, name)
-    return Outlook(*seen, view.blind(rig, blind_height(view)))
+    return Outlook(
+        view.expected_ap(rig),
+        view.shares(rig),
+        view.reach(rig, name),
+        view.blind(rig, blind_height(view)),
+    )
 
 
 def class_of(prior: Prior, name: str | None) -> str:
@@ -168,17 +181,6 @@ def _blind_dict(blind: sight.BlindGround) -> dict[str, Any]:
         "zone_m": dict(blind.zone),
         "seen_from_m": dict(blind.seen_from),
     }
-
-
-WHERE = {
-    "front": "ahead",
-    "rear": "behind",
-    "left": "on the left",
-    "right": "on the right",
-    "near": f"within {NEAR_M:g} m",
-    "mid": f"from {NEAR_M:g} to {FAR_M:g} m",
-    "far": f"beyond {FAR_M:g} m",
-}  # Text for each zone of `scoring.zones.ZONES`
 
 
 def rig_words(

@@ -18,6 +18,19 @@ from pe_core.scene.vehicle_description import (
 
 from .advice import Advice
 
+SUNK_M = 0.15
+FLOATS_M = 0.3
+"""Allowed depth below and height above the ground [m]: tyres may sink in a little, and a body
+without wheels is a little above the ground."""
+OFF_AXIS_M = 0.05
+OFF_MIDDLE_M = 1.0
+"""Allowed distance of the vehicle's axis from the x axis, and of its middle from x = 0 [m]: the
+origin may be at an axle, but a mirror image is on the vehicle only if the axis is y = 0."""
+WIDE_M = 3.2
+"""Greatest width of a road vehicle [m]: a lorry is 2.6 m wide, and each mirror adds 0.3 m."""
+FLOOR_M = 6.0  # A mesh wider than any vehicle and lower than this [m] may be a vehicle on a floor
+WHEELS_BELOW = 0.1  # The wheels are this far off the middle of the up axis, as a share of the side
+
 
 @dataclass(frozen=True)
 class Bodywork:
@@ -38,21 +51,12 @@ class Bodywork:
         if own_triangles is None:
             return self.vehicle
         vehicle = self.vehicle
-        parts, names = np.asarray(vehicle.parts)[own_triangles], vehicle.part_names
+        parts = np.asarray(vehicle.parts)[own_triangles]
+        names = vehicle.part_names
         glass = tuple(vehicle.glass)
-        return Vehicle(vehicle.triangles[own_triangles], parts, names, glass, vehicle.clearance)
-
-
-SUNK_M, FLOATS_M = 0.15, 0.3
-"""Allowed depth below and height above the ground [m]: tyres may sink in a little, and a body
-without wheels is a little above the ground."""
-OFF_AXIS_M, OFF_MIDDLE_M = 0.05, 1.0
-"""Allowed distance of the vehicle's axis from the x axis, and of its middle from x = 0 [m]: the
-origin may be at an axle, but a mirror image is on the vehicle only if the axis is y = 0."""
-WIDE_M = 3.2
-"""Greatest width of a road vehicle [m]: a lorry is 2.6 m wide, and each mirror adds 0.3 m."""
-FLOOR_M = 6.0  # A mesh wider than any vehicle and lower than this [m] may be a vehicle on a floor
-WHEELS_BELOW = 0.1  # The wheels are this far off the middle of the up axis, as a share of the side
+        return Vehicle(
+            vehicle.triangles[own_triangles], parts, names, glass, clearance=vehicle.clearance
+        )
 
 
 def odd_vehicle(body: Bodywork) -> Iterator[Advice]:
@@ -73,7 +77,8 @@ def _size(body: Bodywork) -> Iterator[Advice]:
     if is_usual(longest, second):
         return
     x, y, z = body.shape.size
-    unit, factor = None, car_factor(longest) if longest else 1.0
+    unit = None
+    factor = car_factor(longest) if longest else 1.0
     if longest and (fitting := fitting_units(longest, second, third)):
         unit, factor = fitting[0]
     has_floor = min(x, y) > USUAL_SECOND_M and z < FLOOR_M
@@ -106,8 +111,10 @@ def _quarter_turn(body: Bodywork) -> tuple[float, float, float]:
     """Return the turn about x and y [deg] that puts the wheels of a lying vehicle below its body.
     Without names of wheels the side that is at coordinate 0 is taken for them; without either the
     vehicle may then be on its roof."""
-    (low, high), size = body.shape.bounds, body.shape.size
-    wheels, mirrored = wheel_center(body.shape), across(body.shape)
+    low, high = body.shape.bounds
+    size = body.shape.size
+    wheels = wheel_center(body.shape)
+    mirrored = across(body.shape)
     offset = np.zeros(2)
     if wheels is not None:
         offset = (wheels[:2] - (low + high)[:2] / 2.0) / np.maximum(size[:2], 1)
@@ -150,7 +157,8 @@ def _height(body: Bodywork) -> Iterator[Advice]:
     """Check for a vehicle that is sunk into the ground or floats above it."""
     bottom = float(body.shape.bounds[0][2])
     if not -SUNK_M <= bottom <= FLOATS_M:
-        values, amount = {"bottom": bottom}, (0.0, 0.0, -bottom)
+        values = {"bottom": bottom}
+        amount = (0.0, 0.0, -bottom)
         yield Advice(None, "height", values, fix="move_vehicle", amount=amount)
 
 
@@ -165,5 +173,10 @@ def _not_centred(body: Bodywork) -> Iterator[Advice]:
 
 
 CHECKS: tuple[Callable[[Bodywork], Iterator[Advice]], ...] = (
-    *(_wide, _stands, _on_its_roof, _faces, _height, _not_centred),
+    _wide,
+    _stands,
+    _on_its_roof,
+    _faces,
+    _height,
+    _not_centred,
 )

@@ -18,6 +18,10 @@ from .advice import Advice
 from .mount_checks import SensorAtBody, odd_mounting, odd_place, odd_together
 from .vehicle_checks import Bodywork, odd_vehicle
 
+MOSTLY = 0.5
+"""A sensor is mostly hidden if the vehicle blocks more than this share of its beams or picture."""
+NOTHING_THERE = "no object is expected where it looks"
+
 
 def warnings(
     rig: Iterable[Sensor],
@@ -64,7 +68,8 @@ def condition_warnings(table: ConditionTable | None) -> tuple[Advice, ...]:
 
 def curve_warnings(study: Study) -> tuple[Advice, ...]:
     """Return warnings where AP is not the paper's: range terms of curves."""
-    found, model = [], study.model
+    found = []
+    model = study.model
     ranged = [f"[ap.{kind}]" for kind, curve in model.curves.items() if curve.c]
     ranged += [f"[ap.objects.{k}.{n}]" for k, own in model.objects.items() for n in own if own[n].c]
     ranged += [f"that of {s.name!r}" for s in study.rig if s.curve and s.curve.c]
@@ -76,11 +81,6 @@ def curve_warnings(study: Study) -> tuple[Advice, ...]:
 def curve_note(studies: Iterable[Study]) -> str:
     """Return these warnings as lines, once for several studies; empty where none has one."""
     return "\n".join(dict.fromkeys(each.line for s in studies for each in curve_warnings(s)))
-
-
-MOSTLY = 0.5
-"""A sensor is mostly hidden if the vehicle blocks more than this share of its beams or picture."""
-NOTHING_THERE = "no object is expected where it looks"
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,14 +110,15 @@ def hidden_sensors(
         if part is None:
             continue
         lost = part.occluded / part.beams if part.beams else 0.0
-        dead, enclosed = part.coverage == 0.0, sensor.name in inside
+        dead = part.coverage == 0.0
+        enclosed = sensor.name in inside
         if dead or enclosed or lost > MOSTLY:
             why = [
                 *(["inside the body"] if enclosed else []),
                 *([f"{percent(lost)} of its {kind_of(sensor).occlusion_text}"] if lost else []),
             ]
             phrase = ", ".join(why) or NOTHING_THERE
-            hidden.append(HiddenSensor(sensor.name, dead, not score.stderr, lost, phrase))
+            hidden.append(HiddenSensor(sensor.name, dead, not score.stderr, lost, why=phrase))
     return tuple(sorted(hidden, key=lambda sensor: not sensor.dead))
 
 

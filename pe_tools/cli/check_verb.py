@@ -28,8 +28,19 @@ STOPPED = "stopped before"  # Why a requirement has no verdict after Ctrl-C
 ALL = "all"
 CSV = ".csv"  # Suffix of a table of verdicts; another file has JSON
 COLUMNS = (
-    *("name", "check", "met", "margin_m", "share", "worst_x", "worst_y", "worst_body"),
-    *("seen_by", "unseen_by", "breaks_without", "blind_m2", "source"),
+    "name",
+    "check",
+    "met",
+    "margin_m",
+    "share",
+    "worst_x",
+    "worst_y",
+    "worst_body",
+    "seen_by",
+    "unseen_by",
+    "breaks_without",
+    "blind_m2",
+    "source",
 )
 LONGEST = 34  # Longer names are cut in the table
 
@@ -123,8 +134,9 @@ def with_presets(study: Study, names: Sequence[str]) -> tuple[Study, dict[str, s
     unchecked: dict[str, str] = {}
     if ALL in names:
         rest = [each.requirement() for each in presets().values() if each.id not in own | {*named}]
-        around = study.rig, study.vehicle, study.reference, study.space
-        fitting, unchecked = checkable(rest, *around)
+        fitting, unchecked = checkable(
+            rest, study.rig, study.vehicle, study.reference, space=study.space
+        )
         added += fitting
     return replace(study, requirements=(*study.requirements, *added)), unchecked
 

@@ -79,14 +79,15 @@ def import_study(_: StudyFiles, args: argparse.Namespace) -> Answer:
     """Write a study of a rig from the files of another program."""
     if args.output is None:
         args.usage_error("expected -o STUDY, the study to write")
-    output, vehicle = Path(args.output), None
+    output = Path(args.output)
+    vehicle = None
     if args.mesh is not None:
         mesh = read_mesh(output.parent / args.mesh)
         vehicle = Vehicle(mesh.triangles, mesh.parts, mesh.part_names)
     require_new(output, replace=args.replace)
     reference = _reference(args.rear_axle, None, vehicle, args.format or args.file)
     models = chosen_models(args.model)
-    found = import_rig(args.file, args.format, reference, models, _pose_at(args))
+    found = import_rig(args.file, args.format, reference, models, placed=_pose_at(args))
     study = Study(found.rig, vehicle, samples=FIRST_SAMPLES, mesh=args.mesh, reference=reference)
     require_new(output, replace=args.replace)  # all inputs are read
     save_study(study, output)

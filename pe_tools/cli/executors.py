@@ -88,7 +88,8 @@ class ExecutorWorkers(LocalWorkers):
         if not isinstance(made, Executor):
             expected = "a function that returns a concurrent.futures.Executor"
             raise InputError("command line", "executor", expected, shown(type(made).__name__))
-        self.executor, self._count = made, count
+        self.executor = made
+        self._count = count
 
     def width(self) -> int:
         """Two tasks for each worker that ``--workers`` names."""
@@ -102,7 +103,9 @@ class DaskWorkers(LocalWorkers):
     threads = 1  # Threads of one score: a Dask worker runs one task in each of its threads
 
     def __init__(self, address: str) -> None:
-        self._address, self._client, self._alone = address, _client_of(address), False
+        self._address = address
+        self._client = _client_of(address)
+        self._alone = False
         self.executor = self._client.get_executor(pure=False)
 
     def width(self) -> int:

@@ -31,13 +31,16 @@ from .terminal import DONE, Answer, warned, with_error
 BEST = "*"
 NOT_BLIND = "not blind: what is 0.5 m tall is visible there"
 WIDEST = 24  # Longer names of studies are cut at the front: their ends tell them apart
+COMPARED = ("space", "prior", "model", "targets")
+"""Fields that studies must have in common for their scores to be comparable."""
 
 
 def comparison(names: Sequence[str], rows: Sequence[ComparedRow]) -> list[str]:
     """Return rows as lines with a column for each study. The best value is marked; differences
     refer to the first study."""
     heads = [name if len(name) <= WIDEST else f"...{name[3 - WIDEST :]}" for name in names]
-    table, columns = [["", *heads]], range(len(heads))
+    table = [["", *heads]]
+    columns = range(len(heads))
     for name, figure in FIGURES.items():
         own = [row for row in rows if row.measure == name]
         if own:
@@ -55,18 +58,17 @@ def _cell(row: ComparedRow, k: int) -> str:
     return f"{row.text(k)}{f' ({change})' * bool(change)}{BEST if row.best[k] else ' '}"
 
 
-COMPARED = ("space", "prior", "model", "targets")
-"""Fields that studies must have in common for their scores to be comparable."""
-
-
 def explain(source: StudyFiles, args: argparse.Namespace) -> Answer:
     """Describe a study's score and warnings; with ``--at``, query one location instead."""
     study = source.study(args)
-    at, with_body = args.at, args.body is not None
+    at = args.at
+    with_body = args.body is not None
     if at is not None and not (len(at) in (2, 3 - with_body) and all(map(math.isfinite, at))):
         expected = f"X Y{'' if with_body else ', perhaps Z'}: numbers of metres"
         raise InputError("command line", "--at", expected, " ".join(f"{v:g}" for v in at))
-    nowhere, turned, of_class = at is None, args.heading is not None, args.class_name is not None
+    nowhere = at is None
+    turned = args.heading is not None
+    of_class = args.class_name is not None
     sampled = any(change.path == ("samples",) for change in read_changes(args.set))
     for option, is_idle, expected, found in (
         ("--suggest", args.suggest and with_body, "--at X Y, a place to mend", "--body"),
@@ -84,10 +86,12 @@ def explain(source: StudyFiles, args: argparse.Namespace) -> Answer:
         print_vehicle(study)
         return _answer({"body": body.to_dict()}, list(body.text), args.json)
     if at is not None:
-        parts = (study.rig, study.space, study.prior, study.vehicle, at, study.model)
-        place = advice.ask_place(*parts)
+        place = advice.ask_place(
+            study.rig, study.space, study.prior, study.vehicle, point=at, model=study.model
+        )
         print_vehicle(study)
-        told, answer = list(place.text), dict[str, Any](place=place.to_dict())
+        told = list(place.text)
+        answer = dict[str, Any](place=place.to_dict())
         if args.suggest:
             suggested = suggested_for(SuggestJob(study, spot=(at[0], at[1])))
             answer["suggestions"] = [each.to_dict() for own in suggested.values() for each in own]
@@ -127,7 +131,8 @@ def compare(source: StudyFiles, args: argparse.Namespace) -> Answer:
     outcomes = {name: scored(study, args.workers) for name, study in studies.items()}
     scores = {name: outcome.after for name, outcome in outcomes.items()}
     figures = {n: each.key_figures(outcomes[n].figures_after) for n, each in studies.items()}
-    rows, figure_rows = advice.compare(scores), advice.compare_figures(figures)
+    rows = advice.compare(scores)
+    figure_rows = advice.compare_figures(figures)
     first, *others = (study.vehicle for study in studies.values())
     alike = all(_same_body(first, other) for other in others)
     data = {
@@ -156,7 +161,8 @@ def _beside(studies: Mapping[str, Study], key: str | None) -> dict[str, Study]:
     """Return the first study with a known rig instead of its own, by name; nothing without one."""
     if key is None:
         return {}
-    known, first = catalog.known_rig(key), next(iter(studies.values()))
+    known = catalog.known_rig(key)
+    first = next(iter(studies.values()))
     name = key if key not in studies else f"known rig {key}"
     return {name: first.with_other_rig(catalog.rig_on(known, first.vehicle))}
 

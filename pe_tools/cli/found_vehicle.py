@@ -73,7 +73,7 @@ def find_vehicle(args: argparse.Namespace, asked: Mapping[str, Any]) -> FoundVeh
     full = path.parent.resolve() / path.name
     with suppress(ValueError):  # on another drive
         full = Path(os.path.relpath(full, Path(args.output).parent.resolve()))
-    return FoundVehicle(full.as_posix(), vehicle, mesh.axes, scale, unit)
+    return FoundVehicle(full.as_posix(), vehicle, mesh.axes, scale, unit=unit)
 
 
 def read_in_metres(

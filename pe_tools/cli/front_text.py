@@ -56,7 +56,8 @@ def _placed(design: jobs.Design, margin: str) -> Iterator[str]:
     mounts = mounts_table(design.study.rig, design.study.search.mounting)
     for sensor in design.study.rig:
         mount = mounts.get(sensor.name, {})
-        slot, pose = mount.get("slot"), sensor.pose
+        slot = mount.get("slot")
+        pose = sensor.pose
         where = f"{mount['mount']}, {slot}" if slot else _where(pose.position, pose.rotation_deg)
         yield f"{margin}{sensor.name}: {sensor.model.name}; {where}"
 

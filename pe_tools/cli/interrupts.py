@@ -20,7 +20,8 @@ class Interrupted(KeyboardInterrupt):
 
     def __init__(self, signum: int = signal.SIGINT, note: str = "") -> None:
         super().__init__()
-        self.signum, self.note = signum, note
+        self.signum = signum
+        self.note = note
 
 
 @contextmanager
@@ -85,7 +86,8 @@ def stop_at_first(stop: Callable[[], object]) -> Iterator[Received]:
     received = Received()
 
     def handler(signum: int, _frame: object) -> None:
-        is_first, received.signum = received.signum is None, received.signum or signum
+        is_first = received.signum is None
+        received.signum = received.signum or signum
         if not (stop() or is_first):
             raise Interrupted(signum)
 

@@ -26,7 +26,8 @@ from .terminal import DONE, Answer, tell
 
 MODEL = "Pandar64"
 TEMPLATE = Path(__file__).with_name("first_study.toml.j2")
-CAMERA, CAMERA_ABOVE_M = "Camera 60 deg", 0.1
+CAMERA = "Camera 60 deg"
+CAMERA_ABOVE_M = 0.1
 """Model of the camera that is proposed as a comment, and its height above the roof."""
 OF_MODEL = f"sensor.{MOUNT}.model"
 """Key of the sensor's model for ``--set``."""
@@ -64,7 +65,8 @@ def new_of_mesh(args: argparse.Namespace) -> Answer:
         write_mesh(area_path, Mesh(faces, np.zeros(len(faces), np.int32), (MOUNT,)))
         written.append(area_path)
     write_bytes(output, study_text(first).encode())
-    study, file = first.study(), shlex.quote(str(output))
+    study = first.study()
+    file = shlex.quote(str(output))
     for each in warnings((), study.vehicle, study.space, study.prior):
         tell(f"warning: {each.line}")  # sunk into the ground, far from the origin, odd sizes
     lines = [f"wrote {path}" for path in written]
@@ -99,8 +101,11 @@ def study_text(first: FirstStudy) -> str:
     """Return the study file's text: keys with comments, in the order a newcomer asks."""
     from jinja2 import Environment, StrictUndefined  # other verbs start without it
 
-    study, sensor, roof = first.study(), first.roof.sensor, find_roof(first.found.vehicle)
-    axes, top = study.axes, sensor.pose.position[2] + 0.1
+    study = first.study()
+    sensor = first.roof.sensor
+    roof = find_roof(first.found.vehicle)
+    axes = study.axes
+    top = sensor.pose.position[2] + 0.1
     named = axes.up is not None and axes.forward is not None
     environment = Environment(trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined)
     text: str = environment.from_string(TEMPLATE.read_text("utf-8")).render(

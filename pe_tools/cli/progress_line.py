@@ -10,18 +10,23 @@ from .terminal import is_terminal, show
 
 REPORT_EVERY_S = {True: 0.2, False: 5.0}
 """How often progress is shown: on a terminal, where it overwrites itself, and in a log."""
-ESTIMATE_AFTER_S, LONG_S = 3.0, 20.0
+ESTIMATE_AFTER_S = 3.0
+LONG_S = 20.0
 """How long a stage runs before its time is estimated; more time left than that is told."""
-BAR_WIDTH, CLEAR = 24, "\r\x1b[K"
+BAR_WIDTH = 24
+CLEAR = "\r\x1b[K"
 
 
 class Reporter:
     """Reports the progress of a job. After an error of the stream it says no more."""
 
     def __init__(self, stream: TextIO | None) -> None:
-        self._stream, self._on_terminal = stream, is_terminal(stream)
+        self._stream = stream
+        self._on_terminal = is_terminal(stream)
         self._pause_s = REPORT_EVERY_S[self._on_terminal]
-        self._reported, self._stage, self._began = 0.0, "", 0.0
+        self._reported = 0.0
+        self._stage = ""
+        self._began = 0.0
         self._first: tuple[float, float] | None = None
         """Time and fraction of the stage at its first progress: what is prepared before counts as
         none."""
@@ -29,14 +34,19 @@ class Reporter:
 
     def report(self, progress: Progress) -> None:
         """Show the progress for a new stage, or if the last report is old enough."""
-        now, new_stage = time.monotonic(), progress.stage != self._stage
+        now = time.monotonic()
+        new_stage = progress.stage != self._stage
         if new_stage:
-            self._stage, self._began, self._first, self._told = progress.stage, now, None, False
+            self._stage = progress.stage
+            self._began = now
+            self._first = None
+            self._told = False
         if self._first is None and progress.fraction > 0.0:
             self._first = now, progress.fraction
         left_s: float | None = None  # as long as the stage's progress does not show it
         if self._first is not None and progress.fraction > self._first[1]:
-            passed_s, done = now - self._first[0], progress.fraction - self._first[1]
+            passed_s = now - self._first[0]
+            done = progress.fraction - self._first[1]
             left_s = passed_s * (1.0 - progress.fraction) / done
             if not self._told and passed_s >= ESTIMATE_AFTER_S:
                 self._told = True
@@ -46,7 +56,8 @@ class Reporter:
         if now - self._reported < self._pause_s and not new_stage:
             return
         self._reported = now
-        value, done = progress.value_text, min(max(progress.fraction, 0.0), 1.0)
+        value = progress.value_text
+        done = min(max(progress.fraction, 0.0), 1.0)
         if not self._on_terminal:
             self._write(f"{progress.stage} {done:4.0%}{'  ' if value else ''}{value}\n")
             return

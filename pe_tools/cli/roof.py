@@ -20,9 +20,11 @@ MOUNT = "roof"
 ROOF = ("roof",)
 NO_ROOF = ("rack", "rail", "bar", "box", "light", "sign", "hatch", "lin", "head", "pod", "antenna")
 """Beginnings of words in the names of parts: roofs, and parts on or under a roof that are none."""
-COLUMNS, STEP_M = 100, 0.05
+COLUMNS = 100
+STEP_M = 0.05
 """Columns of the height map along the vehicle, at least; the greatest side of one [m]."""
-ROOF_PERCENTILE, LEVEL_SHARE = 90.0, 0.06
+ROOF_PERCENTILE = 90.0
+LEVEL_SHARE = 0.06
 """The roof's level is that of the highest tenth of the plan view; the roof is within this share of
 the vehicle's height of it."""
 NEAR_SHARE = 0.1  # Radius of the middle of the roof, as a share of the vehicle's length
@@ -113,7 +115,9 @@ def roof_sensor(vehicle: Vehicle, sensor: Sensor, housing: Housing | None, file:
     for mount in _mounts(vehicle, roof, file):
         for place in roof.places[:MAX_PLACES]:
             for standoff in STANDOFFS_M:
-                found = _placed(vehicle, sensor, housing, replace(mount, standoff=standoff), place)
+                found = _placed(
+                    vehicle, sensor, housing, replace(mount, standoff=standoff), place=place
+                )
                 if found is not None:
                     return found
     below = 0.0 if housing is None else housing.optical_center[2]

@@ -22,6 +22,8 @@ from .interrupts import Interrupted, stop_at_first
 from .progress_line import Reporter
 from .terminal import BAD_INPUT, DONE, Answer, one_line, printable, show, summary, tell
 
+Data = dict[str, Any]
+
 
 def written(write: Callable[[Path], object], folder: Path) -> bool:
     """Write to a folder; return whether that worked. If not, what goes wrong is printed."""
@@ -56,7 +58,6 @@ def save_text(path: Path | None, text: str) -> int:
     return DONE
 
 
-Data = dict[str, Any]
 Found = jobs.Outcome | jobs.TradeOff
 Runs = jobs.ScoreJob | jobs.OptimizeJob | jobs.FrontJob
 
@@ -93,7 +94,8 @@ def run_study(study: Study, host: Host, args: argparse.Namespace) -> Answer:
     folder of ``--output``; with ``--resume`` a search or a front goes on in that folder.
     `InputError`, before the work, where a search has nowhere to keep its result, or a folder cannot
     take the results, or holds the search of another study."""
-    searches, folder = args.kind == "optimize", args.output
+    searches = args.kind == "optimize"
+    folder = args.output
     if searches and not (folder or args.resume or args.json):
         expected = "-o DIR, a folder for what the search finds, or --json"
         raise InputError("command line", "output", expected, "neither")
@@ -118,7 +120,7 @@ def run_study(study: Study, host: Host, args: argparse.Namespace) -> Answer:
             refuse_input(Path(folder) / name)
         jobs.prepare_folder(folder, [*own, *added])
     output = None if folder is None else Path(folder)
-    return _carried_out(job, output, args, host.versions, more)
+    return _carried_out(job, output, args, host.versions, more=more)
 
 
 def _carried_out(
@@ -141,9 +143,10 @@ def _carried_out(
             note = "no score was complete, so nothing was written"
             raise Interrupted(received.signum or signal.SIGINT, note)
         if output is None:
-            status, data = DONE, _data_of(found, host)
+            status = DONE
+            data = _data_of(found, host)
         else:
-            status, data = keep(found, output, host, more, args.command_line)
+            status, data = keep(found, output, host, more, command=args.command_line)
         text = front_summary(found) if isinstance(found, jobs.TradeOff) else summary(found)
         return dump_json(data) if args.json else text, status or received.status(DONE)
 
@@ -164,7 +167,8 @@ def drive(job: jobs.Job, output: Path | None = None, host: dict[str, str] | None
     """Run a job to its end, with progress on stderr; return its `result`: None if it was stopped
     before its first score. Checkpoints of a search or a front are saved in `output`: as they are
     due, and when an exception ends it."""
-    reporter, told = Reporter(sys.stderr), False
+    reporter = Reporter(sys.stderr)
+    told = False
     checkpoint = None if output is None else jobs.checkpoint_of(job, host)
     try:
         for progress in job:
@@ -196,7 +200,8 @@ def keep(
     command: str = "",
 ) -> tuple[int, Data]:
     """Write the results to a folder; return the exit status and the content of the JSON file."""
-    data, names = _data_of(found, host), [name for each in more for name in each.names]
+    data = _data_of(found, host)
+    names = [name for each in more for name in each.names]
 
     def write(folder: Path) -> None:
         nonlocal data

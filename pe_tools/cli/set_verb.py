@@ -17,7 +17,8 @@ from ..sweep import KeyChange, TomlPath, named_study, read_changes, set_value
 from .study_source import StudyFiles
 from .terminal import DONE, Answer
 
-ARRAY, BEFORE = "[[", re.compile(r"""\s*(?:"[^"]*"|'[^']*'|[^"'=])*=\s*""")
+ARRAY = "[["
+BEFORE = re.compile(r"""\s*(?:"[^"]*"|'[^']*'|[^"'=])*=\s*""")
 """Begin of the header of an array's table, and what stands before a value."""
 
 
@@ -70,11 +71,13 @@ def _statements(lines: Sequence[str]) -> Iterator[_Statement]:
     table: TomlPath = ()
     start = 0
     while start < len(lines):
-        line, end = lines[start].lstrip(), start + 1
+        line = lines[start].lstrip()
+        end = start + 1
         while (data := _loaded("".join(lines[start:end]))) is None and end < len(lines):
             end += 1  # a value of several lines
         if line.startswith("["):
-            table, keys = (), _keys(data)
+            table = ()
+            keys = _keys(data)
             for number, key in enumerate(keys, 1):
                 table = (*table, key)
                 if number == len(keys) and line.startswith(ARRAY):

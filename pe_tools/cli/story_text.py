@@ -67,5 +67,6 @@ def _row(driven: DriveBy, body: SeenBody, chances: Sequence[float]) -> list[str]
     ]
     margin = "-" if body.margin_s is None else f"{body.shown_margin_s:+.1f} s"
     met = "met" if body.is_met else "NOT MET"
-    lost, stop = f"{shown_end(body.lost_s):.1f} s", f"{shown_end(driven.story.stop_m):.1f} m"
+    lost = f"{shown_end(body.lost_s):.1f} s"
+    stop = f"{shown_end(driven.story.stop_m):.1f} m"
     return [met, driven.story.name, body.name, *texts, lost, margin, stop]

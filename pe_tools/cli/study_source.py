@@ -18,10 +18,16 @@ from ..sweep import KeyChange, changed_study, read_changes
 from .run_job import More
 from .terminal import tell
 
-NONE, ONE, PERHAPS, SOME, FILE, FILES = "", "one", "perhaps", "some", "file", "files"
+NONE = ""
+ONE = "one"
+PERHAPS = "perhaps"
+SOME = "some"
+FILE = "file"
+FILES = "files"
 """What a verb takes: nothing; a study of the source, one that may be missing, or several; a study
 file, or several, whatever the source is."""
-OF_STUDY, OF_REQUIREMENT = "study", "requirement "
+OF_STUDY = "study"
+OF_REQUIREMENT = "requirement "
 """Source of an error that names no file, and the beginning of another."""
 VEHICLE = "vehicle"
 OF_MESH = ("mesh", "axes", "faces", "mesh_notes")

@@ -64,13 +64,16 @@ class _SweepVerb:
     def __init__(
         self, runs: Sequence[SweepRun], kind: str, folder: Path, writes_table: bool
     ) -> None:
-        self._writes_table, self._kind, self._folder = writes_table, kind, folder
+        self._writes_table = writes_table
+        self._kind = kind
+        self._folder = folder
         self.failed_to_write = False
         self.rows: dict[str, SweepRow] = {}
         for run in runs:
             known = table.row_of_result(run, folder / run.name, kind)
             self.rows[run.name] = known or SweepRow(run, self._unfinished(run))
-        self._reporter, self._on_terminal = Reporter(sys.stderr), is_terminal(sys.stderr)
+        self._reporter = Reporter(sys.stderr)
+        self._on_terminal = is_terminal(sys.stderr)
         self.data: dict[str, Any] = {}
         self._write_table()
 
@@ -91,7 +94,8 @@ class _SweepVerb:
     def run(self, args: argparse.Namespace) -> Received:
         """Run all runs that are not done; return the signal that stopped them. Until the workers
         are there, the first signal ends the sweep."""
-        left, begun = [n for n, row in self.rows.items() if row.status != DONE], self.count(BEGUN)
+        left = [name for name, row in self.rows.items() if row.status != DONE]
+        begun = self.count(BEGUN)
         if self.count(DONE) or begun:
             going_on = f"; searches that go on: {begun}" if begun else ""
             tell(f"{self.done} runs are done already{going_on}")
@@ -117,7 +121,7 @@ class _SweepVerb:
                         self._reporter.report(jobs.Progress("sweeping", share))
                     return received.signum is None
 
-                run_all(left, make_task, place, self._take, goes_on)
+                run_all(left, make_task, place, self._take, should_continue=goes_on)
             return received
         finally:
             self._reporter.clear()

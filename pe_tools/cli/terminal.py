@@ -22,7 +22,11 @@ from ..advice import (
 from ..jobs import Outcome, condition_lines, sureness_lines
 from ..wording import margin_text, percent
 
-DONE, BAD_INPUT, USAGE, NOT_MET, INTERRUPTED = 0, 1, 2, 3, 130
+DONE = 0
+BAD_INPUT = 1
+USAGE = 2
+NOT_MET = 3
+INTERRUPTED = 130
 EXIT_STATUSES = {
     DONE: "done",
     BAD_INPUT: "bad input, or a result that could not be written",
@@ -106,7 +110,8 @@ def summary(outcome: Outcome) -> str:
     """Return an outcome in a few lines for readers."""
     score = outcome.after
     if outcome.kind == "score":
-        first, seen = with_error(score.entropy, score.stderr), percent(score.coverage, 1)
+        first = with_error(score.entropy, score.stderr)
+        seen = percent(score.coverage, 1)
         lines = [f"entropy   {first}", *figure_lines(outcome), f"coverage  {seen}"]
         lines += built_lines(outcome.figures[:1]) if outcome.figures else []
     else:
@@ -143,7 +148,8 @@ def summary(outcome: Outcome) -> str:
 
 def _before_and_after(outcome: Outcome) -> Iterator[str]:
     """Yield what a search began and ended with, also under mounting errors and failures."""
-    before, after = outcome.before, outcome.after
+    before = outcome.before
+    after = outcome.after
     ends = f"{before.entropy:.3f} -> {after.entropy:.3f} nats"
     entropy = f"entropy   {ends} ({outcome.change_text})"
     beside = figure_lines(outcome)
@@ -154,7 +160,8 @@ def _before_and_after(outcome: Outcome) -> Iterator[str]:
     yield from built_lines(outcome.figures) if outcome.figures else ()
     yield from filter(None, (outcome.gain, outcome.cost))
     if (found := outcome.robustness) is not None:
-        one, other = found.before, found.after
+        one = found.before
+        other = found.after
         off = off_by(found.errors.position, found.errors.angle)
         yield f"{off} (1 sigma)  {one.rise:+.3f} -> {other.rise:+.3f} nats on average"
         if one.loss is not None and other.loss is not None:
@@ -164,13 +171,15 @@ def _before_and_after(outcome: Outcome) -> Iterator[str]:
 def figure_lines(outcome: Outcome) -> list[str]:
     """Return the dashboard of a rig, or of start and result: what is beside its entropy."""
     first = outcome.kind == "score"
-    told, ends = (outcome.figures or ())[first:], (outcome.before, outcome.after)[first:]
+    told = (outcome.figures or ())[first:]
+    ends = (outcome.before, outcome.after)[first:]
     over = [f"{w:.3f}" for each in told if (w := each.over_frames) is not None]
     lines = [f"entropy over frames  {' -> '.join(over)} nats"] if over else []
     plain: list[str] = []
     for row in outcome.dashboard:
         if row.figure.is_seen or (row.figure.key != REQUIREMENTS and row.wanted is not None):
-            figure, values = row.figure, [row.figure.value(each) for each in told]
+            figure = row.figure
+            values = [row.figure.value(each) for each in told]
             if figure.key == ENTROPY:
                 values = [each.entropy for each in ends]
             elif figure.key == AP:

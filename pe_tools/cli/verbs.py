@@ -30,7 +30,11 @@ from .terminal import EXIT_STATUSES, Answer, open_missing_streams, tell
 from .where_verb import where
 
 VerbFunction = Callable[[StudyFiles, argparse.Namespace], Answer]
-BEGIN, SCORE, PLACE, SHOW, MORE = "begin", "score", "place", "show", "more"
+BEGIN = "begin"
+SCORE = "score"
+PLACE = "place"
+SHOW = "show"
+MORE = "more"
 """Groups of verbs in the help; verbs of plugins are in the last one."""
 COMMON = "set samples condition"
 SEARCH = "evaluations seed method"
@@ -152,90 +156,104 @@ VERBS = (
         BEGIN,
         "write a first study of a vehicle's mesh, or of a known rig",
         NONE,
-        "mesh_file rig placement set_found study_file replace",
-        new,
+        options="mesh_file rig placement set_found study_file replace",
+        function=new,
     ),
-    Verb("set", BEGIN, "change keys of a study file; its comments stay", FILE, "changes", set_keys),
+    Verb(
+        "set",
+        BEGIN,
+        "change keys of a study file; its comments stay",
+        FILE,
+        options="changes",
+        function=set_keys,
+    ),
     Verb(
         "import",
         BEGIN,
         "make a study of another program's rig",
         NONE,
-        "foreign_file from models origin mesh rear_axle study_file replace",
-        import_study,
+        options="foreign_file from models origin mesh rear_axle study_file replace",
+        function=import_study,
     ),
     Verb(
         "sensors",
         BEGIN,
         "list the catalogue, or show one sensor",
         NONE,
-        "sensor_name curves",
-        show_sensors,
+        options="sensor_name curves",
+        function=show_sensors,
     ),
-    Verb("score", SCORE, "score a study's rig", ONE, f"{COMMON} workers folder json", _job),
+    Verb(
+        "score",
+        SCORE,
+        "score a study's rig",
+        ONE,
+        options=f"{COMMON} workers folder json",
+        function=_job,
+    ),
     Verb(
         "explain",
         SCORE,
         "a study's score in words, or one place of it",
         ONE,
-        f"at body heading suggest class {COMMON} workers json",
-        explain,
+        options=f"at body heading suggest class {COMMON} workers json",
+        function=explain,
     ),
     Verb(
         "check",
         SCORE,
         "hold a study to its requirements; 3: some are not met",
         PERHAPS,
-        "preset stories list suggest set file json replace",
-        check,
+        options="preset stories list suggest set file json replace",
+        function=check,
     ),
     Verb(
         "compare",
         SCORE,
         "score several studies and put them side by side",
         SOME,
-        f"beside {COMMON} workers json",
-        compare,
+        options=f"beside {COMMON} workers json",
+        function=compare,
     ),
     Verb(
         "where",
         PLACE,
         "score one more sensor all over the vehicle's surface",
         ONE,
-        "model of_part|mount figure places set workers file json replace",
-        _where,
+        options="model of_part|mount figure places set workers file json replace",
+        function=_where,
     ),
     Verb(
         "optimize",
         PLACE,
         "search for a better placement",
         PERHAPS,
-        f"{COMMON} {SEARCH} start snap workers executor folder|resume no_review json",
-        _job,
+        options=f"{COMMON} {SEARCH} start snap workers executor folder|resume no_review json",
+        function=_job,
     ),
     Verb(
         "sweep",
         PLACE,
         "run many studies, or one with many changes",
         FILES,
-        "try samples condition evaluations seed method optimize part workers executor "
+        options="try samples condition evaluations seed method optimize part workers executor "
         "required_folder json",
-        sweep,
+        function=sweep,
     ),
     Verb(
         "review",
         SHOW,
         "write an HTML page that shows a rig and what its sensors see",
         SOME,
-        f"title author date revision {COMMON} workers required_folder replace",
-        _review,
+        options=f"title author date revision {COMMON} workers required_folder replace",
+        function=_review,
     ),
     Verb(
         "export",
         SHOW,
         "write a rig or scene for another program, or a copy",
         ONE,
-        "to range origin rear_axle set path into replace",
-        export,
+        options="to range origin rear_axle set path into replace",
+        function=export,
     ),
 )

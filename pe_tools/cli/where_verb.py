@@ -46,7 +46,8 @@ def where(study: Study, args: argparse.Namespace) -> Answer:
 
 def place_lines(found: PlaceMap) -> list[str]:
     """Return the best places as a table, with what is forbidden and how sure the figures are."""
-    row, name = found.row, found.row.figure.name
+    row = found.row
+    name = found.row.figure.name
     rows = [["position [m]", "yaw [deg]", name, "change"]]
     for place in found.best(BEST, APART_M):
         value = place.value or 0.0

@@ -35,7 +35,8 @@ from .messages import (
     unpacked,
 )
 
-FOLLOWS_MOUSE, BEHIND = "mouse", "behind"
+FOLLOWS_MOUSE = "mouse"
+BEHIND = "behind"
 """Lanes: one that never waits for what takes long, and one for all else."""
 END_S = 1.0
 """A process that has not ended by itself after this time is killed; one that begins, at once."""
@@ -79,7 +80,8 @@ class _SharedObjects:
     """The objects that the engine has, by number; of each type those that were used last."""
 
     def __init__(self, most: Mapping[type, int]) -> None:
-        self._most, self._last = most, 0
+        self._most = most
+        self._last = 0
         self._known: dict[type, dict[int, _Sent]] = {kind: {} for kind in most}
 
     def call(self, each: _Awaited) -> tuple[bytes, dict[int, PackedObject]]:
@@ -95,7 +97,8 @@ class _SharedObjects:
             if sent is None:
                 self._last += 1
                 sent = _Sent(self._last, part, {})
-                own, arrays = sent.inside, list[PickleBuffer]()
+                own = sent.inside
+                arrays = list[PickleBuffer]()
                 data = packed(part, lambda inner: number_of(inner, own, part), arrays)
                 new[sent.number] = PackedObject(data, arrays)
             known[id(part)] = sent
@@ -133,7 +136,9 @@ class EngineProcess:
         setup: Callable[[], EngineCall] = lambda: (tuple, ()),
         packages: Sequence[str] = (),
     ) -> None:
-        self._shared_types, self._setup, self._packages = shared, setup, packages
+        self._shared_types = shared
+        self._setup = setup
+        self._packages = packages
         self._set_up: EngineCall | None = None
         self._process: Any = None
         self._answers: Any = None
@@ -141,7 +146,8 @@ class EngineProcess:
         self._awaited: dict[str, list[_Awaited]] = {}
         self._come: list[tuple[int, str, str, bytes]] = []
         """Number, topic, kind and content of answers that are not delivered yet."""
-        self._number, self._is_up = 0, False
+        self._number = 0
+        self._is_up = False
         self._shared = _SharedObjects({})
 
     def ask(
@@ -160,7 +166,7 @@ class EngineProcess:
         same: it is the latest there is. `fail` takes what the function raised. A function that
         returns an iterator is a job: `step` takes what it yields, `deliver` what it returns."""
         self._number += 1
-        each = _Awaited(self._number, lane, (function, arguments), deliver, fail, step)
+        each = _Awaited(self._number, lane, (function, arguments), deliver, fail=fail, step=step)
         self._awaited.setdefault(topic, []).append(each)
         self._send_request(topic, each)
 
@@ -233,7 +239,8 @@ class EngineProcess:
         try:
             content = unpacked(data, each.shared.__getitem__)
         except Exception as error:  # too little memory for it
-            kind, content = FAILED, error
+            kind = FAILED
+            content = error
         if kind == STEP:
             if each.step is not None:
                 each.step(content)
@@ -277,7 +284,7 @@ class EngineProcess:
             del self._awaited[topic]  # of what was asked before nothing is wanted any more
             each.fail(error)
             return
-        self._send(Request(each.number, topic, each.lane, call, new))
+        self._send(Request(each.number, topic, each.lane, call, shared=new))
         if numbers := self._shared.forgotten():
             self._send((FORGET, numbers))
 
@@ -293,7 +300,8 @@ class EngineProcess:
 
     def _start(self) -> None:
         context = multiprocessing.get_context("spawn")
-        self._shared, self._set_up = _SharedObjects(self._shared_types()), None
+        self._shared = _SharedObjects(self._shared_types())
+        self._set_up = None
         self._is_up = False
         own = [(name, sys.modules[name].__path__[0]) for name in self._packages]
         module = f"{__package__}.server"

@@ -14,8 +14,13 @@ from pickle import PickleBuffer
 from struct import pack
 from typing import Any, NamedTuple
 
-STEP, DONE, FAILED = "step", "done", "failed"  # Answers: what a job yields, a result, and an error
-CANCEL, FORGET, SET_UP = "cancel", "forget", "set up"
+# Answers: what a job yields, a result, and an error
+STEP = "step"
+DONE = "done"
+FAILED = "failed"
+CANCEL = "cancel"
+FORGET = "forget"
+SET_UP = "set up"
 """Besides requests: end a topic's job at its next step; forget objects by their numbers; call a
 function before later requests are taken."""
 
@@ -115,7 +120,8 @@ def packed(
     arrays: list[PickleBuffer] | None = None,
 ) -> bytes:
     """Pickle content; objects with a number are referred to by it, arrays put into a list."""
-    file, aside = io.BytesIO(), None if arrays is None else arrays.append
+    file = io.BytesIO()
+    aside = None if arrays is None else arrays.append
     pickler = _Packer(file, pickle.HIGHEST_PROTOCOL, buffer_callback=aside)
     pickler.persistent_id = number_of  # type: ignore[method-assign]
     pickler.dump(content)

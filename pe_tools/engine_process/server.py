@@ -48,7 +48,8 @@ class _Lane(threading.Thread):
 
     def __init__(self, send: Callable[[_RunningRequest, str, Any], None]) -> None:
         super().__init__(daemon=True)
-        self._send, self._changed = send, threading.Condition()
+        self._send = send
+        self._changed = threading.Condition()
         self._waiting: dict[str, _RunningRequest] = {}
         self._running: _RunningRequest | None = None
 
@@ -120,7 +121,7 @@ class _Server:
                     traceback.print_exc()
 
     def _begin(self, request: Request) -> None:
-        call = _RunningRequest(request.number, request.topic, tuple, (), {})
+        call = _RunningRequest(request.number, request.topic, tuple, arguments=(), numbers={})
         try:
             for number, (data, arrays) in request.shared.items():
                 own = self._inside[number] = {}
@@ -147,7 +148,8 @@ class _Server:
         try:
             data = packed(content, lambda part: call.numbers.get(id(part)))
         except Exception as error:  # an error or a result that cannot be pickled
-            kind, data = FAILED, packed(RuntimeError(f"{content!r}: {error}"), lambda _: None)
+            kind = FAILED
+            data = packed(RuntimeError(f"{content!r}: {error}"), lambda _: None)
         header = pickle.dumps((call.number, call.topic, kind))
         try:
             with self._sending:

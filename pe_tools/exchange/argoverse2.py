@@ -28,9 +28,12 @@ MAX_ROWS = 100_000  # Columns of the null type have rows without a byte
 MAX_FILE_BYTES = 100_000
 """Maximum size of a file: what is compressed may be a thousand times as large."""
 FILES = POSES, INTRINSICS = "egovehicle_SE3_sensor.feather", "intrinsics.feather"
-TITLE, NAME = "Argoverse 2", "sensor_name"
-TURN, SHIFT = ("qw", "qx", "qy", "qz"), ("tx_m", "ty_m", "tz_m")
-LENS, BENT = ("fx_px", "fy_px", "cx_px", "cy_px"), ("k1", "k2", "k3")
+TITLE = "Argoverse 2"
+NAME = "sensor_name"
+TURN = ("qw", "qx", "qy", "qz")
+SHIFT = ("tx_m", "ty_m", "tz_m")
+LENS = ("fx_px", "fy_px", "cx_px", "cy_px")
+BENT = ("k1", "k2", "k3")
 SIZE = ("height_px", "width_px")
 CONVENTIONS = {
     "frame": "middle of the rear axle at its height; x forward, y left, z up; metres",
@@ -46,7 +49,8 @@ def write(sensors: PortableRig, _into: MergeTarget | None) -> Export:
     poses: list[Sequence[Any]] = []
     intrinsics: list[Sequence[Any]] = []
     for sensor in sensors:
-        rotation, p = sensor.pose.ground_from_sensor, sensor.picture
+        rotation = sensor.pose.ground_from_sensor
+        p = sensor.picture
         if sensor.kind == CAMERA:
             rotation = product(rotation, BODY_FROM_OPTICAL)
         poses.append((sensor.name, *quaternion(rotation), *sensor.pose.position))
@@ -79,7 +83,9 @@ def _rows(path: Path) -> list[Table]:
 def _sensor(path: Path, row: Table, cameras: Mapping[str, Table]) -> PortableSensor:
     name = row.text(NAME)
     rotation_values = vector(path, row.field("qw"), [row.number(key) for key in TURN], 4)
-    position = vector(path, row.field("tx_m"), [row.number(key) for key in SHIFT], 3, METRES)
+    position = vector(
+        path, row.field("tx_m"), [row.number(key) for key in SHIFT], count=3, rule=METRES
+    )
     rotation = from_quaternion(path, row.field("qw"), rotation_values)
     if name not in cameras:
         return PortableSensor(name, pose_of(rotation, position), LIDAR)
@@ -90,7 +96,7 @@ def _sensor(path: Path, row: Table, cameras: Mapping[str, Table]) -> PortableSen
     picture = Picture(Pinhole(fx, fy, cx, cy), size)
     note = NO_BEND if any(intrinsics.number(key, 0.0, COEFFICIENT) for key in BENT) else ""
     pose = pose_of(product(rotation, BODY_FROM_OPTICAL.T), position)
-    return PortableSensor(name, pose, CAMERA, None, picture, told=note)
+    return PortableSensor(name, pose, CAMERA, model=None, picture=picture, told=note)
 
 
 def _arrow() -> tuple[Any, Any]:

@@ -38,14 +38,17 @@ from .portable import ORIGIN, ForeignRig, MergeTarget, PortableRig, PortableSens
 from .portable_kinds import CAMERA, LIDAR, RADAR
 from .sensor_names import said_kind
 
-BASE, KIT = "base_link", "sensor_kit_base_link"
-TO_KIT, IN_KIT = "sensors_calibration.yaml", "sensor_kit_calibration.yaml"
+BASE = "base_link"
+KIT = "sensor_kit_base_link"
+TO_KIT = "sensors_calibration.yaml"
+IN_KIT = "sensor_kit_calibration.yaml"
 FRAMES = {CAMERA: "/camera_link", LIDAR: "_base_link", RADAR: "/radar_link"}
 """Suffixes of frame names, by kind."""
 HEAD = "# Metres and radians; R = Rz(yaw) Ry(pitch) Rx(roll); x forward, y left, z up.\n"
 NO_INFO = "the kit has no camera_info of it; its lens is not written"
 ODD_INFO = "its camera_info has a lens that is not read; it is kept"
-BODY_AXES, OPTICAL_AXES = "x forward", "z forward"
+BODY_AXES = "x forward"
+OPTICAL_AXES = "z forward"
 """Comments of a camera's frame whose name and roll would say the other."""
 AT_FRAME = "no model is known: its frame is taken as the centre of its scan"
 
@@ -78,7 +81,8 @@ def _units(folder: Path) -> tuple[dict[str, Unit], list[str]]:
     if IN_KIT in file_names or not names:
         names.insert(0, IN_KIT)
     base = _unit(*_head(folder / TO_KIT, (BASE,)))
-    units, strays = {TO_KIT: base}, {}
+    units = {TO_KIT: base}
+    strays = {}
     for name in names:
         try:
             head = _head(folder / name, base.frames)
@@ -275,7 +279,8 @@ def _updated(
     by_frame = {_frame_of(sensor): sensor for sensor in named}
     base = units[TO_KIT].frames
     added = [sensor for sensor in named if sensor.entry is None]
-    files, left = {}, added
+    files = {}
+    left = added
     for file, unit in units.items():
         pose = ORIGIN if file == TO_KIT else base[unit.parent]
         new_lines: list[str] = []
@@ -296,7 +301,8 @@ def _patched(
     comments: dict[KeyPath, str] = {}
     old_comments = _comments(unit)
     for frame in unit.frames.keys() & by_frame.keys():
-        sensor, old = by_frame[frame], unit.frames[frame]
+        sensor = by_frame[frame]
+        old = unit.frames[frame]
         text, axes = old_comments.get(frame, ("", ""))
         optical = sensor.kind == CAMERA and _is_optical_here(frame, composed(pose, old), axes)
         on_vehicle = optical_of_body(sensor.pose) if optical else _base_frame(sensor)
@@ -318,7 +324,8 @@ def _patched(
 def _new_text(sensor: PortableSensor, text: str, *, is_moved: bool) -> str:
     """Return the comment of a frame of a kit with its model, if the comment has one. A LiDAR that
     moved gets one: the frame is at the base of this model's housing."""
-    old, new = _model_in(text), sensor.known_model or ""
+    old = _model_in(text)
+    new = sensor.known_model or ""
     if not old:
         is_placed_by_model = is_moved and bool(_height(sensor))
         return "; ".join(filter(None, [new, text])) if is_placed_by_model else text
@@ -335,7 +342,8 @@ def _infos(
     """Return the camera_info files, and messages on cameras that have none. A file is rewritten
     only when the lens has changed, and created only for an added camera."""
     files = dict(texts)
-    fresh, lines = info_files(named), []
+    fresh = info_files(named)
+    lines = []
     for sensor in named:
         name = info_name(sensor.name)
         if sensor.kind != CAMERA or sensor.picture is None:
@@ -361,4 +369,4 @@ def read_vehicle_info(path: str | Path) -> Reference:
     keys = ("wheel_radius", "wheel_base", "front_overhang", "rear_overhang")
     radius, base, front, rear = foreign.named_numbers(nodes.table("ros__parameters"), keys)
     middle = (rear + base + front) / 2.0
-    return Reference(rear - middle, radius, base, front, rear)
+    return Reference(rear - middle, radius, base, front, rear_overhang=rear)

@@ -20,7 +20,9 @@ from .portable import PortableRig, PortableSensor
 from .portable_kinds import CAMERA, camera_of
 
 FOLDER = "camera_info"
-PLUMB_BOB, RATIONAL, EQUIDISTANT = "plumb_bob", "rational_polynomial", "equidistant"
+PLUMB_BOB = "plumb_bob"
+RATIONAL = "rational_polynomial"
+EQUIDISTANT = "equidistant"
 FEWEST = {PLUMB_BOB: (4, 5), RATIONAL: (8,), EQUIDISTANT: (4,)}
 """Allowed numbers of coefficients by distortion model. Further coefficients must be 0."""
 LENSES: dict[str, type[Lens]] = {
@@ -46,8 +48,10 @@ def info_files(sensors: Iterable[PortableSensor]) -> dict[str, str]:
 
 
 def _text(name: str, picture: Picture, size: tuple[int, int]) -> str:
-    lens, (width, height) = picture.lens, size
-    model, bent = EQUIDISTANT, [float(getattr(lens, key)) for key in lens.coefficients]
+    lens = picture.lens
+    width, height = size
+    model = EQUIDISTANT
+    bent = [float(getattr(lens, key)) for key in lens.coefficients]
     if not isinstance(lens, KannalaBrandt):
         model = RATIONAL if any(bent[5:]) else PLUMB_BOB
         bent = bent if model == RATIONAL else (bent or [0.0] * 5)[:5]
@@ -63,7 +67,8 @@ def _text(name: str, picture: Picture, size: tuple[int, int]) -> str:
 
 
 def _matrix(key: str, rows: int, data: Sequence[float]) -> list[str]:
-    texts, cols = ", ".join(map(values.plain_number, data)), len(data) // rows
+    texts = ", ".join(map(values.plain_number, data))
+    cols = len(data) // rows
     return [f"{key}:", f"  rows: {rows}", f"  cols: {cols}", f"  data: [{texts}]"]
 
 
@@ -105,15 +110,19 @@ def picture_of_info(source: str, text: str) -> Picture:
     if model not in LENSES:
         raise top.error("distortion_model", one_of(LENSES, model), shown(model))
     bent = _data(top.table("distortion_coefficients"), FEWEST.get(model, (4,)))
-    intrinsics = k[0], k[4], k[2], k[5]
+    fx = k[0]
+    fy = k[4]
+    cx = k[2]
+    cy = k[5]
     if not any(bent) and LENSES[model] is BrownConrady:
-        return Picture(Pinhole(*intrinsics), size)
-    return Picture(LENSES[model](*intrinsics, None, *bent), size)
+        return Picture(Pinhole(fx, fy, cx, cy), size)
+    return Picture(LENSES[model](fx, fy, cx, cy, None, *bent), size)
 
 
 def _data(table: Table, lengths: Sequence[int]) -> list[float]:
     """Return the finite numbers of a matrix; beyond the greatest length there may be zeros."""
-    value, most = table.raw("data"), max(lengths)
+    value = table.raw("data")
+    most = max(lengths)
     found = numbers(value) if isinstance(value, list) else None
     data = [] if found is None or not np.isfinite(found).all() else found.ravel().tolist()
     if len(data) not in lengths and (len(data) < most or any(data[most:])):

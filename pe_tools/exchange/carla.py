@@ -51,16 +51,25 @@ SPECTATOR_NAMES = ("rgb_view", "spectator")
 FRAMES_A_SECOND = 10
 TINY_DEG = 1e-6
 SCAN_KEYS = (
-    *("channels", "upper_fov", "lower_fov", "range", "points_per_second", "rotation_frequency"),
+    "channels",
+    "upper_fov",
+    "lower_fov",
+    "range",
+    "points_per_second",
+    "rotation_frequency",
 )
 FOV = Number(0.0, 180.0, above=True, below=True, unit="degrees", noun="angle")
 UP = Number(-90.0, 90.0, unit="degrees", noun="angle")
 AROUND = Number(0.0, 360.0, above=True, unit="degrees", noun="angle")
-RATE, TURNS = Number(0.0, above=True, cap=1e12), Number(1e-3, cap=1e6)
+RATE = Number(0.0, above=True, cap=1e12)
+TURNS = Number(1e-3, cap=1e6)
 """Points per second, and rotations per second."""
-SPAWN, LISTS = "spawn_point", ("sensors", "objects")
-ACROSS, UPWARDS = "horizontal_fov", "vertical_fov"
-RADAR_FOV_DEG, RADAR_RANGE_M = 30.0, 100.0
+SPAWN = "spawn_point"
+LISTS = ("sensors", "objects")
+ACROSS = "horizontal_fov"
+UPWARDS = "vertical_fov"
+RADAR_FOV_DEG = 30.0
+RADAR_RANGE_M = 100.0
 """CARLA's defaults of a radar: both angles, and the range (sensors reference)."""
 FIGURES = ("image_size_x", "image_size_y", "fov", *SCAN_KEYS, ACROSS, UPWARDS)
 
@@ -141,7 +150,8 @@ def _sensor(path: Path, row: Table) -> PortableSensor:
     if SPAWN not in row:  # a pseudo sensor: CARLA's own view of the world
         return PortableSensor(row.text("id"), ORIGIN, "pseudo", entry=row.data)
     spawn = row.table(SPAWN)
-    position, angles = values.named_numbers(spawn, XYZ), [spawn.number(key, 0.0) for key in RPY]
+    position = values.named_numbers(spawn, XYZ)
+    angles = [spawn.number(key, 0.0) for key in RPY]
     pose = values.pose_from(path, row.field(SPAWN), position, angles, degrees=True)
     kind = _kind(type_name.removeprefix("sensor."), row.text("id"))
     sensor = PortableSensor(row.text("id"), pose, kind, entry=row.data)
@@ -178,4 +188,6 @@ def _scan(row: Table) -> Scan:
         raise row.error("lower_fov", "an angle up to upper_fov", f"{math.degrees(low):g}")
     azimuths = max(round(beams / channels), 1)
     half = math.radians(row.number(ACROSS, 360.0, rule=AROUND)) / 2.0
-    return Scan(channels, low, high, azimuths, (-half, half), row.number("range", rule=RANGE))
+    return Scan(
+        channels, low, high, azimuths, fov=(-half, half), max_range=row.number("range", rule=RANGE)
+    )

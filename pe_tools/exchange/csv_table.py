@@ -23,7 +23,8 @@ from .merging import Row, merge_rows
 from .portable import ForeignRig, MergeTarget, PortableRig, PortableSensor
 
 FILE = "rig.csv"
-POSITION_KEYS, ROTATION_KEYS = ("x_m", "y_m", "z_m"), ("roll_deg", "pitch_deg", "yaw_deg")
+POSITION_KEYS = ("x_m", "y_m", "z_m")
+ROTATION_KEYS = ("roll_deg", "pitch_deg", "yaw_deg")
 FIGURES = ("width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px")
 LENS = (*FIGURES, "lens", "coefficients", "fov_deg")
 RANGES = {"min_range_m": values.MIN_RANGE, "max_range_m": values.FARTHEST}
@@ -73,7 +74,8 @@ def write(sensors: PortableRig, into: MergeTarget | None) -> Export:
 def _row(sensor: PortableSensor) -> dict[str, str]:
     """Return the cells of a sensor by column; those of the lens are empty without one."""
     numbers = (*sensor.pose.position, *sensor.pose.rotation_deg)
-    lens_cells, picture = [""] * len(LENS), sensor.picture
+    lens_cells = [""] * len(LENS)
+    picture = sensor.picture
     if picture is not None and picture.size is not None:
         lens = picture.lens
         figures = [plain_number(v) for v in (lens.fx, lens.fy, lens.cx, lens.cy)]
@@ -98,7 +100,7 @@ def read(path: Path) -> ForeignRig:
     """Read a table of sensors. Only the columns of name, position and angles are required."""
     text = values.text_of(path)
     numbered = [(n, line) for n, line in enumerate(text.splitlines(), 1) if not _is_empty(line)]
-    values.require_at_most(path, "file", len(numbered), values.MAX_FRAMES, "rows")
+    values.require_at_most(path, "file", len(numbered), values.MAX_FRAMES, noun="rows")
     separator, lines = separated(numbered)
     rows = csv.DictReader((line for _, line in lines), restkey=SURPLUS, delimiter=separator)
     try:
@@ -142,10 +144,21 @@ def _sensor(path: Path, place: str, row: Mapping[str, Any]) -> PortableSensor:
         number(key, rule) if cells.get(key) else None for key, rule in RANGES.items()
     )
     picture = _picture(path, place, cells, number) if all(map(cells.get, FIGURES)) else None
-    properties = kind, model, picture, None, fusion, nearest, farthest
     parameters = cells.get(PARAMETERS) or ""
     name = cells["name"]
-    return PortableSensor(name, pose, *properties, parameters=parameters, entry=cells)
+    return PortableSensor(
+        name=name,
+        pose=pose,
+        kind=kind,
+        model=model,
+        picture=picture,
+        scan=None,
+        fusion=fusion,
+        min_range=nearest,
+        max_range=farthest,
+        parameters=parameters,
+        entry=cells,
+    )
 
 
 def _picture(
@@ -156,7 +169,8 @@ def _picture(
     width, height = (values.whole_figure(path, *each) for each in size)
     fx, fy, cx, cy = map(number, FIGURES[2:])
     lens = LENSES[choice(path, f"{place}, lens", cells.get("lens") or "pinhole", LENSES)]
-    field, words = f"{place}, coefficients", (cells.get("coefficients") or "").split()
+    field = f"{place}, coefficients"
+    words = (cells.get("coefficients") or "").split()
     if len(words) > len(lens.coefficients):
         expected = f"at most {len(lens.coefficients)} of a {lens.model} lens"
         raise InputError(path, field, expected, len(words))

@@ -22,12 +22,32 @@ from .portable import ORIGIN, ForeignRig, MergeTarget, PortableRig, PortableSens
 from .portable_kinds import CAMERA, LIDAR
 
 FILE = "rig.json"
-POSE_KEY, ROTATION_KEY, POSITION_KEY = "nominalSensor2Rig_FLU", "roll-pitch-yaw", "t"
-TURN_CORRECTION, SHIFT_CORRECTION = "correction_sensor_R_FLU", "correction_rig_T"
+POSE_KEY = "nominalSensor2Rig_FLU"
+ROTATION_KEY = "roll-pitch-yaw"
+POSITION_KEY = "t"
+TURN_CORRECTION = "correction_sensor_R_FLU"
+SHIFT_CORRECTION = "correction_rig_T"
 PROTOCOLS = {CAMERA: "camera.gmsl", LIDAR: "lidar.virtual"}
 """Protocols to write, by kind. When reading, the word before the dot is the kind."""
 UNKNOWN = ("", "virtual")  # Protocols from which the kind of a sensor does not follow
 FIGURES = ("properties", "parameter")
+PINHOLE = "pinhole"
+F_THETA = "ftheta"
+FOCAL_KEYS = ("fx", "fy")
+MIDDLE = ("cx", "cy")
+SIZE = ("width", "height")
+DISTORTION = "distortion"
+RADIAL = ("k1", "k2", "k3")
+POLYNOMIALS = ("polynomial", "bw-poly")
+FORWARD = "angle-to-pixeldistance"
+BACKWARD = "pixeldistance-to-angle"
+MAX_POWER = 6  # Maximum number of coefficients of a polynomial, the constant included
+PLACES = 2000  # Number of radii at which the inverse of a polynomial is fitted
+NOTICED_PX = 0.1
+TURNED = "its polynomial from pixels to angles is turned round to within {:.1f} px"
+GENTLEST = 1e-9  # Minimum linear coefficient [rad/px or px/rad]; a smaller one describes no lens
+GENTLE = 1.0
+"""A polynomial without a stated direction maps pixels to angles if its slope is below this."""
 
 
 def write(sensors: PortableRig, into: MergeTarget | None) -> Export:
@@ -74,14 +94,15 @@ def _corrected(path: Path, row: Table, nominal: Pose) -> Pose:
     """Return a nominal pose with the corrections of the calibration applied. The rotation is in the
     sensor's axes, the translation in the rig's axes: R = R_nominal R_correction, t = t_nominal +
     t_correction."""
-    shift, turn = row.raw(SHIFT_CORRECTION, None), row.raw(TURN_CORRECTION, None)
+    shift = row.raw(SHIFT_CORRECTION, None)
+    turn = row.raw(TURN_CORRECTION, None)
     if shift is None and turn is None:
         return nominal
     angles = [0.0, 0.0, 0.0] if turn is None else row.table(TURN_CORRECTION).raw(ROTATION_KEY)
     field = row.field(TURN_CORRECTION)
     correction = pose_from(path, field, (0.0, 0.0, 0.0), angles, degrees=True)
     moved = (0.0, 0.0, 0.0) if shift is None else shift
-    offset = vector(path, row.field(SHIFT_CORRECTION), moved, 3, METRES)
+    offset = vector(path, row.field(SHIFT_CORRECTION), moved, count=3, rule=METRES)
     return shifted(composed(nominal, correction), offset)
 
 
@@ -90,28 +111,21 @@ def _sensor(path: Path, row: Table) -> PortableSensor:
     if POSE_KEY not in row:
         return PortableSensor(row.text("name"), ORIGIN, protocol or "other", entry=row.data)
     pose = row.table(POSE_KEY)
-    position, angles = pose.raw(POSITION_KEY), pose.raw(ROTATION_KEY)
+    position = pose.raw(POSITION_KEY)
+    angles = pose.raw(ROTATION_KEY)
     kind = None if protocol in UNKNOWN else protocol
     _, _, model = row.text("parameter", "").partition("model=")
     placed = _corrected(path, row, pose_from(path, pose.path, position, angles, degrees=True))
     picture, note = read_properties(row.table("properties")) if kind == CAMERA else (None, "")
-    attributes = row.text("name"), placed, kind, model.split(",")[0] or None
-    return PortableSensor(*attributes, picture, told=note, entry=row.data)
-
-
-PINHOLE, F_THETA = "pinhole", "ftheta"
-FOCAL_KEYS, MIDDLE, SIZE = ("fx", "fy"), ("cx", "cy"), ("width", "height")
-DISTORTION = "distortion"
-RADIAL = ("k1", "k2", "k3")
-POLYNOMIALS = ("polynomial", "bw-poly")
-FORWARD, BACKWARD = "angle-to-pixeldistance", "pixeldistance-to-angle"
-MAX_POWER = 6  # Maximum number of coefficients of a polynomial, the constant included
-PLACES = 2000  # Number of radii at which the inverse of a polynomial is fitted
-NOTICED_PX = 0.1
-TURNED = "its polynomial from pixels to angles is turned round to within {:.1f} px"
-GENTLEST = 1e-9  # Minimum linear coefficient [rad/px or px/rad]; a smaller one describes no lens
-GENTLE = 1.0
-"""A polynomial without a stated direction maps pixels to angles if its slope is below this."""
+    return PortableSensor(
+        row.text("name"),
+        placed,
+        kind,
+        model.split(",")[0] or None,
+        picture=picture,
+        told=note,
+        entry=row.data,
+    )
 
 
 def write_properties(picture: Picture) -> dict[str, str]:
@@ -158,7 +172,8 @@ def read_properties(properties: Table) -> tuple[Picture | None, str]:
             value = number(name) if name in properties else default
             if abs(value - default) > 0.01:  # one polynomial serves both axes
                 raise properties.error(name, f"{default:g}, within 0.01", f"{value:g}")
-        note, forward = "", coefficients
+        note = ""
+        forward = coefficients
         direction = properties.text("polynomial-type", "", choices=("", FORWARD, BACKWARD))
         if not direction and key == POLYNOMIALS[0] and coefficients[1] >= GENTLE:
             direction = FORWARD
@@ -172,7 +187,7 @@ def read_properties(properties: Table) -> tuple[Picture | None, str]:
     k1, k2, k3 = _distortion(properties)
     if not any((k1, k2, k3)):
         return Picture(Pinhole(fx, fy, cx, cy), (width, height)), ""
-    lens = BrownConrady(fx, fy, cx, cy, None, k1=k1, k2=k2, k3=k3)
+    lens = BrownConrady(fx, fy, cx, cy, fov=None, k1=k1, k2=k2, k3=k3)
     return Picture(lens, (width, height)), ""
 
 
@@ -194,7 +209,7 @@ def _rising(properties: Table, key: str) -> list[float]:
     if not isinstance(value, str) or not 2 <= len(value.split()) <= MAX_POWER + 1:
         raise properties.error(key, expected, shown(value))
     coefficients = values.figures(
-        properties.source, properties.field(key), value, None, values.COEFFICIENT
+        properties.source, properties.field(key), value, count=None, rule=values.COEFFICIENT
     )
     if coefficients[0] != 0.0 or coefficients[1] < GENTLEST:
         raise properties.error(key, expected, shown(value))
@@ -208,7 +223,8 @@ def _turned_round(coefficients: list[float], max_radius: float) -> tuple[list[fl
     theta = np.polyval(coefficients[::-1], radius)
     is_rising = np.diff(theta, prepend=0.0) > 0.0
     count = len(radius) if is_rising.all() else int(np.argmin(is_rising))
-    theta, radius = theta[:count], radius[:count]
+    theta = theta[:count]
+    radius = radius[:count]
     scale = theta[-1] if count else 1.0
     powers = np.stack([(theta / scale) ** n for n in range(1, MAX_POWER + 1)], axis=1)
     solution = np.linalg.lstsq(powers, radius, rcond=None)[0]

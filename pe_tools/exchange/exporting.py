@@ -50,7 +50,7 @@ def rig_files(
     """
     row = rig_format(name)
     read = None if into is None else _read_target(Path(into), row)
-    return _rig_files(rig, row, reference, read, placed)
+    return _rig_files(rig, row, reference, read, placed=placed)
 
 
 def _rig_files(
@@ -179,7 +179,8 @@ def export_rig(
     """
     row = rig_format(name)
     output = Path(output)
-    read, damaged_lines = None, []
+    read = None
+    damaged_lines = []
     if into is not None:
         read = _read_target(Path(into), row)
     elif replace and row.merges and _is_there(row, output):
@@ -187,7 +188,7 @@ def export_rig(
             read = _read_target(output, row)
         except InputError as error:
             damaged_lines = [f"replaced as a whole, as it cannot be read: {error}"]
-    files, lines = _rig_files(rig, row, reference, read, placed)
+    files, lines = _rig_files(rig, row, reference, read, placed=placed)
     paths = write_files(files, output, inside=row.is_folder, replace=replace)
     return paths, [*damaged_lines, *lines]
 

@@ -23,6 +23,24 @@ from pe_core.sensors.lidar.model import STEPS as STEPS
 
 Written = Mapping[str, bytes]  # Bytes by file name
 Export = tuple[Written, list[str]]  # Files, and messages on what they cannot hold
+# Keys of a pose in most formats
+XYZ = ("x", "y", "z")
+RPY = ("roll", "pitch", "yaw")
+PRINCIPAL_POINT = PLACE
+QUARTER = math.pi / 2.0
+ELEVATION = Number(-QUARTER, QUARTER, unit="rad", noun="angle")
+AZIMUTH = Number(-4.0 * math.pi, 4.0 * math.pi, unit="rad", noun="angle")
+CHANNELS = Whole(1, 10_000, "channels")
+PLAIN = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
+"""Syntax of a number in a file. Python's float() also accepts 1_0 and non-ASCII digits."""
+MAX_LENGTH = 400
+"""Maximum characters of a number; a float written in full has up to 325 digits after the point."""
+MAX_FRAMES = 10_000
+"""Maximum frames of a file: URDF links, ROS transforms, frames of a kit, rows of a table."""
+MAX_SENSORS = 1_000  # Maximum sensors of an imported rig
+MAX_BEAMS = 1_000_000  # Maximum beams that a file lists one by one; they take some 70 MB of text
+BEAM_BYTES = 256 << 20  # Maximum size of a file that lists beams
+MAX_LINE_LENGTH = 10_000  # Maximum characters of a line that is parsed
 
 
 def text_of(path: Path, max_bytes: int = TEXT_BYTES) -> str:
@@ -58,15 +76,12 @@ def pose_from(
 ) -> Pose:
     """Return the pose of a position [m] and of roll, pitch, yaw, in radians unless `degrees`. A
     value that is missing, not finite or out of range raises `InputError`."""
-    x, y, z = vector(source, f"{field} position", position, 3, METRES)
+    x, y, z = vector(source, f"{field} position", position, count=3, rule=METRES)
     rule = ROTATION_DEG if degrees else ROTATION
-    roll, pitch, yaw = vector(source, f"{field} rotation", angles, 3, rule)
+    roll, pitch, yaw = vector(source, f"{field} rotation", angles, count=3, rule=rule)
     if degrees:
         return Pose.from_degrees((x, y, z), (roll, pitch, yaw))
     return Pose((x, y, z), (roll, pitch, yaw))
-
-
-XYZ, RPY = ("x", "y", "z"), ("roll", "pitch", "yaw")  # Keys of a pose in most formats
 
 
 def pose_numbers(pose: Pose, *, degrees: bool = False) -> dict[str, float]:
@@ -78,17 +93,6 @@ def pose_numbers(pose: Pose, *, degrees: bool = False) -> dict[str, float]:
 def named_numbers(table: Table, keys: Sequence[str]) -> tuple[float, ...]:
     """Return the finite numbers of a table at some keys, in the order of the keys."""
     return tuple(table.number(key, rule=FINITE) for key in keys)
-
-
-PRINCIPAL_POINT = PLACE
-QUARTER = math.pi / 2.0
-ELEVATION = Number(-QUARTER, QUARTER, unit="rad", noun="angle")
-AZIMUTH = Number(-4.0 * math.pi, 4.0 * math.pi, unit="rad", noun="angle")
-CHANNELS = Whole(1, 10_000, "channels")
-PLAIN = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
-"""Syntax of a number in a file. Python's float() also accepts 1_0 and non-ASCII digits."""
-MAX_LENGTH = 400
-"""Maximum characters of a number; a float written in full has up to 325 digits after the point."""
 
 
 def figure(source: object, field: str, value: Any, rule: Number = FINITE) -> float:
@@ -145,14 +149,6 @@ class Figures:
         """Return the numbers of several keys; None if one of them is absent."""
         values = [self.number(key, rule) for key in keys]
         return None if None in values else [value for value in values if value is not None]
-
-
-MAX_FRAMES = 10_000
-"""Maximum frames of a file: URDF links, ROS transforms, frames of a kit, rows of a table."""
-MAX_SENSORS = 1_000  # Maximum sensors of an imported rig
-MAX_BEAMS = 1_000_000  # Maximum beams that a file lists one by one; they take some 70 MB of text
-BEAM_BYTES = 256 << 20  # Maximum size of a file that lists beams
-MAX_LINE_LENGTH = 10_000  # Maximum characters of a line that is parsed
 
 
 def require_at_most(source: object, field: str, count: int, most: int, noun: str) -> None:

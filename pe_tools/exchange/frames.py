@@ -34,7 +34,9 @@ OPTICAL_RPY = (-math.pi / 2.0, 0.0, -math.pi / 2.0)
 BODY_FROM_RIGHT_FORWARD = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 """A LiDAR's frame with x right, y forward, z up (nuScenes), in the sensor frame."""
 
-GROUND, REAR_AXLE_GROUND, REAR_AXLE = "ground", "rear axle on the ground", "rear axle"
+GROUND = "ground"
+REAR_AXLE_GROUND = "rear axle on the ground"
+REAR_AXLE = "rear axle"
 """Origins: of the ground frame; the middle of the rear axle on the ground; the middle itself."""
 ASKING = "calibration"  # Source of messages on poses that a program hands over
 OPTICAL = "_optical"  # Suffix of the name of a camera's optical frame
@@ -52,6 +54,12 @@ AXES = (
 )
 """Comment in new files of ROS, after the name of the root."""
 Hung = Mapping[str, tuple[str, Pose]]  # Parent frame and pose in the parent frame, by frame name
+TURNED = (
+    "a frame of this name, or whose y axis points up or down, is optical: z is taken as forward"
+)
+TURNED_APART = "its optical frame looks elsewhere than its link, by {:.3g} deg; it is followed"
+NOT_TURNED = "its optical frame is turned as its own frame: x is taken as forward"
+APART = math.radians(1.0)  # Optical axes nearer than this to the x axis of the link are along it
 
 
 def product(a: Floats, b: Floats) -> Floats:
@@ -77,8 +85,12 @@ def quaternion(rotation: Floats) -> Quaternion:
     )
     largest = max(range(4), key=lambda k: squares[k])
     twice = math.sqrt(squares[largest])
-    a, b, c = m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]
-    d, e, f = m[1][0] + m[0][1], m[0][2] + m[2][0], m[2][1] + m[1][2]
+    a = m[2][1] - m[1][2]
+    b = m[0][2] - m[2][0]
+    c = m[1][0] - m[0][1]
+    d = m[1][0] + m[0][1]
+    e = m[0][2] + m[2][0]
+    f = m[2][1] + m[1][2]
     rows = ((0.0, a, b, c), (a, 0.0, d, e), (b, d, 0.0, f), (c, e, f, 0.0))
     halves = [value / (2.0 * twice) for value in rows[largest]]
     halves[largest] = twice / 2.0
@@ -128,14 +140,6 @@ def is_optical(name: str, pose: Pose) -> bool:
 def body_of_optical(pose: Pose) -> Pose:
     """Return the pose of a camera, which looks along x, from that of its optical frame."""
     return pose_of(product(pose.ground_from_sensor, BODY_FROM_OPTICAL.T), pose.position)
-
-
-TURNED = (
-    "a frame of this name, or whose y axis points up or down, is optical: z is taken as forward"
-)
-TURNED_APART = "its optical frame looks elsewhere than its link, by {:.3g} deg; it is followed"
-NOT_TURNED = "its optical frame is turned as its own frame: x is taken as forward"
-APART = math.radians(1.0)  # Optical axes nearer than this to the x axis of the link are along it
 
 
 def with_body_axes(sensor: PortableSensor, frame: str = "") -> PortableSensor:
@@ -226,7 +230,7 @@ def pose_from_quaternion(
     the sensor's axes are a camera's optical ones: z forward, x right, y down. `inverse`: whether
     both are given in the other direction: from the parent to the sensor. `within`: pose of the
     parent; by default the parent is the ground frame."""
-    position: Sequence[float] = vector(ASKING, "translation", translation, 3, METRES)
+    position: Sequence[float] = vector(ASKING, "translation", translation, count=3, rule=METRES)
     matrix = from_quaternion(ASKING, "rotation", vector(ASKING, "rotation", rotation, 4))
     if inverse:
         matrix = matrix.T
@@ -242,7 +246,7 @@ def poses_from_root(path: Path, hung: Hung, frames: Collection[str], noun: str) 
     equal depth are in the order of `hung`. Each pose is computed once, from that of its parent, so
     the time is linear in the number of frames. `noun` is the word for a frame in this format. More
     than `MAX_FRAMES`, not exactly one root or a cycle raise `InputError`."""
-    require_at_most(path, noun, len(frames), MAX_FRAMES, f"{noun}s")
+    require_at_most(path, noun, len(frames), MAX_FRAMES, noun=f"{noun}s")
     roots = [name for name in frames if name not in hung]
     if len(roots) != 1:
         found = "none: they go in a circle" if not roots else ", ".join(roots)
@@ -251,7 +255,8 @@ def poses_from_root(path: Path, hung: Hung, frames: Collection[str], noun: str) 
     children: dict[str, list[str]] = {}
     for name, (parent, _) in hung.items():
         children.setdefault(parent, []).append(name)
-    poses, level = {roots[0]: ORIGIN}, roots
+    poses = {roots[0]: ORIGIN}
+    level = roots
     while level := [child for name in level for child in children.get(name, ())]:
         level.sort(key=order.__getitem__)
         for name in level:
@@ -283,7 +288,9 @@ def with_legal_frames(
     that is in the file already keeps its name. `frames` returns the names of all frames of a
     sensor, `taken` are names in use. No name may have the suffix `not_ending`, which marks another
     sort of frame. For `slashes` see `legal_frame`."""
-    used, renamed, lines = set(taken), [], []
+    used = set(taken)
+    renamed = []
+    lines = []
     used.update(frame for s in sensors if s.entry is not None for frame in frames(s))
     for sensor in sensors:
         if sensor.entry is not None:
@@ -292,9 +299,11 @@ def with_legal_frames(
         legal = legal_frame(sensor.name, slashes=slashes)
         if not_ending and legal.endswith(not_ending):
             legal += "_sensor"
-        named, number = replace(sensor, name=legal), 2
+        named = replace(sensor, name=legal)
+        number = 2
         while used & set(frames(named)):
-            named, number = replace(sensor, name=f"{legal}_{number}"), number + 1
+            named = replace(sensor, name=f"{legal}_{number}")
+            number = number + 1
         used |= set(frames(named))
         renamed.append(named)
         if named.name != sensor.name:

@@ -15,8 +15,10 @@ from .portable import Scan
 
 BENT = ("k1", "k2", "k3", "p1", "p2")
 INTRINSICS = ("fx", "fy", "cx", "cy")
-ENDS, CENTER = ("min_angle", "max_angle"), "camera/distortion/center"
-NEAR_M, FAR_M = 0.01, 1000.0
+ENDS = ("min_angle", "max_angle")
+CENTER = "camera/distortion/center"
+NEAR_M = 0.01
+FAR_M = 1000.0
 """Clip distances [m] written when a camera has only a minimum or only a maximum range."""
 WIDEST = Number(0.0, 2.0 * math.pi, above=True, unit="rad", noun="angle")
 """Field of view of a camera in Gazebo, fisheyes included."""
@@ -28,7 +30,8 @@ def write_picture(element: Element, picture: Picture, size: Size) -> None:
     across = 2.0 * math.atan(width / (2.0 * picture.fx))
     SubElement(element, "horizontal_fov").text = repr(across)
     image = SubElement(element, "image")
-    SubElement(image, "width").text, SubElement(image, "height").text = str(width), str(height)
+    SubElement(image, "width").text = str(width)
+    SubElement(image, "height").text = str(height)
     if picture.is_plain:
         return
     intrinsics_element = SubElement(SubElement(element, "lens"), "intrinsics")
@@ -65,8 +68,11 @@ def picture_in(sensor: Figures) -> Picture | None:
     principal_point = sensor.numbers(intrinsics[2:], values.PRINCIPAL_POINT)
     keys = [f"camera/distortion/{key}" for key in BENT]
     distortion = [sensor.number(key, values.COEFFICIENT) or 0.0 for key in keys]
-    text, field = sensor.get(CENTER), sensor.field(CENTER)
-    center = None if text is None else values.figures(sensor.source, field, text, 2, SHARE)
+    text = sensor.get(CENTER)
+    field = sensor.field(CENTER)
+    center = (
+        None if text is None else values.figures(sensor.source, field, text, count=2, rule=SHARE)
+    )
     if fov is None or width is None or height is None or fov >= math.pi:
         return None
     picture = picture_of_fov(fov, (width, height))
@@ -77,7 +83,7 @@ def picture_in(sensor: Figures) -> Picture | None:
     if not any(distortion):
         return Picture(Pinhole(fx, fy, cx, cy), (width, height))
     bent = dict(zip(BENT, distortion, strict=True))
-    return Picture(BrownConrady(fx, fy, cx, cy, None, **bent), (width, height))
+    return Picture(BrownConrady(fx, fy, cx, cy, fov=None, **bent), (width, height))
 
 
 def write_scan(element: Element, scan: Scan) -> None:
@@ -111,8 +117,11 @@ def scan_in(sensor: Figures) -> Scan | None:
     low, high = sensor.numbers(ends, values.ELEVATION) or (0.0, 0.0)
     for name, (min_angle, max_angle) in (("horizontal", across), ("vertical", (low, high))):
         if min_angle > max_angle:
-            expected, found = f"{ENDS[0]} up to {ENDS[1]}", f"{min_angle:g}, {max_angle:g}"
+            expected = f"{ENDS[0]} up to {ENDS[1]}"
+            found = f"{min_angle:g}, {max_angle:g}"
             raise InputError(sensor.source, sensor.field(name), expected, found)
     nearest = sensor.number("range/min", values.MIN_RANGE) or 0.0
     fov = (across[0], across[1])
-    return Scan(channels, low, high, azimuths, fov, max_range, min_range=nearest, ends=fov)
+    return Scan(
+        channels, low, high, azimuths, fov=fov, max_range=max_range, min_range=nearest, ends=fov
+    )

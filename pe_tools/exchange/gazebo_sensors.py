@@ -83,7 +83,7 @@ def read_sensors(path: Path, at: LinkBlock, poses: Mapping[str, Pose]) -> list[P
             if element is not single:
                 outer = pose_in(path, _field(name)("pose"), single.find("pose"))
             inside = frames.seen_from(frames.composed(at.pose, outer), sensor.pose)
-            entry = LinkEntry(at.link, sensor.pose, element, outer, inside)
+            entry = LinkEntry(at.link, sensor.pose, element, outer, inside=inside)
             sensors.append(replace(sensor, entry=entry))
         return sensors
     only = elements[0][0] if elements else None
@@ -101,7 +101,7 @@ def _sensor(
         return PortableSensor(name, at.pose)
     type_name = element.get("type", "")
     kind = KIND_BY_TYPE.get(type_name, type_name or None)
-    pose = _pose_of(path, _field(name)("pose"), at.pose, element, poses)
+    pose = _pose_of(path, _field(name)("pose"), at.pose, element, poses=poses)
     figures = Figures(path, lambda key: text_in(element.find(f".//{key}")), _field(name))
     picture = picture_in(figures)
     return PortableSensor(name, pose, kind, picture=picture, scan=scan_in(figures))

@@ -107,7 +107,7 @@ def read_rig(path: Path, row: RigFormat, models: Mapping[str, str]) -> ModelledR
     """Read a file and find the models of its sensors; `models` are those chosen, by name."""
     found = row.read(path)
     sensors = found.sensors
-    require_at_most(path, "sensors", len(sensors), MAX_SENSORS, "sensors")
+    require_at_most(path, "sensors", len(sensors), MAX_SENSORS, noun="sensors")
     for number, sensor in enumerate(sensors, 1):
         A_NAME.checked(path, f"name of sensor {number}", sensor.name)
     names = named_apart([sensor.name for sensor in sensors])
@@ -136,7 +136,8 @@ def _parted(
 ) -> tuple[list[PortableSensor], list[PortableSensor]]:
     """Return the sensors of known kinds, and the sensors to leave out. If the file states no kind,
     the sensor's name decides, unless a model was `chosen` for it."""
-    included, left_out = [], []
+    included = []
+    left_out = []
     for sensor in sensors:
         kind = sensor.kind or ""
         if not (kind or sensor.name in chosen or sensor.model or sensor.has_figures):
@@ -209,8 +210,10 @@ def _catalogued(sensor: PortableSensor, row: RigFormat) -> Modelled | None:
     names = {NO_WORD.sub("", name.lower()): name for name in catalog.names(sensor.kind)}
     if not normalized or normalized not in names:
         return None
-    model, line = catalog.load(names[normalized]), ""
-    ours, theirs = portable_kinds.picture_of(model), sensor.picture
+    model = catalog.load(names[normalized])
+    line = ""
+    ours = portable_kinds.picture_of(model)
+    theirs = sensor.picture
     if ours and theirs is not None and not alike(row.keeps(ours), theirs):
         note = f"{sensor.name}: its lens is not that of {model.name} in the catalogue, but the"
         model, line = portable_kinds.camera_of(sensor.name, theirs, row.usual_size)

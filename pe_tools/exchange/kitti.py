@@ -20,8 +20,10 @@ from .lens_pictures import Picture, pinhole_of
 from .portable import ForeignRig, MergeTarget, PortableRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
 
-FILE, MAX_CAMERAS = "calib.txt", 4
-RECTIFIED, TO_CAMERA = ("R0_rect", "R_rect"), ("Tr_velo_to_cam", "Tr_velo_cam", "Tr")
+FILE = "calib.txt"
+MAX_CAMERAS = 4
+RECTIFIED = ("R0_rect", "R_rect")
+TO_CAMERA = ("Tr_velo_to_cam", "Tr_velo_cam", "Tr")
 ODOMETRY = "Tr"
 """Key of the transform to the rectified first camera; odometry files have no R_rect beside it."""
 KEY = re.compile(r"\s*([^\s:]*):?(.*)$")
@@ -96,7 +98,9 @@ def read(path: Path) -> ForeignRig:
         offset = [a - b for a, b in zip(position, shift, strict=True)]
         pose = pose_of(product(rotation.T, BODY_FROM_OPTICAL.T), turned(rotation.T, offset))
         name = f"camera_{key[1:]}"
-        sensors.append(PortableSensor(name, pose, CAMERA, None, Picture(lens), told=note))
+        sensors.append(
+            PortableSensor(name, pose, CAMERA, model=None, picture=Picture(lens), told=note)
+        )
     return ForeignRig(tuple(sensors))
 
 
@@ -105,7 +109,7 @@ def _rows(path: Path) -> dict[str, list[float]]:
     for number, line in enumerate(text_of(path).splitlines()):
         key, values = KEY.match(line).groups()  # type: ignore[union-attr]
         if key and values.strip() and key != "calib_time":
-            rows[key] = figures(path, f"line {number + 1}, {key}", values, None, ENTRY)
+            rows[key] = figures(path, f"line {number + 1}, {key}", values, count=None, rule=ENTRY)
     return rows
 
 

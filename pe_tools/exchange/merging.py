@@ -24,6 +24,10 @@ UNTURNED = 4e-6
 0.0001 degrees. The second number is a difference of rotation matrices."""
 FIGURES_ALIKE = 1e-6
 """Figures of a model that differ by less are the same: .blend files hold single precision."""
+Row = dict[str, Any]
+SENSORS = frozenset(["gnss", "gps", "imu", "ins", "collision", "sonar", "lane_invasion"])
+NOUNS = frozenset({RADAR, ULTRASONIC, "link", FRAME}) | (NO_SENSOR_WORDS - SENSORS)
+"""Kinds that are nouns; of others one says sensor."""
 
 
 def merged(
@@ -83,9 +87,6 @@ def _alike(a: Any, b: Any) -> bool:
     return bool(a == b)
 
 
-Row = dict[str, Any]
-
-
 def merge_rows(
     rows: list[Row],
     sensors: Iterable[PortableSensor],
@@ -119,11 +120,6 @@ def gone_lines(names: Iterable[str]) -> list[str]:
     them."""
     listed = ", ".join(sorted(names))
     return [f"no sensors of the rig, their frames are kept: {listed}"] if listed else []
-
-
-SENSORS = frozenset(["gnss", "gps", "imu", "ins", "collision", "sonar", "lane_invasion"])
-NOUNS = frozenset({RADAR, ULTRASONIC, "link", FRAME}) | (NO_SENSOR_WORDS - SENSORS)
-"""Kinds that are nouns; of others one says sensor."""
 
 
 def listed_kinds(sensors: Iterable[tuple[str, str]]) -> str:

@@ -25,7 +25,8 @@ from .portable_kinds import CAMERA, LIDAR
 
 FILES = CALIBRATED, SENSORS = "calibrated_sensor.json", "sensor.json"
 FIVE = ("k1", "k2", "p1", "p2", "k3")
-POSE, FIGURES = ("translation", "rotation"), ("camera_intrinsic", "camera_distortion")
+POSE = ("translation", "rotation")
+FIGURES = ("camera_intrinsic", "camera_distortion")
 AXES = {CAMERA: frames.BODY_FROM_OPTICAL, LIDAR: frames.BODY_FROM_RIGHT_FORWARD}
 """Rotation from nuScenes' sensor axes to those of this project, by kind; others have the same."""
 
@@ -110,13 +111,16 @@ def _last(calibrations: Sequence[PortableSensor]) -> PortableSensor:
 
 
 def _sensor(path: Path, row: Table, sensor_row: Table) -> PortableSensor:
-    name, kind = sensor_row.text("channel"), sensor_row.text("modality")
-    position = vector(path, row.field("translation"), row.raw("translation"), 3, METRES)
+    name = sensor_row.text("channel")
+    kind = sensor_row.text("modality")
+    position = vector(path, row.field("translation"), row.raw("translation"), count=3, rule=METRES)
     rotation_values = vector(path, row.field("rotation"), row.raw("rotation"), 4)
     rotation = frames.from_quaternion(path, row.field("rotation"), rotation_values)
     if kind in AXES:
         rotation = frames.product(rotation, AXES[kind].T)
-    picture, note, value = None, "", row.raw("camera_intrinsic", [])
+    picture = None
+    note = ""
+    value = row.raw("camera_intrinsic", [])
     if value != []:
         matrix = numbers(value)
         if matrix is None or matrix.shape != (3, 3):
@@ -127,7 +131,7 @@ def _sensor(path: Path, row: Table, sensor_row: Table) -> PortableSensor:
             picture, note = _bent(row, picture)
         note = "; ".join(filter(None, (skew_note, note)))
     pose = frames.pose_of(rotation, position)
-    return PortableSensor(name, pose, kind, None, picture, told=note, entry=row.data)
+    return PortableSensor(name, pose, kind, model=None, picture=picture, told=note, entry=row.data)
 
 
 def _bent(row: Table, picture: Picture) -> tuple[Picture, str]:
@@ -139,6 +143,18 @@ def _bent(row: Table, picture: Picture) -> tuple[Picture, str]:
         raise row.error("camera_distortion", expected, shown(values))
     k1, k2, p1, p2, k3, k4 = [*map(float, coefficients), 0.0, 0.0][:6]
     lens = picture.lens
-    intrinsics = lens.fx, lens.fy, lens.cx, lens.cy
     note = "its sixth coefficient, of r^8, is left out" if k4 else ""
-    return Picture(BrownConrady(*intrinsics, None, k1, k2, p1, p2, k3)), note
+    return Picture(
+        BrownConrady(
+            fx=lens.fx,
+            fy=lens.fy,
+            cx=lens.cx,
+            cy=lens.cy,
+            fov=None,
+            k1=k1,
+            k2=k2,
+            p1=p1,
+            p2=p2,
+            k3=k3,
+        )
+    ), note

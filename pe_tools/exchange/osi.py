@@ -43,6 +43,7 @@ COUNT = Whole(0, 1_000_000_000)
 IDENTIFIER = Whole(0, (1 << 64) - 1)
 STAND_IN_RANGE_M = 100.0
 """Range of a LiDAR if the file states none; it is that of the stand-in model."""
+CAPITAL = re.compile(r"(?<=[a-z0-9])([A-Z])")
 
 
 def write(sensors: PortableRig, into: MergeTarget | None) -> Export:
@@ -50,7 +51,7 @@ def write(sensors: PortableRig, into: MergeTarget | None) -> Export:
     of new sensors count from 0 in rig order, around those of the file. Every beam is written, so
     more than `MAX_BEAMS` raise `InputError`."""
     beams = sum(s.scan.beam_count for s in sensors if s.scan is not None)
-    require_at_most("osi", "sensors", beams, MAX_BEAMS, "beams, each of which is written")
+    require_at_most("osi", "sensors", beams, MAX_BEAMS, noun="beams, each of which is written")
     top: dict[str, Any] = {} if into is None else into.document
     lines = _write_range(top, sensors)
     ids = _new_ids(top, sensors, () if into is None else into.gone)
@@ -112,7 +113,8 @@ def _row(sensor: PortableSensor) -> dict[str, Any]:
 
 def _figures(sensor: PortableSensor) -> dict[str, Any]:
     if sensor.picture is not None and sensor.picture.size is not None:
-        (width, height), p = sensor.picture.size, sensor.picture
+        width, height = sensor.picture.size
+        p = sensor.picture
         return {
             FIELD[0]: 2.0 * math.atan(width / (2.0 * p.fx)),
             FIELD[1]: 2.0 * math.atan(height / (2.0 * p.fy)),
@@ -153,7 +155,7 @@ def read(path: Path) -> ForeignRig:
             number = len(sensors) if number is None else number
             if number in sensors:
                 raise InputError(path, row.field("sensor_id"), "an id used once", number)
-            sensors[number] = _sensor(path, row, kind, number, max_range)
+            sensors[number] = _sensor(path, row, kind, number, max_range=max_range)
     in_order = tuple(sensors[number] for number in sorted(sensors))
     return ForeignRig(in_order, document=top.fields)
 
@@ -161,7 +163,8 @@ def read(path: Path) -> ForeignRig:
 def _sensor(
     path: Path, row: Message, kind: str | None, number: int, max_range: float | None
 ) -> PortableSensor:
-    mounting, figures = row.message("mounting_position"), row.figures
+    mounting = row.message("mounting_position")
+    figures = row.figures
     position, orientation = (mounting.message(key).figures for key in ("position", "orientation"))
     coordinates = [position.number(key, METRES) or 0.0 for key in XYZ]
     angles = [orientation.number(key) or 0.0 for key in RPY]
@@ -173,8 +176,9 @@ def _sensor(
     if kind in OTHER_KINDS:
         if across is None or up is None or reach is None:
             return sensor
-        ends = (-across / 2.0, across / 2.0), (-up / 2.0, up / 2.0)
-        return replace(sensor, field=FieldOfView(*ends, reach))
+        return replace(
+            sensor, field=FieldOfView((-across / 2.0, across / 2.0), (-up / 2.0, up / 2.0), reach)
+        )
     for key in COUNTS:
         figures.whole(key, COUNT)
     if kind == CAMERA:
@@ -196,10 +200,11 @@ def _component(value: Any) -> float:
 
 
 def _scan(path: Path, row: Message, max_range: float) -> Scan:
-    beams, field = row.raw("directions"), row.field("directions")
+    beams = row.raw("directions")
+    field = row.field("directions")
     directions = None
     if isinstance(beams, list) and all(isinstance(beam, dict) for beam in beams):
-        require_at_most(path, field, len(beams), MAX_BEAMS, "beams")
+        require_at_most(path, field, len(beams), MAX_BEAMS, noun="beams")
         directions = numbers([[_component(beam.get(k)) for k in XYZ] for beam in beams])
     low, high = DIRECTION
     lengths = np.zeros(0) if directions is None else np.abs(directions)
@@ -211,11 +216,17 @@ def _scan(path: Path, row: Message, max_range: float) -> Scan:
     if count is not None and count != len(directions):
         raise row.error("num_of_pixels", f"{len(directions)}, one a direction", count)
     elevations = np.arctan2(directions[:, 2], np.hypot(directions[:, 0], directions[:, 1]))
-    fov, ends = (-math.pi, math.pi), (float(elevations.min()), float(elevations.max()))
-    return Scan(len(directions), *ends, 1, fov, max_range, False, directions)
-
-
-CAPITAL = re.compile(r"(?<=[a-z0-9])([A-Z])")
+    fov = (-math.pi, math.pi)
+    return Scan(
+        channels=len(directions),
+        low=float(elevations.min()),
+        high=float(elevations.max()),
+        azimuths=1,
+        fov=fov,
+        max_range=max_range,
+        even=False,
+        directions=directions,
+    )
 
 
 class Message(Table):

@@ -143,7 +143,8 @@ def with_pictures(
     sensors: Iterable[PortableSensor], reduce: KeptPicture, title: str
 ) -> tuple[tuple[PortableSensor, ...], list[str]]:
     """Return sensors with intrinsics reduced to a format, and a message for each loss."""
-    reduced, lines = [], []
+    reduced = []
+    lines = []
     for sensor in sensors:
         if sensor.picture is not None:
             losses = lost(sensor.picture, reduce(sensor.picture))
@@ -171,8 +172,10 @@ def named_apart(names: Sequence[str]) -> list[str]:
     """Return unique names; a number is appended to repeated ones."""
     unique_names: list[str] = []
     for name in names:
-        number, unique = 2, name
+        number = 2
+        unique = name
         while unique in unique_names:
-            unique, number = f"{name}_{number}", number + 1
+            unique = f"{name}_{number}"
+            number = number + 1
         unique_names.append(unique)
     return unique_names

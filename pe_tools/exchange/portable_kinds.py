@@ -26,7 +26,10 @@ from .foreign_values import MAX_BEAMS
 from .lens_pictures import ALIKE_PX, Picture, Size
 from .portable import EVEN_RAD, FieldOfView, PortableRig, PortableSensor, Scan
 
-CAMERA, LIDAR, RADAR, ULTRASONIC = Camera.kind, Lidar.kind, Radar.kind, Ultrasonic.kind
+CAMERA = Camera.kind
+LIDAR = Lidar.kind
+RADAR = Radar.kind
+ULTRASONIC = Ultrasonic.kind
 NO_EXTENT_RAD = 1e-9  # A scan with a smaller horizontal field of view does not rotate [rad]
 OFF_STEP = 0.01  # Of an azimuth step: what is nearer to a whole number of steps than this is one
 OFF_CENTER = 0.06
@@ -77,8 +80,16 @@ def portable_sensors(rig: Rig) -> PortableRig:
         for key, default in RANGES.items():
             if (value := getattr(sensor.model, key, default)) != default:
                 figures[key] = value
-        identity = sensor.name, sensor.pose, sensor.kind, sensor.model.name
-        sensors.append(PortableSensor(*identity, fusion=sensor.fusion, **figures))
+        sensors.append(
+            PortableSensor(
+                sensor.name,
+                sensor.pose,
+                sensor.kind,
+                sensor.model.name,
+                fusion=sensor.fusion,
+                **figures,
+            )
+        )
     return tuple(sensors)
 
 
@@ -105,12 +116,14 @@ def camera_of(name: str, p: Picture, usual: Size | None = None) -> tuple[Camera,
     the image, the field of view is limited to the part before the fold, to 0.1 degrees."""
     if p.size is None:
         doubled = [2.0 * middle for middle in p.center]
-        size, reason = (round(doubled[0]), round(doubled[1])), "has its middle there"
+        size = (round(doubled[0]), round(doubled[1]))
+        reason = "has its middle there"
         is_centred = max(abs(a - b) for a, b in zip(doubled, size, strict=True)) < ALIKE_PX
         if usual is not None and not is_centred:  # calibrations do not have half pixels by chance
             offsets = [abs(a / b - 1.0) / 2.0 for a, b in zip(doubled, usual, strict=True)]
             if max(offsets) < OFF_CENTER:
-                size, reason = usual, "is usual there"
+                size = usual
+                reason = "is usual there"
         model, _ = camera_of(name, replace(p, size=size))
         return model, f"{name}: no size in the file; {size[0]} x {size[1]} px {reason}"
     if p.is_plain:
@@ -180,7 +193,8 @@ def _lidar_between(name: str, scan: Scan, ends: tuple[float, float], elevations:
 def _ends(model: Lidar) -> tuple[float, float]:
     """Return the first and the last azimuth [rad]; of a full circle, those round the x axis."""
     azimuths = model.azimuth_steps
-    first, last = int(azimuths[0]), int(azimuths[-1])
+    first = int(azimuths[0])
+    last = int(azimuths[-1])
     if len(azimuths) == model.azimuth_count:
         first = -(model.azimuth_count // 2)
         last = first + model.azimuth_count - 1
@@ -197,10 +211,13 @@ def _common_offset(model: Lidar) -> float:
 def _scan(model: Lidar) -> Scan:
     angles = sorted(model.elevations.tolist())
     step = (angles[-1] - angles[0]) / max(len(angles) - 1, 1)
-    figures = (len(angles), angles[0], angles[-1], len(model.azimuth_steps), model.horizontal_fov)
     return Scan(
-        *figures,
-        model.max_range,
+        len(angles),
+        angles[0],
+        angles[-1],
+        len(model.azimuth_steps),
+        fov=model.horizontal_fov,
+        max_range=model.max_range,
         even=all(abs(b - a - step) < EVEN_RAD for a, b in pairwise(angles)),
         min_range=model.min_range,
         compute_beams=lambda: model.directions,
@@ -233,10 +250,26 @@ def _model_by_field(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
         return _model_by_table(sensor, None)
     name = sensor.model or sensor.name
     if sensor.kind == ULTRASONIC:
-        cone = seen.across[1] - seen.across[0], seen.up[1] - seen.up[0]
-        return Ultrasonic(name, seen.max_range, *cone, min_range=seen.min_range), ""
-    ends = np.array(seen.across), np.array([seen.max_range] * 2), np.array(seen.up), np.ones(2)
-    model = Radar(name, [RadarMode("scan", *ends, min_range=seen.min_range)])
+        return Ultrasonic(
+            name,
+            seen.max_range,
+            seen.across[1] - seen.across[0],
+            seen.up[1] - seen.up[0],
+            min_range=seen.min_range,
+        ), ""
+    model = Radar(
+        name,
+        [
+            RadarMode(
+                "scan",
+                np.array(seen.across),
+                np.array([seen.max_range] * 2),
+                np.array(seen.up),
+                scales=np.ones(2),
+                min_range=seen.min_range,
+            )
+        ],
+    )
     return model, f"{sensor.name}: the file has no resolution and no RCS; 10 dBsm, one cell"
 
 

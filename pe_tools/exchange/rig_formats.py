@@ -28,10 +28,14 @@ from .portable import ForeignRig, MergeTarget, PortableRig, PortableSensor
 
 MODEL = "model"  # The model name; properties of a catalogued model are then not lost
 BEAMS = "beams"  # A LiDAR's channels, azimuths and range
-MIN_RANGE, MAX_RANGE = "minimum range", "maximum range"
+MIN_RANGE = "minimum range"
+MAX_RANGE = "maximum range"
 PARAMETERS = "parameters"  # The table of a model that has neither lens nor beams
-FUSION, CURVE = "fusion group", "AP curve"
+FUSION = "fusion group"
+CURVE = "AP curve"
 EVERYTHING = (BEAMS, PARAMETERS, MIN_RANGE, MAX_RANGE, FUSION, CURVE)
+_TABLE = frozenset({MODEL, PARAMETERS, FUSION, MIN_RANGE, MAX_RANGE})
+_BEAMS = frozenset({BEAMS})
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,8 +76,6 @@ class RigFormat:
         return path / self.files[0] if path.is_dir() and not self.is_folder else path
 
 
-_TABLE = frozenset({MODEL, PARAMETERS, FUSION, MIN_RANGE, MAX_RANGE})
-_BEAMS = frozenset({BEAMS})
 _ROWS = (
     RigFormat(
         name="csv",

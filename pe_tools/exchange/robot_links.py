@@ -59,7 +59,8 @@ def sensor_links(tree: LinkTree) -> tuple[list[SensorLink], list[str]]:
     inner = _inner_links(tree, said)
     on_them = set(tree.parents.values())
     result: list[SensorLink] = []
-    guessed, left_out = [], []
+    guessed = []
+    left_out = []
     for name in tree.links[1:]:
         if name in owners:
             if owners[name] not in said:

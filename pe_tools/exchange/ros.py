@@ -25,7 +25,8 @@ from .merging import gone_lines
 from .portable import ORIGIN, ForeignRig, MergeTarget, PortableRig, PortableSensor
 from .portable_kinds import CAMERA
 
-FILE, ROOT = "rig.launch.xml", "base_link"
+FILE = "rig.launch.xml"
+ROOT = "base_link"
 PUBLISHER = "static_transform_publisher"
 QUATERNION = ("qw", "qx", "qy", "qz")
 ENDS = ("frame-id", "child-frame-id")
@@ -188,14 +189,16 @@ def read(path: Path) -> ForeignRig:
 def _links(path: Path, text: str) -> tuple[dict[str, tuple[str, Pose]], dict[str, Call]]:
     """Return the parent and the pose in the parent frame, and the calls, by frame name."""
     calls = _calls(without_comments(text))
-    values.require_at_most(path, "file", len(calls), values.MAX_FRAMES, f"calls of {PUBLISHER}")
+    values.require_at_most(
+        path, "file", len(calls), values.MAX_FRAMES, noun=f"calls of {PUBLISHER}"
+    )
     links: dict[str, tuple[str, Pose]] = {}
     by_frame: dict[str, Call] = {}
     for number, call in enumerate(calls):
         arguments = call.args
         field = f"transform {number + 1}"
         longest = values.MAX_LINE_LENGTH
-        values.require_at_most(path, field, len(arguments), longest, "characters")
+        values.require_at_most(path, field, len(arguments), longest, noun="characters")
         parent, child, pose = _transform(path, field, arguments)
         if child in links:
             raise InputError(path, f"frame {child}", "one parent", "two")

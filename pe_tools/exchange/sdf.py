@@ -41,7 +41,7 @@ def read_sdf(path: Path, root: Element) -> tuple[PortableRig, list[str]]:
         raise InputError(path, "model", "one model with sensors", found)
     (model,) = with_sensors
     named = list(_elements(model, "", ""))
-    values.require_at_most(path, "link", len(named), values.MAX_FRAMES, "links and frames")
+    values.require_at_most(path, "link", len(named), values.MAX_FRAMES, noun="links and frames")
     poses = _poses(path, named)
     in_scope: dict[str, dict[str, Pose]] = {}
     sensors = []

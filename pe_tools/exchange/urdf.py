@@ -68,7 +68,7 @@ def read(path: Path) -> ForeignRig:
         lines = [*lines, f"left out, {count} on links that the robot does not have: {listed}"]
     line = _origin_line(root, in_root, origin)
     noted = [replace(s, told="; ".join(filter(None, [s.told, line]))) for s in sensors]
-    return ForeignRig(tuple(noted), lines, Robot(head, root, hung, in_root, origin))
+    return ForeignRig(tuple(noted), lines, Robot(head, root, hung, in_root, origin=origin))
 
 
 def sensor_blocks(robot: Element) -> dict[str, list[Element]]:
@@ -82,9 +82,11 @@ def sensor_blocks(robot: Element) -> dict[str, list[Element]]:
 
 def _origin_line(robot: Element, in_root: Mapping[str, Pose], origin: str) -> str:
     """Return the message on the origin; empty for a robot of this program."""
-    place, under = f"the robot's root, {next(iter(in_root))}", "on the ground under"
+    place = f"the robot's root, {next(iter(in_root))}"
+    under = "on the ground under"
     if origin == ON_GROUND:
-        place, under = f"{ON_GROUND}, which is on the ground", "under"
+        place = f"{ON_GROUND}, which is on the ground"
+        under = "under"
     middle = "the middle of the vehicle, --at says where it is"
     is_ours = next(robot.iter(OWN), None) is not None
     return "" if is_ours else f"taken in {place}; if that is not {under} {middle}"
@@ -92,7 +94,8 @@ def _origin_line(robot: Element, in_root: Mapping[str, Pose], origin: str) -> st
 
 def _tree(robot: Element, in_root: Mapping[str, Pose]) -> LinkTree:
     joints = robot.findall("joint")
-    parents, moving = {}, set()
+    parents = {}
+    moving = set()
     for joint in joints:
         parent, child = (joint.find(end) for end in ("parent", "child"))
         if parent is None or child is None:  # `_poses` has refused it
@@ -132,13 +135,14 @@ def _poses(path: Path, robot: Element) -> tuple[dict[str, tuple[str, Pose]], dic
     """Return the parents of links and the poses in these, and the poses of links in the root frame,
     ordered by depth; both by name."""
     links = dict.fromkeys(link.get("name", "") for link in robot.findall("link"))
-    values.require_at_most(path, "link", len(links), values.MAX_FRAMES, "links")
+    values.require_at_most(path, "link", len(links), values.MAX_FRAMES, noun="links")
     joints = {}
     for joint in robot.findall("joint"):  # movable joints are at zero
         child, parent = (_end(path, joint, end, links) for end in ("child", "parent"))
         if child in joints:
             raise InputError(path, f"link {child}", "one parent", "two")
-        origin, field = joint.find("origin"), f"joint {joint.get('name', '')!r}"
+        origin = joint.find("origin")
+        field = f"joint {joint.get('name', '')!r}"
         texts = {} if origin is None else origin.attrib
         numbers = [
             values.figures(path, f"{field}, {key}", texts.get(key, "0 0 0"), 3)

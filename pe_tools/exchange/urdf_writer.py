@@ -19,7 +19,9 @@ from .portable import MergeTarget, PortableRig, PortableSensor, uneven
 from .portable_kinds import CAMERA, LIDAR
 from .urdf import Robot, sensor_blocks
 
-FILE, ROOT, NAME = "rig.urdf", "base_link", "rig"
+FILE = "rig.urdf"
+ROOT = "base_link"
+NAME = "rig"
 MASSES = (
     "Links have a mass and joints are preserved, so that Gazebo keeps each sensor's frame; gravity "
     "does not move them. "
@@ -33,20 +35,26 @@ FIGURES = {
 HOLDERS = {CAMERA: (CAMERA,), LIDAR: (LIDAR, "ray")}  # Elements of a sensor that hold these
 SENSOR_LEVEL = 2  # Depth of a sensor in a robot: it is in an element of Gazebo
 INERTIA_KEYS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-MASS_KG, INERTIA = 0.01, 1e-5
+MASS_KG = 0.01
+INERTIA = 1e-5
 """Of every link [kg, kg m2]: Gazebo has none without (sdformat's issue 199), nor below 1e-5 kg."""
 
 
 def write(sensors: PortableRig, into: MergeTarget | None) -> Export:
     """Return a robot that consists of the rig alone, or a robot with its sensors updated, and
     messages on losses."""
-    robot, origin, taken = Element("robot", {"name": NAME}), ROOT, []
-    head, lines = f"<!-- {ROOT}{frames.AXES}{MASSES}-->\n", []
+    robot = Element("robot", {"name": NAME})
+    origin = ROOT
+    taken = []
+    head = f"<!-- {ROOT}{frames.AXES}{MASSES}-->\n"
+    lines = []
     if into is None:
         _link(robot, origin)
     elif isinstance(into.document, Robot):
         document = into.document
-        robot, head, origin = document.root, document.head, document.origin
+        robot = document.root
+        head = document.head
+        origin = document.origin
         taken = list(document.poses)
         lines = _update(document, sensors, into.gone)
     else:

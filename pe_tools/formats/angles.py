@@ -23,8 +23,12 @@ from .driver_angles import driver_channels
 NAMES = {
     "elevation": {"elevation", "elevations", "elev", "vertical", "vert"},
     "azimuth": {
-        *("azimuth", "azimuth_offset", "azimuth_offsets"),
-        *("horizontal", "horizontal_offset", "horiz"),
+        "azimuth",
+        "azimuth_offset",
+        "azimuth_offsets",
+        "horizontal",
+        "horizontal_offset",
+        "horiz",
     },
     "id": {"id", "laser", "laser_id", "channel", "channel_id", "ring"},
 }
@@ -76,7 +80,8 @@ def read_columns(source: str, text: str) -> list[Channel]:
     if any(map(_is_number, rows[0][1])):
         layout = _without_header(source, rows)
     else:
-        layout, rows = _from_header(source, rows[0]), rows[1:]
+        layout = _from_header(source, rows[0])
+        rows = rows[1:]
         if layout.is_hesai and rows and CHECKSUM.fullmatch(rows[-1][1][0]):
             rows.pop()
     if not rows:
@@ -107,7 +112,8 @@ def _is_number(cell: str) -> bool:
 
 def _without_header(source: str, rows: Sequence[Line]) -> Layout:
     """Return the layout of one or two columns: elevation, azimuth offset."""
-    first, width = rows[0][0], len(rows[0][1])
+    first = rows[0][0]
+    width = len(rows[0][1])
     if width > 2:
         expected = "one or two columns (elevation, azimuth offset), or a header"
         raise InputError(source, first, expected, f"{width} columns")
@@ -139,7 +145,7 @@ def _from_header(source: str, header: Line) -> Layout:
     # Hesai's header has an id and the bare name Azimuth; a user's own table says azimuth_offset.
     bare = azimuth is not None and cells[azimuth].lower() == "azimuth"
     sign = -1.0 if bare and number is not None else 1.0
-    return Layout(len(names), elevation, azimuth, number, sign)
+    return Layout(len(names), elevation, azimuth, number, azimuth_sign=sign)
 
 
 def _normalized(name: str) -> str:
@@ -160,7 +166,9 @@ def _channel(source: str, layout: Layout, row: Line) -> Channel:
     offset = 0.0
     if layout.azimuth is not None:
         offset = parse_number(source, where, "the azimuth offset", cells[layout.azimuth])
-    return checked_channel(source, where, number, elevation, layout.azimuth_sign * offset)
+    return checked_channel(
+        source, where, number, elevation, offset_deg=layout.azimuth_sign * offset
+    )
 
 
 def read_angles(path: str | Path) -> list[Channel]:
@@ -170,7 +178,8 @@ def read_angles(path: str | Path) -> list[Channel]:
     Channels are sorted by id if the file has ids, else in the file's order. A file of none of these
     layouts, or with a wrong value, raises `InputError`."""
     path = Path(path)
-    source, text = str(path), decode_text(read_bytes(path))
+    source = str(path)
+    text = decode_text(read_bytes(path))
     if not text.strip():
         raise InputError(source, "file", "channel angles", "an empty file")
     channels = driver_channels(source, text)

@@ -27,6 +27,8 @@ VOXELS_OF = "car"  # Class whose AP a table for a curve of voxels has
 MIN_POINTS = 3
 SATURATION = 0.02
 """A point whose AP is within this of the table's largest is saturated, and so are all after it."""
+COLUMNS = ("m", "ap", "n")
+RANGE_COLUMN = "range_m"
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,13 +81,14 @@ def fit_ap_curve(table: ApTable, saturation: float = SATURATION) -> CurveFit:
         found = f"{used.sum()} of {len(why)}" + (f" ({counts})" if counts else "")
         raise InputError(table.source, "points", f"at least {MIN_POINTS} usable ones", found)
     x = np.array([math.log(m) for m in table.m[used].tolist()])
-    y, weight = table.ap[used], table.n[used]
+    y = table.ap[used]
+    weight = table.n[used]
     if not np.ptp(x) > 0.0:
         raise InputError(table.source, "m", "at least two different ones", table.m[used][0])
     a, b, a_error, b_error, rms = _line(x, y, weight / weight.mean())
     if not a > 0.0:
         raise InputError(table.source, "ap", "larger AP for larger m", f"a slope of {a:.3g}")
-    return CurveFit(ApCurve(a, b), a_error, b_error, rms, table, tuple(why))
+    return CurveFit(ApCurve(a, b), a_error, b_error, rms, table=table, why=tuple(why))
 
 
 def study_snippet(fit: CurveFit, kind: str, name: str | None = None) -> str:
@@ -93,7 +96,8 @@ def study_snippet(fit: CurveFit, kind: str, name: str | None = None) -> str:
     plain = name is None or (name.isascii() and name.isidentifier())
     key = name if plain else json.dumps(name, ensure_ascii=False)
     where = f"ap.{kind}" if name is None else f"ap.objects.{kind}.{key}"
-    used, total = int(fit.used.sum()), len(fit.why)
+    used = int(fit.used.sum())
+    total = len(fit.why)
     return (
         f"# AP = a ln m + b, fitted to {used} of {total} points of {Path(fit.table.source).name}\n"
         f"[{where}]\n"
@@ -121,7 +125,8 @@ def _reasons(table: ApTable, saturation: float) -> list[str]:
 def _line(x: Floats, y: Floats, weight: Floats) -> tuple[float, float, float, float, float]:
     """Slope, intercept, their standard errors and the rms residual of a weighted line fit."""
     total = weight.sum()
-    mean_x, mean_y = (weight * x).sum() / total, (weight * y).sum() / total
+    mean_x = (weight * x).sum() / total
+    mean_y = (weight * y).sum() / total
     spread = (weight * (x - mean_x) ** 2).sum()
     a = float((weight * (x - mean_x) * (y - mean_y)).sum() / spread)
     b = float(mean_y - a * mean_x)
@@ -129,9 +134,6 @@ def _line(x: Floats, y: Floats, weight: Floats) -> tuple[float, float, float, fl
     variance = square / (len(x) - 2)
     b_error = math.sqrt(variance * (1.0 / total + mean_x**2 / spread))
     return a, b, math.sqrt(variance / spread), b_error, math.sqrt(square / total)
-
-
-COLUMNS, RANGE_COLUMN = ("m", "ap", "n"), "range_m"
 
 
 def read_ap_table(
@@ -186,7 +188,7 @@ def m_by_range(
     centers = np.repeat(centers, HEADINGS, axis=0)
     yaws = np.tile(np.arange(HEADINGS) * (2.0 * math.pi / HEADINGS) + FIRST_RAD, len(ranges))
     sizes = np.tile((length, width, tall), (len(centers), 1))
-    objects = Objects(centers, sizes, yaws, np.zeros(len(centers), np.int64), (name,))
+    objects = Objects(centers, sizes, yaws, np.zeros(len(centers), np.int64), class_names=(name,))
     m = measure_objects(Sensor("sensor", model, pose), objects)
     mean = m.reshape(-1, HEADINGS).mean(axis=1)
     return mean if class_name else mean * (2.0 * PAPER_VOXEL_M**2 / ((length + width) * tall))

@@ -20,7 +20,9 @@ def parse_xml(source: str, data: bytes, *, comments: bool = False) -> Element:
     document (``<!DOCTYPE a [...]>``) are refused: a few lines of them can expand to gigabytes. A
     DOCTYPE without definitions is ignored. `InputError` when it is not well-formed, has definitions
     or is nested deeper than `MAX_DEPTH`."""
-    tree, parser, depth = TreeBuilder(insert_comments=comments), expat.ParserCreate(), 0
+    tree = TreeBuilder(insert_comments=comments)
+    parser = expat.ParserCreate()
+    depth = 0
 
     def start(tag: str, attributes: dict[str, str]) -> None:
         nonlocal depth
@@ -36,11 +38,14 @@ def parse_xml(source: str, data: bytes, *, comments: bool = False) -> Element:
 
     def doctype(_name: str, _system: str | None, _public: str | None, internal: bool) -> None:
         if internal:
-            expected, found = "XML without definitions", "a DOCTYPE with definitions"
+            expected = "XML without definitions"
+            found = "a DOCTYPE with definitions"
             raise InputError(source, "file", expected, found)
 
-    parser.StartElementHandler, parser.EndElementHandler = start, end
-    parser.CharacterDataHandler, parser.StartDoctypeDeclHandler = tree.data, doctype
+    parser.StartElementHandler = start
+    parser.EndElementHandler = end
+    parser.CharacterDataHandler = tree.data
+    parser.StartDoctypeDeclHandler = doctype
     parser.CommentHandler = tree.comment if comments else None
     try:
         parser.Parse(data, True)

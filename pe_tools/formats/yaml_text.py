@@ -23,7 +23,8 @@ class YamlText:
     no mapping, too long or too deep, has a key twice or aliases raises `InputError`."""
 
     def __init__(self, source: str, text: str) -> None:
-        self.source, self.text = source, text
+        self.source = source
+        self.text = text
         self._nodes: dict[KeyPath, tuple[Any, Any]] = {}
         self._seen: set[int] = set()
         if len(text) > MAX_LENGTH:
@@ -116,9 +117,11 @@ class YamlText:
         for path, comment in comments.items():
             start, old = self._comment(path)
             if old:
-                end, new = self._end_of_line(start), f"# {comment}"
+                end = self._end_of_line(start)
+                new = f"# {comment}"
                 if not comment:
-                    start, new = len(self.text[:start].rstrip(" \t")), ""
+                    start = len(self.text[:start].rstrip(" \t"))
+                    new = ""
                 edits.append((start, end, new))
             elif start and comment:
                 end = len(self.text[:start].rstrip(" \t\r"))
@@ -131,7 +134,8 @@ class YamlText:
             inside = [(key, value) for p, (key, value) in self._nodes.items() if p[:-1] == path]
             leaves = [v for p, (_, v) in self._nodes.items() if p[: len(path)] == path]
             last = max(v.end_mark.index for v in leaves if isinstance(v.value, str))
-            end, indent = self._end_of_line(last), " " * inside[0][0].start_mark.column
+            end = self._end_of_line(last)
+            indent = " " * inside[0][0].start_mark.column
             edits.append((end, end, "".join(f"\n{indent}{line}" for line in lines)))
         text = self.text
         for start, end, new in sorted(edits, reverse=True):
@@ -145,7 +149,8 @@ def parse_yaml(source: str, text: str) -> dict[str, Any]:
 
 
 def _scalar(node: Any) -> Any:
-    sort, text = str(node.tag).removeprefix(TAG), node.value
+    sort = str(node.tag).removeprefix(TAG)
+    text = node.value
     if sort in WORDS:
         return WORDS[sort].get(text.lower())
     return float(text) if not node.style and NUMBER.fullmatch(text) else text

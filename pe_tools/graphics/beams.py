@@ -15,9 +15,11 @@ from pe_core.sensors.lidar.model import lidar_of
 
 from .primitives import Primitives
 
-PREVIEW_BEAMS, MAX_BEAMS = 12_000, 1_500_000
+PREVIEW_BEAMS = 12_000
+MAX_BEAMS = 1_500_000
 """Maximum number of beams that are cast for a preview while the sensor moves, and when idle."""
-A_FEW, AZIMUTHS_OF_FEW = 5, 60
+A_FEW = 5
+AZIMUTHS_OF_FEW = 60
 """Channels and azimuths of a few beams: they show the field of view without hiding the scene."""
 FEWEST_AZIMUTHS = 8
 """A LiDAR with fewer has no channels to speak of: each beam has its own elevation."""
@@ -30,7 +32,8 @@ OVER_THE_CAR = 0.06
 """How strong a free beam is over the vehicle, beside where it leaves its surroundings."""
 SURROUNDINGS_M = 0.5
 STUB_M = 0.7
-RING_AZIMUTHS, RING_FAR_M = 360, 45.0
+RING_AZIMUTHS = 360
+RING_FAR_M = 45.0
 """Places along a ring on the ground, and where rings have faded to nothing."""
 RING_JUMP = 1.35
 """Neighbours on a ring whose distances differ by more than this factor are not joined."""
@@ -69,12 +72,13 @@ def cast(sensor: Sensor, vehicle: Vehicle | None, most: int = MAX_BEAMS) -> Cast
     numbers = (rows[:, None] * len(lidar.azimuth_steps) + columns).ravel()
     directions = rotate(sensor.pose.ground_from_sensor, lidar.directions[numbers])
     if vehicle is None or not len(numbers):
-        ends, face = np.full(len(numbers), lidar.max_range), np.full(len(numbers), -1)
-        return Cast(sensor, rows, columns, directions, ends, face)
+        ends = np.full(len(numbers), lidar.max_range)
+        face = np.full(len(numbers), -1)
+        return Cast(sensor, rows, columns, directions, ends=ends, face=face)
     hits = vehicle.first_hit(sensor.pose.position, directions, lidar.sees_through_glass)
     met = hits.distance < lidar.max_range
     ends = np.where(met, hits.distance, lidar.max_range)
-    return Cast(sensor, rows, columns, directions, ends, np.where(met, hits.face, -1))
+    return Cast(sensor, rows, columns, directions, ends=ends, face=np.where(met, hits.face, -1))
 
 
 def grid(lidar: Lidar, most: int) -> tuple[Ints, Ints]:
@@ -134,7 +138,8 @@ class Beams:
 def shown_beams(found: Cast, choice: BeamChoice) -> Beams:
     """Return at most `budget` beams of a cast, with the true share of occluded ones. That share is
     the sensor's; of one channel, that channel's own."""
-    lidar, few = lidar_of(found.sensor), choice.channels == ChannelMode.FEW
+    lidar = lidar_of(found.sensor)
+    few = choice.channels == ChannelMode.FEW
     rows = np.flatnonzero(np.isin(found.rows, channels_of(lidar, choice)))
     occluded = found.occluded
     meant = occluded.reshape(len(found.rows), -1)
@@ -143,7 +148,9 @@ def shown_beams(found: Cast, choice: BeamChoice) -> Beams:
     budget = min(choice.budget, A_FEW * AZIMUTHS_OF_FEW) if few else choice.budget
     chosen = _fair(found, rows, share, budget)
     channel = found.rows[chosen // max(len(found.columns), 1)]
-    return Beams(found.directions[chosen], found.ends[chosen], occluded[chosen], channel, share)
+    return Beams(
+        found.directions[chosen], found.ends[chosen], occluded[chosen], channel, share=share
+    )
 
 
 def channels_of(lidar: Lidar, choice: BeamChoice) -> Ints:
@@ -158,14 +165,16 @@ def channels_of(lidar: Lidar, choice: BeamChoice) -> Ints:
     if choice.channels == ChannelMode.EVERY:
         return np.sort(upwards[::number][: choice.budget])
     # Those nearest to evenly spread elevations, from the highest to the lowest.
-    few, elevations = max(min(A_FEW, choice.budget), 1), lidar.elevations
+    few = max(min(A_FEW, choice.budget), 1)
+    elevations = lidar.elevations
     wanted = np.linspace(elevations.min(), elevations.max(), few)
     return np.unique(np.abs(elevations[:, None] - wanted).argmin(axis=0))
 
 
 def _fair(found: Cast, rows: Ints, share: float, budget: int) -> Ints:
     """Indices within a cast: free beams in a regular pattern, and occluded ones by their share."""
-    occluded, width = found.occluded, len(found.columns)
+    occluded = found.occluded
+    width = len(found.columns)
     columns = np.searchsorted(
         found.columns, around(lidar_of(found.sensor), budget // max(len(rows), 1))
     )
@@ -237,7 +246,8 @@ def ground_rings(found: Cast, rows: NDArray[np.int64], colors: Colors) -> Primit
 
 def ground_distance(sensor: Sensor, directions: Floats) -> Floats:
     """(N,) distance along each direction to z = 0 [m]; inf for a beam that does not meet it."""
-    height, down = sensor.pose.position[2], -directions[:, 2]
+    height = sensor.pose.position[2]
+    down = -directions[:, 2]
     if height <= 0.0:
         return np.full(len(directions), np.inf)
     distance = np.full(len(directions), np.inf)
@@ -266,7 +276,8 @@ def _housing_exits(sensor: Sensor, directions: Floats, around: BoxBounds | None)
     if around is None or not len(directions):
         return np.zeros(len(directions))
     place = np.asarray(sensor.pose.position)
-    low, high = around[0] - SURROUNDINGS_M, around[1] + SURROUNDINGS_M
+    low = around[0] - SURROUNDINGS_M
+    high = around[1] + SURROUNDINGS_M
     with np.errstate(divide="ignore", invalid="ignore"):
         walls = np.stack([(low - place) / directions, (high - place) / directions])
     enter = np.nanmax(walls.min(axis=0), axis=1)

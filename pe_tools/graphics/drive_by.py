@@ -25,11 +25,15 @@ DARK: Rgba = (0.17, 0.175, 0.185, 1.0)  # The same on a dark ground
 UNSEEN: Rgba = (0.72, 0.73, 0.75, 1.0)  # Colour of bodies that are not seen, or only hide
 CONFIRMED: Rgba = (0.35, 0.85, 0.55, 1.0)
 BRAKE: Rgba = (1.0, 0.50, 0.25, 1.0)
-WHOLE_RIG, TRACK = "whole rig", "track confirmed"
+WHOLE_RIG = "whole rig"
+TRACK = "track confirmed"
 SWATCHES = 12
-MAX_RATE_HZ, MAX_TIMES = 100.0, 6000
+MAX_RATE_HZ = 100.0
+MAX_TIMES = 6000
 """Of what is drawn: times in a second, and in all."""
-FACE_ALPHA, PATH_ALPHA, MARK_M = 0.25, 0.55, 0.6
+FACE_ALPHA = 0.25
+PATH_ALPHA = 0.55
+MARK_M = 0.6
 CORNERS = np.array(list(product((-0.5, 0.5), repeat=3)))
 CROSS = np.array([(-0.3, 0.0, 0.0), (0.3, 0.0, 0.0), (0.0, -0.3, 0.0), (0.0, 0.3, 0.0)])
 EDGES = [(a, b) for a in range(8) for b in range(a) if np.abs(CORNERS[a] - CORNERS[b]).sum() == 1]
@@ -84,7 +88,8 @@ class MovingBody:
     def corners(self, k: int) -> Floats:
         """Return its corners (8, 3) at a frame."""
         x, y, z = (CORNERS * self.actor.box).T
-        c, s = np.cos(self.headings[k]), np.sin(self.headings[k])
+        c = np.cos(self.headings[k])
+        s = np.sin(self.headings[k])
         turned = np.column_stack([c * x - s * y, s * x + c * y, z])
         return np.asarray(turned + np.array((*self.positions[k], self.height)))
 
@@ -107,12 +112,13 @@ class BodiesInTime:
         where, headings = story.positions(vehicle, times)
         found = ((times - story.start_s) * RATE_HZ + 1e-6).astype(int)
         frame = np.minimum(found, len(story.times) - 1)
-        seen, bodies = {body.name: body for body in driven.bodies}, []
+        seen = {body.name: body for body in driven.bodies}
+        bodies = []
         for k, actor in enumerate(story.actors):
             own = seen.get(actor.name) if actor.watched else None
             ap = np.zeros(len(frame)) if own is None else own.ap[frame]
             alone = {} if own is None else {n: v[frame] for n, v in own.by_sensor.items()}
-            bodies.append(MovingBody(actor, where[k], headings[k], ap, alone, own))
+            bodies.append(MovingBody(actor, where[k], headings[k], ap, by_sensor=alone, seen=own))
         return cls(driven, rate, times, tuple(bodies))
 
 
@@ -174,11 +180,14 @@ def time_strip(driven: DriveBy) -> TimeStrip:
         for name, cells in strip_rows(body).items()
         if name not in body.by_sensor or any(cell.ap > 0.0 for cell in cells)
     }
-    count, parts = len(story.times), []
+    count = len(story.times)
+    parts = []
     for number, cells in enumerate(rows.values()):
-        top, bottom = 1.0 - (number + 0.1) / len(rows), 1.0 - (number + 0.9) / len(rows)
+        top = 1.0 - (number + 0.1) / len(rows)
+        bottom = 1.0 - (number + 0.9) / len(rows)
         for cell in cells:
-            a, b = cell.first / count, cell.last / count
+            a = cell.first / count
+            b = cell.last / count
             square = [(a, bottom), (b, bottom), (b, top), (a, bottom), (b, top), (a, top)]
             parts.append(Primitives.of([(*p, 0.0) for p in square], color_of_ap(cell.ap, DARK)))
     margin = body.shown_margin_s
@@ -188,8 +197,8 @@ def time_strip(driven: DriveBy) -> TimeStrip:
         tuple(rows),
         LayerShape(faces=Primitives.joined(parts)),
         tuple(marks_of(story, body)),
-        float(story.times[0]),
-        strip_ends(story),
+        first_s=float(story.times[0]),
+        ends=strip_ends(story),
     )
 
 
@@ -211,12 +220,16 @@ def moving_shape(driven: DriveBy, rig: Rig, vehicle: Vehicle | None, rate_hz: fl
     moving = BodiesInTime.of(driven, vehicle, rate_hz)
     places = {sensor.name: sensor.pose.position for sensor in rig}
     still = [_moments(moving, body) for body in moving.bodies if body.seen is not None]
-    lines, tags = [line for line, _ in still], [tag for _, several in still for tag in several]
+    lines = [line for line, _ in still]
+    tags = [tag for _, several in still for tag in several]
     scale = tuple(color_of_ap(ap) for ap in np.linspace(0.001, 1.0, SWATCHES).tolist())
     legend = ColorKey("AP of a body", scale, ("0", "0.5", "1"))
     frames = []
     for k in range(len(moving.times)):
-        edges, faces, rays, names = [*lines], [], [], [*tags]
+        edges = [*lines]
+        faces = []
+        rays = []
+        names = [*tags]
         for body in moving.bodies:
             color = color_of_ap(body.ap[k])
             corners = body.corners(k)
@@ -229,7 +242,8 @@ def moving_shape(driven: DriveBy, rig: Rig, vehicle: Vehicle | None, rate_hz: fl
             for name, ap in body.by_sensor.items():
                 if ap[k] > 0.0:
                     rays.append(Primitives.of([places[name], (x, y, z)], color_of_ap(ap[k])))
-        lined, filled = Primitives.joined([*edges, *rays]), Primitives.joined(faces)
+        lined = Primitives.joined([*edges, *rays])
+        filled = Primitives.joined(faces)
         frames.append(LayerShape(lined, filled, labels=tuple(names), legend=legend))
     strip = time_strip(driven)
     return MovingShape(frames=tuple(frames), rate_hz=moving.rate_hz, strip=strip)
@@ -239,7 +253,8 @@ def _moments(moving: BodiesInTime, body: MovingBody) -> tuple[Primitives, list[T
     """Return the path of a body on the ground, with its marks."""
     assert body.seen is not None
     path = np.column_stack([body.positions, np.full(len(moving.times), 0.02)])
-    parts, tags = [Primitives.of(polyline(path), with_alpha(NEVER, PATH_ALPHA))], []
+    parts = [Primitives.of(polyline(path), with_alpha(NEVER, PATH_ALPHA))]
+    tags = []
     for mark in marks_of(moving.driven.story, body.seen):
         k = int(np.searchsorted(moving.times, mark.time_s - 1e-6).clip(0, len(path) - 1))
         foot = path[k]

@@ -18,8 +18,11 @@ from .colors import CIVIDIS, COUNTS, DIFFERENCE_ON_DARK, VIRIDIS, Rgba, Scale, o
 from .primitives import ColorKey, GroundSheet, LayerShape
 
 BADLY_SEEN = "badly seen"  # The dark end of colours that begin above what nobody sees
-ENTROPY, COVERAGE, SENSORS = "ENTROPY", "COVERAGE", "SENSORS"
-BEST_NATS, UNSEEN_NATS = -10.976, 16.651
+ENTROPY = "ENTROPY"
+COVERAGE = "COVERAGE"
+SENSORS = "SENSORS"
+BEST_NATS = -10.976
+UNSEEN_NATS = 16.651
 """H of a place that is seen as well as can be, and of one that nobody sees: equations 4, 5, 8."""
 COUNT_NAMES = ("nobody", "1 sensor", "2 sensors", "3 or more")
 SWATCHES = 13
@@ -29,7 +32,8 @@ PERCENT_LEFT_OUT = 2.0
 STEPS = {ENTROPY: 0.5, COVERAGE: 0.05}  # Fitted ranges end at multiples of these [nats; share]
 NARROWEST = {ENTROPY: 2.0, COVERAGE: 0.1}  # A narrower range would show grain
 ROUNDING = 1e-9
-ALIKE_ALPHA, DIFFERENCE_GAIN = 0.08, 2.0
+ALIKE_ALPHA = 0.08
+DIFFERENCE_GAIN = 2.0
 """How much of a place that is alike is seen, and how much stronger than a map differences are."""
 FADE_M = 8.0
 """Width of the margin in which the sheet fades out, where its edge is no edge of anything."""
@@ -82,8 +86,10 @@ class Quantity:
 
 
 QUANTITIES = {
-    ENTROPY: Quantity("Entropy", VIRIDIS, UNSEEN_NATS, BEST_NATS, ("unseen", "well seen")),
-    COVERAGE: Quantity("Coverage", CIVIDIS, 0.0, 1.0, ("unseen", "all seen"), True),
+    ENTROPY: Quantity("Entropy", VIRIDIS, UNSEEN_NATS, BEST_NATS, ticks=("unseen", "well seen")),
+    COVERAGE: Quantity(
+        "Coverage", CIVIDIS, low=0.0, high=1.0, ticks=("unseen", "all seen"), shares=True
+    ),
 }
 
 
@@ -118,7 +124,7 @@ def ground_map(
             bounds=(kind.low, kind.high),
             values=kind.values,
         )
-    return _shape(seen, rgb, np.where(is_known, opacity, 0.0), faded, legend)
+    return _shape(seen, rgb, np.where(is_known, opacity, 0.0), faded, legend=legend)
 
 
 def difference_map(
@@ -132,7 +138,8 @@ def difference_map(
     better = sign * (values_of(seen, quantity) - values_of(before, quantity))
     is_known = np.isfinite(better)
     # The ends of the colours fit what is shown: most locations do not differ.
-    step, size = STEPS[quantity], np.abs(better[is_known])
+    step = STEPS[quantity]
+    size = np.abs(better[is_known])
     size = size[size > step / 10.0]
     high = float(np.percentile(size, 95.0)) if len(size) else 0.0
     end = max(step, math.ceil(high / step - ROUNDING) * step)
@@ -142,9 +149,11 @@ def difference_map(
     value = f"{kind.text(end)}{' nats' if quantity == ENTROPY else ''}"
     title = f"{kind.title} against {name or 'before'}, {_where(seen.height)}"
     swatches = swatches_of(DIFFERENCE_ON_DARK)
-    legend = ColorKey(title, swatches, ("worse", "better"), (), (-end, end), (value, value))
+    legend = ColorKey(
+        title, swatches, ("worse", "better"), classes=(), bounds=(-end, end), values=(value, value)
+    )
     alpha = np.where(is_known, np.minimum(1.0, DIFFERENCE_GAIN * opacity) * strength, 0.0)
-    return _shape(seen, rgb, alpha, True, legend)
+    return _shape(seen, rgb, alpha, faded=True, legend=legend)
 
 
 def values_of(seen: GroundSight, quantity: str) -> Floats:
@@ -162,12 +171,15 @@ def fitted_bounds(seen: GroundSight, quantity: str) -> tuple[float, float]:
         return kind.low, kind.high
     step = STEPS[quantity]
     low, high = np.percentile(values, (PERCENT_LEFT_OUT, 100.0 - PERCENT_LEFT_OUT)).tolist()
-    low, high = math.floor(low / step + ROUNDING) * step, math.ceil(high / step - ROUNDING) * step
+    low = math.floor(low / step + ROUNDING) * step
+    high = math.ceil(high / step - ROUNDING) * step
     lack = NARROWEST[quantity] - (high - low)
     if lack > 0.0:
-        low, high = low - lack / 2.0, high + lack / 2.0
+        low = low - lack / 2.0
+        high = high + lack / 2.0
     lower_limit, upper_limit = sorted((kind.low, kind.high))
-    low, high = max(lower_limit, low), min(upper_limit, high)
+    low = max(lower_limit, low)
+    high = min(upper_limit, high)
     return (low, high) if kind.low < kind.high else (high, low)
 
 
@@ -190,13 +202,23 @@ def _shape(
 def as_scored(found: GroundMap, space: PerceptionSpace, step: float) -> GroundSight:
     """Return the ground map of a score in squares of about `step` [m], without any numbers."""
     columns = max(1, round(step / space.interval))
-    coarse, side = found.coarser(columns), columns * space.interval
+    coarse = found.coarser(columns)
+    side = columns * space.interval
     x, y = (
         low + side * (np.arange(count) + 0.5)
         for (low, _), count in zip((space.x, space.y), coarse.mass.shape, strict=True)
     )
     nobody = np.where(np.isfinite(coarse.entropy), 0, -1)
-    return GroundSight(x, y, side, None, coarse.entropy, coarse.coverage, nobody, nobody)
+    return GroundSight(
+        x=x,
+        y=y,
+        step=side,
+        height=None,
+        entropy=coarse.entropy,
+        coverage=coarse.coverage,
+        sensors=nobody,
+        kinds=nobody,
+    )
 
 
 def _where(height: float | None) -> str:
@@ -208,11 +230,15 @@ def painted_samples(verdict: Verdict) -> tuple[Floats, Floats, float]:
     blind ground these are the squares of the zone that are seen and those that are blind."""
     samples = verdict.samples
     if verdict.ground is not None:
-        cells, blind, mask = verdict.ground.cells, verdict.ground.blind, samples.mask
+        cells = verdict.ground.cells
+        blind = verdict.ground.blind
+        mask = samples.mask
         places = np.stack(np.meshgrid(cells.x, cells.y, indexing="ij"), axis=-1)
         inside = np.ones(blind.shape, bool) if mask is None else mask
         return places[inside & ~blind], places[inside & blind], cells.step
-    points, inside, ok = samples.points, samples.inside, verdict.passed
+    points = samples.points
+    inside = samples.inside
+    ok = verdict.passed
     step = samples.zone.zone.step
     if samples.zone.kind in ("path", "spots"):
         size = max(step, SPOT_M)

@@ -20,12 +20,16 @@ PLACES = 16  # Along each side of the picture
 MARK_SIDE = 0.06  # Half the width of the mark that says up, in lengths of the view
 FACE_CORNERS = ((0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 1))
 EDGES = ((0, 1), (0, 2), (0, 3), (0, 4), (1, 2), (2, 3), (3, 4), (4, 1), (5, 6), (6, 7), (7, 5))
-RING_POINTS, TICK_SHARE = 48, 0.35
+RING_POINTS = 48
+TICK_SHARE = 0.35
 """Corners of a ring, and the length of its tick in units of its radius."""
-MARK_GAP, MARK_HEIGHT, MARK_HALF_WIDTH = 0.08, 0.25, 0.2
+MARK_GAP = 0.08
+MARK_HEIGHT = 0.25
+MARK_HALF_WIDTH = 0.2
 """The mark over a picture's upper edge, in units of half the picture's height."""
 ROUND_POINTS = 180  # Corners of the circle that is as far as a footprint is drawn
-FOOT_LINE, FOOT_FACE = 0.55, 0.9
+FOOT_LINE = 0.55
+FOOT_FACE = 0.9
 """How strong a footprint's edge and area are, beside the pyramid's edges and sides."""
 FEW_BEAMS = BeamChoice(96, ChannelMode.FEW)  # Of a LiDAR that is drawn alone
 Draw = Callable[[Sensor, float, Palette], Primitives]
@@ -43,7 +47,8 @@ def frustum_points(sensor: Sensor, length_m: float) -> Floats:
     left, upper right, lower right, lower left as the camera sees them, `length_m` from the pinhole.
     The mark's left, right and tip follow, above the upper edge."""
     side, up = _half_picture(sensor)
-    base, tip = up * (1.0 + MARK_GAP), up * (1.0 + MARK_GAP + MARK_HEIGHT)
+    base = up * (1.0 + MARK_GAP)
+    tip = up * (1.0 + MARK_GAP + MARK_HEIGHT)
     mark = up * MARK_HALF_WIDTH
     across = [side, -side, -side, side, mark, -mark, 0.0]
     above = [up, up, -up, -up, base, base, tip]
@@ -58,7 +63,8 @@ def frustum_lines(sensor: Sensor, length_m: float, palette: Palette = VIEWPORT) 
     if camera_of(sensor).lens is None:
         points = frustum_points(sensor, length_m)[np.array(EDGES).ravel()]
         return Primitives.of(points, palette.camera)
-    points, place = outline(sensor, length_m), np.asarray(sensor.pose.position)
+    points = outline(sensor, length_m)
+    place = np.asarray(sensor.pose.position)
     spokes = np.stack([np.broadcast_to(place, (4, 3)), points[::PLACES]], axis=1).reshape(-1, 3)
     closed = polyline(np.vstack([points, points[:1]]))
     lines = np.vstack([spokes, closed, _mark(sensor, points[PLACES // 2], length_m)])
@@ -68,7 +74,8 @@ def frustum_lines(sensor: Sensor, length_m: float, palette: Palette = VIEWPORT) 
 def _mark(sensor: Sensor, top: Floats, length_m: float) -> Floats:
     """(6, 3) ends of the lines of a small triangle over the middle of the upper edge."""
     axes = sensor.pose.ground_from_sensor
-    up, left = axes[:, 2], axes[:, 1] * length_m * MARK_SIDE
+    up = axes[:, 2]
+    left = axes[:, 1] * length_m * MARK_SIDE
     tip = top + up * length_m * MARK_SIDE * 2.0
     base = top + up * length_m * MARK_SIDE * 0.5
     corners = np.array([base + left, base - left, tip])
@@ -153,7 +160,8 @@ def _cut(outline: Floats, inside: Floats) -> Floats:
     Sutherland and Hodgman, "Reentrant polygon clipping", 1974."""
     found = []
     for at in range(len(outline)):
-        here, after = inside[at], inside[(at + 1) % len(outline)]
+        here = inside[at]
+        after = inside[(at + 1) % len(outline)]
         if here >= 0.0:
             found.append(outline[at])
         if (here >= 0.0) != (after >= 0.0):

@@ -45,11 +45,15 @@ def as_bytes(colors: ArrayLike) -> Bytes:
 def _filtered(rows: Bytes) -> Bytes:
     """Rows of pixels (H, W, channels) with the best filter of each, after the filter's number."""
     before = np.pad(rows, ((1, 0), (1, 0), (0, 0)))
-    left, up, corner = before[1:, :-1], before[:-1, 1:], before[:-1, :-1]
+    left = before[1:, :-1]
+    up = before[:-1, 1:]
+    corner = before[:-1, :-1]
     a, b, c = (side.astype(np.int16) for side in (left, up, corner))
     mean = ((a + b) // 2).astype(np.uint8)
     # Paeth: of left, up and upper left the nearest to a + b - c; the first one of a tie.
-    to_a, to_b, to_c = np.abs(b - c), np.abs(a - c), np.abs(a + b - 2 * c)
+    to_a = np.abs(b - c)
+    to_b = np.abs(a - c)
+    to_c = np.abs(a + b - 2 * c)
     nearest = np.where((to_a <= to_b) & (to_a <= to_c), a, np.where(to_b <= to_c, b, c))
     filters = [rows, rows - left, rows - up, rows - mean, rows - nearest.astype(np.uint8)]
     tried = np.stack([line.reshape(len(rows), -1) for line in filters])

@@ -76,9 +76,13 @@ class GroundSheet:
             for low, high, count in zip(self.low, self.high, (columns, rows), strict=True)
         )
         points = np.zeros((rows, columns, 3), np.float32)
-        points[..., 0], points[..., 1] = x, y[:, None]
+        points[..., 0] = x
+        points[..., 1] = y[:, None]
         number = np.arange(rows * columns, dtype=np.int32).reshape(rows, columns)
-        a, b, c, d = number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]
+        a = number[:-1, :-1]
+        b = number[:-1, 1:]
+        c = number[1:, 1:]
+        d = number[1:, :-1]
         corners = np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
         seen = (self.image[..., 3].ravel()[corners] > 0.0).any(axis=1)
         colors = np.ascontiguousarray(self.image, np.float32).reshape(-1, 4)

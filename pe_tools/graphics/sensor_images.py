@@ -15,7 +15,8 @@ from .primitives import Primitives, polyline
 
 NEAREST_M = 0.5  # All that is nearer has the brightest colour
 NO_ECHO = (0.16, 0.16, 0.17)
-BODY_NEAR, BODY_FAR = (1.0, 0.62, 0.20), (0.72, 0.28, 0.0)
+BODY_NEAR = (1.0, 0.62, 0.20)
+BODY_FAR = (0.72, 0.28, 0.0)
 """Vermillion, as occluded beams are drawn: nearer parts are lighter."""
 BODY_SILENT = (0.42, 0.17, 0.0)
 """Colour of a beam that the body blocks so near that there is no echo."""
@@ -23,9 +24,12 @@ BODY_FAR_M = 5.0
 RANGES: Scale = VIRIDIS[::-2]  # From near to far
 RAYS = 240  # Places of the picture that are looked along: enough to see where the body begins
 ARC_POINTS = 33  # Azimuths of an arc; one of them is the middle
-FACE_ALPHA, EDGE_ALPHA = 0.10, 0.55
+FACE_ALPHA = 0.10
+EDGE_ALPHA = 0.55
 """How strong a field's area, and the arcs above and below it, are beside its middle arc."""
-LEAST_M, MOST_M = 0.1, 30.0  # Detections at the ends of the colour scale, which is logarithmic
+# Detections at the ends of the colour scale, which is logarithmic
+LEAST_M = 0.1
+MOST_M = 30.0
 
 
 def range_colors(picture: RangePicture, far_m: float) -> NDArray[np.float32]:
@@ -45,7 +49,8 @@ def range_colors(picture: RangePicture, far_m: float) -> NDArray[np.float32]:
 def even_angles(angles: NDArray[np.float64], pixels_per_deg: float) -> NDArray[np.int64]:
     """(P,) index of the beam nearest to each pixel of an axis; `angles` [rad] are descending."""
     degrees = np.degrees(angles)
-    high, low = float(degrees[0]), float(degrees[-1])
+    high = float(degrees[0])
+    low = float(degrees[-1])
     count = max(1, round((high - low) * pixels_per_deg))
     places = high - (np.arange(count) + 0.5) * (high - low) / count
     between = (degrees[1:] + degrees[:-1]) / 2.0
@@ -58,7 +63,8 @@ def hidden_lines(sensor: Sensor, vehicle: Vehicle | None, color: ArrayLike) -> P
     body = None if vehicle is None else kind_of(sensor).opaque(vehicle)
     if body is None:
         return Primitives.empty()
-    rays, through_glass = kind_of(sensor).rays(sensor, RAYS), sensor.model.sees_through_glass
+    rays = kind_of(sensor).rays(sensor, RAYS)
+    through_glass = sensor.model.sees_through_glass
     distance = body.first_hit(sensor.pose.position, rays, through_glass).distance
     met = np.isfinite(distance)
     start = np.broadcast_to(sensor.pose.position, (int(met.sum()), 3))
@@ -88,7 +94,8 @@ def lobes_of(sensor: Sensor) -> list[Lobe]:
     for mode in model.modes:
         even = np.linspace(mode.azimuths[0], mode.azimuths[-1], ARC_POINTS)
         azimuths = np.unique(np.concatenate([even, mode.azimuths]))
-        low, high = float(mode.elevations[0]), float(mode.elevations[-1])
+        low = float(mode.elevations[0])
+        high = float(mode.elevations[-1])
         middle = float(mode.elevations[np.argmax(mode.scales)])
         middle = min(max(0.0, low), high) if mode.scales.max() == mode.scales.min() else middle
         elevations = np.repeat([[low], [middle], [high]], len(azimuths), axis=1)
@@ -113,7 +120,8 @@ def _arcs(sensor: Sensor, lobe: Lobe, length_m: float) -> Floats:
 
 def field_lines(sensor: Sensor, length_m: float, palette: Palette) -> Primitives:
     """The middle arc of each mode with its two edges, and fainter arcs above and below it."""
-    strong, faint = [], []
+    strong = []
+    faint = []
     place = np.asarray(sensor.pose.position, dtype=float)
     for lobe in lobes_of(sensor):
         low, middle, high = _arcs(sensor, lobe, length_m)

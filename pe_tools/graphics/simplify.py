@@ -26,7 +26,9 @@ from pe_core.scene.vehicle import Vehicle
 
 DEFAULT_TRIANGLES = 200_000
 TRIANGLES = Whole(1000, 10**9, "triangles")
-CLOSE, MIDDLE, CLOSE_QUICKLY = 0.85, 0.93, 0.5
+CLOSE = 0.85
+MIDDLE = 0.93
+CLOSE_QUICKLY = 0.5
 """Shares of the triangles wanted: from where on it is near enough, what is aimed at, and what is
 near enough for previews. Cars keep 0.53 to 0.66 with the first cubes that are tried."""
 TRIES = 8
@@ -101,11 +103,13 @@ class _Clusters:
 
     def chosen(self, parts: NDArray[np.integer]) -> _Kept:
         """Choose triangles, by the part of each."""
-        low, high = self.corners.min(axis=1), self.corners.max(axis=1)
+        low = self.corners.min(axis=1)
+        high = self.corners.max(axis=1)
         middle = self.corners.sum(axis=1) - low - high
         sizes = [len(self.middles)] * 3 + [int(parts.max()) + 1]
         is_flat = (low == middle) | (middle == high)
-        whole, flat = np.flatnonzero(~is_flat), np.flatnonzero(is_flat)
+        whole = np.flatnonzero(~is_flat)
+        flat = np.flatnonzero(is_flat)
         number = _numbers([w[whole] for w in (low, middle, high, parts)], sizes)
         staying = np.sort(whole[np.unique(number, return_index=True)[1]])
         line = _numbers([low, high, parts], sizes[1:])
@@ -113,7 +117,8 @@ class _Clusters:
             _numbers([a[staying], b[staying], parts[staying]], sizes[1:])
             for a, b in ((low, middle), (middle, high), (low, high))
         ]
-        long, short = flat[low[flat] < high[flat]], flat[low[flat] == high[flat]]
+        long = flat[low[flat] < high[flat]]
+        short = flat[low[flat] == high[flat]]
         lines = _first_not_among(long, line, np.concatenate(sides))
         there = np.concatenate([staying, lines])
         ends = [
@@ -163,7 +168,8 @@ def _first_not_among(candidates: Ints, number: Ints, excluded: Ints) -> Ints:
 def _numbers(columns: Sequence[NDArray[np.integer]], sizes: Sequence[int]) -> Ints:
     """Return one number (N,) for each row of `columns`: equal numbers mean equal rows. `sizes` are
     the exclusive upper bounds of the columns."""
-    number, span = columns[0].astype(np.int64), sizes[0]
+    number = columns[0].astype(np.int64)
+    span = sizes[0]
     for column, size in zip(columns[1:], sizes[1:], strict=True):
         if span * size >= MAX_INDEX:
             number, count = _counted(number)

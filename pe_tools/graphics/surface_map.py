@@ -7,11 +7,13 @@ from pe_core.base.arrays import Flags, Floats, Singles
 from .colors import VIRIDIS, Scale, on_scale
 from .primitives import Primitives
 
-FINE_M, MAX_TRIANGLES = 0.09, 40_000
+FINE_M = 0.09
+MAX_TRIANGLES = 40_000
 """Longest edge of the triangles that are coloured [m], unless they would be more than so many."""
 AT_ONCE = 4096
 FORBIDDEN = (0.46, 0.46, 0.46)
-ALPHA, SHADE = 0.94, 0.30
+ALPHA = 0.94
+SHADE = 0.30
 """Opacity, and how much darker a face is that is turned away from the light."""
 LIGHT = np.array([0.35, 0.25, 0.90])
 REACH = 0.55  # Width of the bell by which a place counts, in distances between places
@@ -32,17 +34,25 @@ def colored_surface(
     other over the distance between places."""
     fine = divided(triangles)
     corners, place = np.unique(np.round(fine.reshape(-1, 3), 4), axis=0, return_inverse=True)
-    place, across = place.reshape(-1), np.cross(fine[:, 1] - fine[:, 0], fine[:, 2] - fine[:, 0])
+    place = place.reshape(-1)
+    across = np.cross(fine[:, 1] - fine[:, 0], fine[:, 2] - fine[:, 0])
     sums = [np.bincount(place, np.repeat(across[:, k], 3), len(corners)) for k in range(3)]
     sizes = np.sqrt(sum(each**2 for each in sums))
     normal = np.stack(sums, axis=1) / np.maximum(sizes, 1e-12)[:, None]
     spacing = float(np.sqrt(np.linalg.norm(across, axis=1).sum() / 2.0 / len(points)))
     known = [np.asarray(each, np.float32) for each in (points, normals, values)]
-    shares, grey = np.empty(len(corners)), np.empty(len(corners), bool)
+    shares = np.empty(len(corners))
+    grey = np.empty(len(corners), bool)
     for start in range(0, len(corners), AT_ONCE):
         part = slice(start, start + AT_ONCE)
-        near = np.asarray(corners[part], np.float32), np.asarray(normal[part], np.float32)
-        mean, grey[part] = _spread(*near, known[0], known[1], known[2], spacing)
+        mean, grey[part] = _spread(
+            np.asarray(corners[part], np.float32),
+            np.asarray(normal[part], np.float32),
+            known[0],
+            known[1],
+            values=known[2],
+            spacing=spacing,
+        )
         shares[part] = (mean - bounds[0]) / (bounds[1] - bounds[0])
     colors = np.empty((len(corners), 4), np.float32)
     colors[:, :3] = np.where(grey[:, None], FORBIDDEN, on_scale(shares, scale))
@@ -77,7 +87,8 @@ def divided(triangles: Floats) -> Floats:
         first = sides.argmax(axis=1)
         short = sides.max(axis=1) <= longest
         done.append(triangles[short])
-        long, first = triangles[~short], first[~short]
+        long = triangles[~short]
+        first = first[~short]
         row = np.arange(len(long))
         a, b, c = (long[row, (first + k) % 3] for k in range(3))  # a to b is the longest side
         middle = (a + b) / 2.0

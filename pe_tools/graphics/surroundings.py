@@ -12,7 +12,9 @@ from .colors import Rgba
 from .primitives import LayerShape, Primitives
 
 BELOW_M = -0.02  # Height of the ground: a floor that the scene has at 0 hides it
-FAR_M, SKY_M, SEGMENTS = 400.0, 130.0, 72
+FAR_M = 400.0
+SKY_M = 130.0
+SEGMENTS = 72
 """Radius of the ground, height of the sky at its edge, and sides of both."""
 GROUND: tuple[tuple[float, Rgba], ...] = (
     (0.0, (0.150, 0.160, 0.170, 1.0)),
@@ -23,15 +25,20 @@ GROUND: tuple[tuple[float, Rgba], ...] = (
 HORIZON: Rgba = (0.560, 0.620, 0.680, 1.0)
 ZENITH: Rgba = (0.330, 0.380, 0.440, 0.0)
 
-GRID_M, GRID_FAR_M, GRID_STEP_M = 1.0, 30.0, 2.0
+GRID_M = 1.0
+GRID_FAR_M = 30.0
+GRID_STEP_M = 2.0
 """Distance of the lines of the grid, how far they reach, and length of the pieces that fade."""
 STRONG_EVERY = 5
 GRID: Rgba = (0.72, 0.78, 0.84, 0.34)
 STRONG: Rgba = (0.80, 0.86, 0.92, 0.75)
 
-LANE_M, LINE_M, ROAD_M = 3.5, 0.12, 150.0
+LANE_M = 3.5
+LINE_M = 0.12
+ROAD_M = 150.0
 """Width of a lane and of its lines, and half the length of the road that is drawn."""
-DASH_M, GAP_M = 3.0, 6.0
+DASH_M = 3.0
+GAP_M = 6.0
 PAINT: Rgba = (0.92, 0.92, 0.90, 0.95)
 
 
@@ -65,7 +72,8 @@ def _lanes() -> Primitives:
     for side in (-1.5, -0.5, 0.5, 1.5):
         y = side * LANE_M
         for low, high in [(-ROAD_M, ROAD_M)] if abs(side) > 1.0 else dashed:
-            near, far = y - LINE_M / 2.0, y + LINE_M / 2.0
+            near = y - LINE_M / 2.0
+            far = y + LINE_M / 2.0
             quads.append(
                 [(low, near), (high, near), (high, far), (low, near), (high, far), (low, far)]
             )
@@ -82,7 +90,8 @@ def _grid(x: float, y: float) -> Primitives:
         across = (round(middle / GRID_M) + np.arange(-count, count + 1)) * GRID_M
         along = other + np.arange(-GRID_FAR_M, GRID_FAR_M + GRID_STEP_M / 2.0, GRID_STEP_M)
         points = np.empty((len(across), len(along), 3))
-        points[..., axis], points[..., 1 - axis] = across[:, None], along
+        points[..., axis] = across[:, None]
+        points[..., 1 - axis] = along
         points[..., 2] = BELOW_M
         strong = np.rint(across / GRID_M) % STRONG_EVERY == 0
         colors = np.where(strong[:, None, None], STRONG, GRID) * np.ones((1, len(along), 1))

@@ -71,8 +71,9 @@ class CheckJob(Job):
         """Yield the steps of the check; the first one takes as long as all zones to be placed."""
         study = self.study
         if self._fitting:
-            around = study.rig, study.vehicle, study.reference, study.space
-            fitting, self.unchecked = checkable(study.requirements, *around)
+            fitting, self.unchecked = checkable(
+                study.requirements, study.rig, study.vehicle, study.reference, space=study.space
+            )
             study = replace(study, requirements=fitting)
         yield from self._check_steps(study)
 
@@ -102,7 +103,8 @@ class SuggestJob(Job):
             if name not in known:
                 raise InputError("suggest", "requirement", one_of(known, name), shown(name))
         if spot is not None:
-            study, names = with_blind_spot(study, *spot), (BLIND_SPOT,)
+            study = with_blind_spot(study, *spot)
+            names = (BLIND_SPOT,)
         super().__init__(study)
         self._names = names
         self.found: dict[str, list[Suggestion]] | None = None

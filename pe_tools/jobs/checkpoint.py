@@ -93,8 +93,10 @@ class Checkpoint:
     file = STUDY  # Of the best so far
 
     def __init__(self, job: OptimizeJob) -> None:
-        self._job, self._state = job, SearchState(job.study, job.inputs)
-        self._saved_s, self._seen = time.monotonic(), (-1, False)
+        self._job = job
+        self._state = SearchState(job.study, job.inputs)
+        self._saved_s = time.monotonic()
+        self._seen = (-1, False)
         self._saved_entries = len(job.journal.entries)
         self._folder: Path | None = None
 
@@ -112,15 +114,18 @@ class Checkpoint:
         job_state = (job.round, job.stopped)
         if time.monotonic() - self._saved_s < SAVE_EVERY_S and job_state == self._seen:
             return False
-        self._seen, self._saved_s = job_state, time.monotonic()
+        self._seen = job_state
+        self._saved_s = time.monotonic()
         return True
 
     def save(self, folder: Path) -> None:
         """Write state and best placement into a folder; raises as `SearchState.save`."""
-        entries, best = self._job.journal.entries, self._job.best
+        entries = self._job.journal.entries
+        best = self._job.best
         is_new = folder != self._folder or not (folder / SEARCH).exists()
         self._state.save(folder, best, {self._job.journal_name: entries}, other=is_new)
-        self._folder, self._saved_entries = folder, len(entries)
+        self._folder = folder
+        self._saved_entries = len(entries)
 
 
 class FrontCheckpoint:
@@ -129,9 +134,12 @@ class FrontCheckpoint:
     file = SEARCH
 
     def __init__(self, job: FrontJob, host: Mapping[str, str] | None = None) -> None:
-        self._job, self._host, self._state = job, host, SearchState(job.study, job.inputs)
+        self._job = job
+        self._host = host
+        self._state = SearchState(job.study, job.inputs)
         self._folder: Path | None = None
-        self._saved_s, self._searched = time.monotonic(), 0
+        self._saved_s = time.monotonic()
+        self._searched = 0
 
     @property
     def has_more(self) -> bool:
@@ -151,7 +159,8 @@ class FrontCheckpoint:
         `InputError` if the folder cannot be written, or another program wrote such a file."""
         journals = self._job.journals.entries()
         self._state.save(folder, self._job.study, journals, own=False, other=folder != self._folder)
-        self._folder, found = folder, None if self._job.is_done else self._job.trade_off
+        self._folder = folder
+        found = None if self._job.is_done else self._job.trade_off
         if found is not None and found.searched > self._searched:
             self._searched = found.searched
             write_front(found, folder, self._host)

@@ -27,7 +27,8 @@ from pe_core.base.table_reader import dump_json, parse_json
 
 LISTING = ".perception-entropy.json"
 """Name of the list of our files: ``{"perception-entropy": 1, "files": {name: [SHA-256, ...]}}``."""
-PROGRAM, VERSION = "perception-entropy", 1
+PROGRAM = "perception-entropy"
+VERSION = 1
 DIGESTS_KEPT = 8  # Number of digests listed for each file: those of its latest versions
 Write = Callable[[Path], None]
 """Writes a file to the given path, which has the final suffix and is in the final folder."""
@@ -78,7 +79,8 @@ class FileSet:
     name the user has chosen to replace, whoever wrote them."""
 
     def __init__(self, folder: Path, replaceable: Collection[str] = ()) -> None:
-        self._folder, self._replaceable = folder, replaceable
+        self._folder = folder
+        self._replaceable = replaceable
         self._made: dict[str, tuple[Path, str]] = {}
         self._unwanted: tuple[str, ...] = ()
 

@@ -15,7 +15,9 @@ from .results import placements, run_dict
 from .study_export import study_writers
 from .trade_off import Design, TradeOff
 
-FRONT_JSON, FRONT_CSV, DESIGNS = "front.json", "front.csv", "designs"
+FRONT_JSON = "front.json"
+FRONT_CSV = "front.csv"
+DESIGNS = "designs"
 FRONT_PAGE = "front.html"
 FRONT_NAMES = (FRONT_JSON, FRONT_CSV, FRONT_PAGE)  # Files of a front. Other rooms write the page.
 FRONT_SCHEMA = 1
@@ -61,7 +63,8 @@ def write_front(
     InputError
         The folder cannot be written, or one of these files in it was not written by this program.
     """
-    folder, data = prepare_folder(folder, FRONT_NAMES), front_dict(chosen, host)
+    folder = prepare_folder(folder, FRONT_NAMES)
+    data = front_dict(chosen, host)
     writers = dict[str, Write | bytes]()
     names = design_files(chosen)
     for design in chosen.front:  # mesh and boxes are shared
@@ -113,7 +116,8 @@ def _design_dict(design: Design, on_front: bool, file: str | None) -> dict[str, 
     """Return a design as plain data; `file` has its study. A screening that found no placement that
     keeps requirements, or went by expected AP, has no entropy. A design that was only screened was
     not held to requirements."""
-    score, no_entropy = design.score, design.is_led_in or math.isnan(design.entropy)
+    score = design.score
+    no_entropy = design.is_led_in or math.isnan(design.entropy)
     met = len(design.verdicts) - len(design.broken)
     asked = {"requirements_met": met, "requirements_not_met": list(design.broken)}
     return {

@@ -50,11 +50,13 @@ ALL_SEARCHED_UP_TO = 16
 """Up to this number of designs, each is searched in full; more are screened first."""
 FIRST_LOOK = 16
 """Screening is a search by Algorithm 1 with the number of candidates divided by this."""
-MARGIN, MARGIN_AP = 0.3, 0.05
+MARGIN = 0.3
+MARGIN_AP = 0.05
 """A design worse than the front by more than this after screening is not searched [nats; expected
 AP]: usually the rest of a search gains less. The rest gained 0 to 0.016 of AP for four designs of
 `blend_assets/choices` with 160 candidates."""
-EVALUATIONS_A_VARIABLE, LEAST_EVALUATIONS = 25, 60
+EVALUATIONS_A_VARIABLE = 25
+LEAST_EVALUATIONS = 60
 """Evaluations of one point of the front where the study has no budget."""
 
 
@@ -127,7 +129,8 @@ class FrontJob(Job):
         Of all searches; those of an interrupted job may be set before this one begins.
     """
 
-    shown, kept = ("evaluations",), ("journals",)
+    shown = ("evaluations",)
+    kept = ("journals",)
 
     def __init__(
         self,
@@ -136,13 +139,16 @@ class FrontJob(Job):
         objectives: Sequence[str | Callable[[Rig], float]] = (),
     ) -> None:
         super().__init__(study, workers)
-        front, value = study.search.goals.front, AP if is_by_ap(study) else ENTROPY
+        front = study.search.goals.front
+        value = AP if is_by_ap(study) else ENTROPY
         given = tuple(objectives) or tuple(front.objectives)
         self.names, self._own = objectives_of(given or (PRICE, value))
-        self._several, self.points = bool(given), front.points
+        self._several = bool(given)
+        self.points = front.points
         if given:
             check_objectives(study, [name for name in self.names if name not in self._own])
-        self.journals, self.is_done = FrontJournals(), False
+        self.journals = FrontJournals()
+        self.is_done = False
         self.evaluations = 0
         self._designs = study.designs()
         self._designs.require(self.names)
@@ -167,14 +173,14 @@ class FrontJob(Job):
         front = sorted(pareto_front([costs_of(d.figures, self.names) for d in compared]))
         refused = design_names([self._designs.models(picks) for picks in self._errors])
         return TradeOff(
-            self.study,
-            tuple(ordered),
-            tuple(compared[k] for k in front),
-            dict(zip(refused, map(str, self._errors.values()), strict=True)),
-            len(self._found) + len(self._errors) == self._possible,
-            self.stopped,
-            self.seconds,
-            self.names,
+            study=self.study,
+            designs=tuple(ordered),
+            front=tuple(compared[k] for k in front),
+            refused=dict(zip(refused, map(str, self._errors.values()), strict=True)),
+            is_complete=len(self._found) + len(self._errors) == self._possible,
+            stopped=self.stopped,
+            seconds=self.seconds,
+            objectives=self.names,
         )
 
     result = trade_off
@@ -222,8 +228,7 @@ class FrontJob(Job):
             for number, picks in enumerate(wanted):
                 if self.stopped:
                     break
-                share = number / len(wanted), 1.0 / len(wanted)
-                yield from self._kept(picks, search(picks, *share))
+                yield from self._kept(picks, search(picks, number / len(wanted), 1.0 / len(wanted)))
         if not self._found and self._errors:
             raise next(iter(self._errors.values()))
         if not self.stopped and self.study.search.goals.stop.seconds is None:
@@ -242,7 +247,8 @@ class FrontJob(Job):
                 done = (len(self._found) + len(self._errors)) / screening.max_designs
                 yield from self._kept(picks, self._screen(picks, done))
             screening.tell({picks: design.value for picks, [design] in self._found.items()})
-        evaluated, margin = list(self._found), MARGIN_AP if is_by_ap(self.study) else MARGIN
+        evaluated = list(self._found)
+        margin = MARGIN_AP if is_by_ap(self.study) else MARGIN
         figures = [(design.price, design.value) for [design] in self._found.values()]
         above = dict(zip(evaluated, above_front(figures), strict=True))
         near = [picks for picks in evaluated if above[picks] <= margin]
@@ -294,8 +300,10 @@ class FrontJob(Job):
         self, picks: Picks, done: float, share: float
     ) -> Generator[Progress, None, list[Design]]:
         """Search the points of one design; the best of all searches are the front's candidates."""
-        study, moving = self._study_of(picks), self._measured.names
-        search, points = study.search, weights_of(max(self.points, len(moving)), len(moving))
+        study = self._study_of(picks)
+        moving = self._measured.names
+        search = study.search
+        points = weights_of(max(self.points, len(moving)), len(moving))
         least = max(LEAST_EVALUATIONS, EVALUATIONS_A_VARIABLE * len(study.coding().variables))
         budget = max(1, search.evaluations // self.points) if search.evaluations else least
         goals = replace(search.goals, starts=[], stop=Stop())
@@ -312,13 +320,18 @@ class FrontJob(Job):
             value = feasible_first(scalar, constraints_of(study))
             begin = study.with_rig(min(rigs, key=value.entropy))
             job = self._begin(f"point {_digits(picks)} {k}", begin, [value])
-            part = done + share * k / len(points), share / len(points)
-            yield from self._steps(job.look(), f"searching {self.points} points", *part)
+            yield from self._steps(
+                job.look(),
+                f"searching {self.points} points",
+                done + share * k / len(points),
+                share / len(points),
+            )
             archive += [row.rig for row in job.history if not is_infeasible(row.entropy)]
         front = sorted(pareto_front(costs := [self._measured.costs(rig) for rig in archive]))
         designs = []
         for k in spread([costs[k] for k in front], self.points):
-            rig, waiting = archive[front[k]], Progress("scoring the front", done + share)
+            rig = archive[front[k]]
+            waiting = Progress("scoring the front", done + share)
             score = yield from self._score(rig, waiting, to_the_end=True)
             if score is None:
                 return []
@@ -346,7 +359,7 @@ class FrontJob(Job):
         in_traffic = None
         if is_by_ap(self.study):
             in_traffic = self.evaluators.searching(samples, shift)
-        return FrontFigures(self.study, moving, evaluator, in_traffic, self._own)
+        return FrontFigures(self.study, moving, evaluator, in_traffic, own=self._own)
 
     def _design(self, picks: Picks, study: Study, figures: FrontValues) -> Design:
         if self.study.selection.choices:
@@ -356,7 +369,8 @@ class FrontJob(Job):
         return Design("", self._designs.models(picks), study, figures)
 
     def _study_of(self, picks: Picks) -> Study:
-        models, sheets = self._designs.models(picks), self._designs.sheets(picks)
+        models = self._designs.models(picks)
+        sheets = self._designs.sheets(picks)
         return design_study(self.study, models, sheets) if models else self.study
 
     def _begin(
@@ -374,7 +388,8 @@ class FrontJob(Job):
         self, steps: Iterable[Progress], stage: str, done: float, share: float
     ) -> Iterator[Progress]:
         """Yield the progress of a search as this job's."""
-        before, fraction = self.evaluations, 0.0
+        before = self.evaluations
+        fraction = 0.0
         for progress in steps:
             if progress.stage == _DesignJob.SEARCHING:
                 fraction = progress.fraction
@@ -405,11 +420,13 @@ class _DesignJob(OptimizeJob):
     """The search of one design, with the evaluators and the workers that all designs share."""
 
     SEARCHING = "optimizing"
-    analyses, parts = False, 1
+    analyses = False
+    parts = 1
 
     def __init__(self, study: Study, parent: FrontJob) -> None:
         super().__init__(study, parent.workers)
-        self._parent, self.evaluators = parent, parent.evaluators
+        self._parent = parent
+        self.evaluators = parent.evaluators
 
     def _evaluator_of(self, samples: int) -> RigEvaluator:
         return self.evaluators.searching(samples)

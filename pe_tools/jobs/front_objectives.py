@@ -88,8 +88,11 @@ class FrontFigures:
     ) -> None:
         self._given = study, tuple(names), evaluator, in_traffic, own
         self._in_traffic = in_traffic
-        self.names, self._study, self._evaluator = tuple(names), study, evaluator
-        tolerance, seed = study.search.tolerance, study.search.seed
+        self.names = tuple(names)
+        self._study = study
+        self._evaluator = evaluator
+        tolerance = study.search.tolerance
+        seed = study.search.seed
         self._objective = objective_of(evaluator, tolerance, seed)
         self._sight = study.sight()
         asks = {MARGIN, BLIND_ZONES} & set(names)
@@ -186,7 +189,10 @@ class ScalarValue:
         ideal: Sequence[float],
         span: Sequence[float],
     ) -> None:
-        self._figures, self._weights, self._ideal, self._span = figures, weights, ideal, span
+        self._figures = figures
+        self._weights = weights
+        self._ideal = ideal
+        self._span = span
 
     def shared_parts(self) -> tuple[object, ...]:
         """Return what workers are sent once: the figures. Weights are other ones at each point."""

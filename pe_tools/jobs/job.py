@@ -41,6 +41,12 @@ from ..advice import (
 from .own_objective import OwnValues
 from .searched_figure import IN_NATS, SearchedFigure, searched_figure, searched_on
 
+T = TypeVar("T")
+AsDrawn = Callable[[Study], RequirementChecker]
+Watch = Callable[[float], bool]  # Takes the progress of a work, 0 to 1; returns whether it goes on
+WAIT_S = 0.03
+"""How long a job waits for its thread before it yields: a frame of a responsive window."""
+
 
 @dataclass(frozen=True, slots=True)
 class HistoryRow:
@@ -227,8 +233,11 @@ class Outcome(Tabular):
     @property
     def gain(self) -> str:
         """What a search moved, and the expected AP in traffic that it gained; may be empty."""
-        rigs = self.start.rig, self.study.rig
-        return "" if self.figures is None else gain_sentence(*rigs, *self.figures)
+        return (
+            ""
+            if self.figures is None
+            else gain_sentence(self.start.rig, self.study.rig, *self.figures)
+        )
 
     @property
     def cost(self) -> str:
@@ -242,14 +251,6 @@ def _beside(figures: KeyFigures) -> dict[str, Any]:
     """Return the figures beside the entropy, as a table has them."""
     rows = (FIGURES[key] for key in (TRAFFIC_AP, BLIND_SECTOR, BLIND_GROUND))
     return {row.title: row.value(figures) for row in rows}
-
-
-T = TypeVar("T")
-AsDrawn = Callable[[Study], RequirementChecker]
-Watch = Callable[[float], bool]  # Takes the progress of a work, 0 to 1; returns whether it goes on
-
-WAIT_S = 0.03
-"""How long a job waits for its thread before it yields: a frame of a responsive window."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -344,7 +345,8 @@ class Job:
 
     def __init__(self, study: Study, workers: int | None = None) -> None:
         require_kind("job", "study", study, Study)
-        self.study, self.workers = study, workers
+        self.study = study
+        self.workers = workers
         self.outcome: Outcome | None = None
         self.inputs: dict[str, Any] | None = None
         self.stopped = self.dropped = False
@@ -383,7 +385,8 @@ class Job:
         """End the part that runs: a search, whose best placement so far is scored, kept and
         analysed, or its analysis. Return whether there was such a part. Before the first score is
         complete there is nothing to keep: the job ends and `outcome` stays None."""
-        self.stopped, self.parts_left = True, self.parts_left - 1
+        self.stopped = True
+        self.parts_left = self.parts_left - 1
         return self.parts_left >= 0
 
     def drop(self) -> None:
@@ -459,7 +462,9 @@ class Job:
         """Collect the warnings about a study in a thread, yielding `waiting` until it is done."""
 
         def work(_: Watch) -> tuple[Advice, ...]:
-            found_warnings = warnings(study.rig, study.vehicle, study.space, study.prior, score)
+            found_warnings = warnings(
+                study.rig, study.vehicle, study.space, study.prior, score=score
+            )
             return (*self.notes, *curve_warnings(study), *found_warnings)
 
         return (yield from self._beside(work, waiting, to_the_end=True))

@@ -37,10 +37,14 @@ from .job import HistoryRow, Outcome
 from .searched_figure import IN_NATS, SearchedFigure
 from .study_export import fingerprint, inputs_of, study_text, study_writers
 
+EntriesOfSearches = Mapping[str, Iterable[EvaluatedRig]]
+"""Entries of journals by the names of their searches; empty: that of a job with one search."""
+
 
 def result_names(study: Study, kind: str) -> list[str]:
     """Return the names of the files that a run of this kind (score or optimize) writes."""
-    vehicle, prior = study.vehicle is not None, study.prior
+    vehicle = study.vehicle is not None
+    prior = study.prior
     given = [*[BOXES] * (prior.boxes is not None), *[GRID] * (prior.grid is not None)]
     areas = bool(areas_of(study.search.mounting))
     with_study = [STUDY, *[MESH] * vehicle, *[AREAS] * areas, *given]
@@ -54,8 +58,12 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
     Everything outside `run` depends on the study alone: two runs of the same study agree in it to
     the last bit. Infinity and NaN, which JSON does not have, become null.
     """
-    start, study, before, after = outcome.start, outcome.study, outcome.before, outcome.after
-    is_search, figure = outcome.kind == "optimize", outcome.figure
+    start = outcome.start
+    study = outcome.study
+    before = outcome.before
+    after = outcome.after
+    is_search = outcome.kind == "optimize"
+    figure = outcome.figure
     data: dict[str, Any] = {
         "schema": SCHEMA,
         "kind": outcome.kind,
@@ -88,7 +96,8 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
         data["gain"] = outcome.gain
         data["cost"] = outcome.cost
         data["change_stderr"] = outcome.change_errors
-    data["ap_model"], data["returns"] = study.model.model, study.returns
+    data["ap_model"] = study.model.model
+    data["returns"] = study.returns
     if is_search:
         flat = outcome.flatness
         data["flatness"] = None if flat is None else flat.to_dict()
@@ -154,7 +163,8 @@ def write_outcome(
         The folder cannot be written, or one of these files in it was not written by this program;
         it then stays unchanged.
     """
-    folder, data = prepare_folder(folder), result_dict(outcome, host)
+    folder = prepare_folder(folder)
+    data = result_dict(outcome, host)
     writers = study_writers(outcome.study, STUDY)
     if outcome.kind == "optimize":
         text = history_csv(outcome.history, outcome.figure)
@@ -218,16 +228,13 @@ def _line(row: ConditionScore) -> str:
     )
 
 
-EntriesOfSearches = Mapping[str, Iterable[EvaluatedRig]]
-"""Entries of journals by the names of their searches; empty: that of a job with one search."""
-
-
 class SearchState:
     """The state of a job's searches, which is saved in its folder while they run. `inputs` is the
     provenance at the beginning of the search, if file names have changed since."""
 
     def __init__(self, study: Study, inputs: dict[str, Any] | None = None) -> None:
-        self._study, self._inputs = study, inputs
+        self._study = study
+        self._inputs = inputs
 
     @cached_property
     def _head(self) -> dict[str, Any]:

@@ -72,7 +72,10 @@ class ScoreJob(Job):
             return
         self.outcome = Outcome(
             "score",
-            *(self.study, self.study, score, score),
+            self.study,
+            self.study,
+            score,
+            after=score,
             seconds=self.seconds,
             warnings=(*(warnings or ()), *condition_warnings(table)),
             verdicts=verdicts or (),
@@ -133,7 +136,8 @@ class OptimizeJob(Job):
         self.figure = searched_figure(study) if self._own is None else self._own.figure
         self.journal_name = "" if self._own is None else self.figure.key
         self.target = self.figure.target(study) if target is None else target
-        self.before, self.journal = before, journal or Journal()
+        self.before = before
+        self.journal = journal or Journal()
         self.round = 0
         self.history: list[HistoryRow] = []
         self.evaluations = 0
@@ -186,7 +190,7 @@ class OptimizeJob(Job):
         half = max(samples // len(HELD_OUT), MIN_SAMPLES)
         return [
             study_objective(
-                self.study, self.evaluators.searching(half, shift), half, self.workers, shift
+                self.study, self.evaluators.searching(half, shift), half, self.workers, shift=shift
             )
             for shift in HELD_OUT
         ]
@@ -225,7 +229,8 @@ class OptimizeJob(Job):
         if not self.stopped and self.study.search.goals.stop.seconds is None:
             self.journal.require_used()
         yield self._progress  # a driver keeps the best so far before it is scored
-        stopped, self.parts_left = self.stopped, min(self.parts_left, 1)
+        stopped = self.stopped
+        self.parts_left = min(self.parts_left, 1)
         self.stopped = self.parts_left < 1
         last, best = yield from self._better_of(first)
         looking = self._about("scoring the result", last.value)
@@ -259,31 +264,35 @@ class OptimizeJob(Job):
             return
         sure: tuple[Advice, ...] = ()
         if found is not None:
-            off, errors, tolerant = found.after, found.errors, best.search.tolerance.mounts_off
-            sure = fragile(off.rise, off.stderr, errors.position, errors.angle, tolerant)
+            off = found.after
+            errors = found.errors
+            tolerant = best.search.tolerance.mounts_off
+            sure = fragile(off.rise, off.stderr, errors.position, errors.angle, tolerant=tolerant)
         outcome = Outcome(
-            "optimize",
-            self.study,
-            best,
-            first.score,
-            last.score,
-            tuple(self.history),
-            self.evaluations,
-            stopped,
-            self.seconds,
-            (*warnings, *sure, *(against or ()), *condition_warnings(table)),
-            self.inputs,
-            self.journal.entries,
-            found,
-            verdicts,
-            table,
-            flat,
-            tuple(self.ends),
-            self.stop_reason,
-            seed_scatter(self.descents) if self._own is None else None,
-            (first.in_traffic, last.in_traffic) if first.in_traffic and last.in_traffic else None,
-            (figures[0], figures[-1]) if figures else None,
-            self._own_values(best),
+            kind="optimize",
+            start=self.study,
+            study=best,
+            before=first.score,
+            after=last.score,
+            history=tuple(self.history),
+            evaluations=self.evaluations,
+            stopped=stopped,
+            seconds=self.seconds,
+            warnings=(*warnings, *sure, *(against or ()), *condition_warnings(table)),
+            inputs=self.inputs,
+            evaluated=self.journal.entries,
+            robustness=found,
+            verdicts=verdicts,
+            conditions=table,
+            flatness=flat,
+            starts=tuple(self.ends),
+            stop_reason=self.stop_reason,
+            seed_scatter=seed_scatter(self.descents) if self._own is None else None,
+            in_traffic=(first.in_traffic, last.in_traffic)
+            if first.in_traffic and last.in_traffic
+            else None,
+            figures=(figures[0], figures[-1]) if figures else None,
+            own=self._own_values(best),
         )
         warned = (*outcome.warnings, *not_kept(outcome.dashboard))
         self.outcome = replace(outcome, warnings=warned)
@@ -329,14 +338,16 @@ class OptimizeJob(Job):
         return before, self.study  # the search's sample overrated the placement
 
     def _about(self, stage: str, value: float) -> Progress:
-        return Progress(stage, 1.0, value, self.evaluations, self.figure)
+        return Progress(
+            stage, fraction=1.0, entropy=value, evaluations=self.evaluations, figure=self.figure
+        )
 
     def _robustness(self, best: Study) -> Robustness:
         """Return how entropies change under mounting errors and sensor failures."""
         search = self.study.search
         last = self.evaluators.on(search.samples)
         sampled = last if last.samples else self.evaluators.on(DEFAULT_SEARCH_SAMPLES)
-        return robustness(sampled, self.study.rig, best.rig, search.tolerance, search.seed)
+        return robustness(sampled, self.study.rig, best.rig, search.tolerance, seed=search.seed)
 
     @property
     def _start_may_stay(self) -> bool:
@@ -386,13 +397,14 @@ class OptimizeJob(Job):
         self, rig: Rig, objectives: list[Objective], watch: StopWatch, share: tuple[float, float]
     ) -> Iterator[Progress]:
         """Search step by step in a thread: one candidate may take longer than a window can wait."""
-        search, before = self.study.search, self.evaluations
+        search = self.study.search
+        before = self.evaluations
         steps = optimize(
             objectives,
             rig,
             self.study.with_rig(rig).search_space(),
             search.seed,
-            search.schedule,
+            schedule=search.schedule,
             method=search.method,
             evaluations=search.from_each_start,
             executor=self._helpers,
@@ -408,7 +420,9 @@ class OptimizeJob(Job):
                 break
 
     def _note(self, step: Step) -> None:
-        self.evaluations, self.round, self.descents = step.evaluations, step.round, step.ends
+        self.evaluations = step.evaluations
+        self.round = step.round
+        self.descents = step.ends
         self._progress = Progress(
             "optimizing",
             step.fraction,

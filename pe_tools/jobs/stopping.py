@@ -14,7 +14,10 @@ from ..advice import flatness_lines
 from .job import Outcome
 from .searched_figure import IN_NATS, SearchedFigure
 
-TARGET, SECONDS, GAIN = "target", "seconds", "gain"  # Reasons, as result.json names them
+# Reasons, as result.json names them
+TARGET = "target"
+SECONDS = "seconds"
+GAIN = "gain"
 APART = 2.0
 """Within so many standard deviations of the descents of one search, another seed's result lies."""
 
@@ -32,7 +35,9 @@ class StopWatch:
         figure: SearchedFigure = IN_NATS,
         target: float | None = None,
     ) -> None:
-        self._stop, self._objectives, self._started = stop, objectives, started
+        self._stop = stop
+        self._objectives = objectives
+        self._started = started
         self._figure = figure
         self._target = None if target is None else figure.to_value(target)
         self._bests: deque[float] = deque(maxlen=stop.over + 1)

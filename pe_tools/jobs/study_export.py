@@ -48,7 +48,8 @@ def export_study(study: Study, path: str | Path, *, replace_study: bool = False)
 
 def study_writers(study: Study, name: str) -> dict[str, Write | bytes]:
     """Return the content of a study file, and writers of the files beside it, by file name."""
-    path, writers = Path(name), dict[str, Write | bytes]()
+    path = Path(name)
+    writers = dict[str, Write | bytes]()
     if study.vehicle is not None:
         vehicle = study.vehicle
         mesh = Mesh(vehicle.triangles, np.asarray(vehicle.parts), tuple(vehicle.part_names))

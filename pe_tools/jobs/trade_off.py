@@ -45,7 +45,8 @@ def design_study(
     gone = {name for name, model in models.items() if model is None}
     rig = Rig([_taken(sensor, models, sheets) for sensor in study.rig if sensor.name not in gone])
     order = [sensor.name for sensor in rig]
-    mounting, goals = study.search.mounting, study.search.goals
+    mounting = study.search.mounting
+    goals = study.search.goals
     groups = [[name for name in group if name not in gone] for group in mounting.groups]
     mounting = replace(
         mounting,
@@ -222,7 +223,8 @@ class TradeOff(Tabular):
         of_all = f"{len(self.front)} on the front of {labels}"
         if not self.study.selection.choices or self.study.search.goals.front.objectives:
             return of_all
-        count, more = len(self.designs) + len(self.refused), "of more"
+        count = len(self.designs) + len(self.refused)
+        more = "of more"
         every = "all that the limits allow" if self.is_complete else more
         return f"{of_all}; {self.searched} searched of {count} looked at ({every})"
 

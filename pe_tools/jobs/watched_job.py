@@ -26,7 +26,9 @@ class JobRun:
     attribute `outcome` of the job."""
 
     def __init__(self, job: Job, outcome: str = "outcome", keep_s: float = KEEP_S) -> None:
-        self._job, self._outcome, self._steps = job, outcome, iter(job)
+        self._job = job
+        self._outcome = outcome
+        self._steps = iter(job)
         self._keep_s = keep_s
         self._seen: object = None
         self._kept_at = time.monotonic()
@@ -43,7 +45,8 @@ class JobRun:
         state = [len(each) if hasattr(each, "__len__") else each for each in shown.values()]
         if state == self._seen:
             shown = {}
-        self._seen, kept = state, {}
+        self._seen = state
+        kept = {}
         if time.monotonic() - self._kept_at > self._keep_s:
             self._kept_at = time.monotonic()
             kept = {name: getattr(self._job, name) for name in self._job.kept}
@@ -60,7 +63,8 @@ class WatchedJob:
     attributes that the running job has."""
 
     def __init__(self, job: Job) -> None:
-        self.job, self.seen = job, copy.copy(job)
+        self.job = job
+        self.seen = copy.copy(job)
         self.progress = Progress("starting", 0.0)
 
     def note(self, step: JobStep) -> None:

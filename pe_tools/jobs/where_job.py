@@ -27,10 +27,12 @@ from .candidate_workers import ExecutorSource, candidate_workers
 from .job import Job, Progress, begun
 
 SAMPLES = 2048  # Voxels on which places are scored
-BATCH, COMPARED = 32, 8
+BATCH = 32
+COMPARED = 8
 """Places that are scored between two looks at the progress; and that are scored on a larger sample,
 too, from the best to the worst: they tell the error."""
-BEST, APART_M = 5, 0.5
+BEST = 5
+APART_M = 0.5
 """How many places are named as the best, and how far apart they are at least. They fit the sample
 that they were chosen on: their changes are reported on the larger one."""
 CONFIRMED = 40  # Places that are scored on the larger sample at most, until the best ones are
@@ -198,7 +200,9 @@ class WhereJob(Job):
             expected = one_of(mounts, mount) if mounts else "a study with a mount on a surface"
             raise InputError("where", "mount", expected, shown(mount))
         self.sensor = with_free_name(study, sensor)
-        self.figure, self._parts, self._mount = figure, parts, mount
+        self.figure = figure
+        self._parts = parts
+        self._mount = mount
         self.count = self.row.places if count is None else count
         self.places: list[SurfacePlace] = []
         self.base: float = 0.0
@@ -217,16 +221,32 @@ class WhereJob(Job):
         """What is known so far; None before the first place, and where the job was dropped."""
         if self.dropped or not self.places:
             return None
-        asked = self.study.rig, self.sensor, self.figure, self._mount, self.count
-        return PlaceMap(*asked, self.surface, self.base, tuple(self.places), self.error)
+        return PlaceMap(
+            rig=self.study.rig,
+            sensor=self.sensor,
+            figure=self.figure,
+            mount=self._mount,
+            count=self.count,
+            surface=self.surface,
+            base=self.base,
+            places=tuple(self.places),
+            error=self.error,
+        )
 
     def __iter__(self) -> Iterator[Progress]:
-        row, study = self.row, self.study
+        row = self.row
+        study = self.study
         yield self._waiting
-        where = study.vehicle, study.search.mounting.constraints, study.limits
         mount: Any = study.search.mounting.mounts.get(self._mount)
         own: Any = {"parts": self._parts, "mount": mount, "count": self.count}
-        self._places = MountingPlaces(study.rig, self.sensor, *where, **own)
+        self._places = MountingPlaces(
+            study.rig,
+            self.sensor,
+            study.vehicle,
+            study.search.mounting.constraints,
+            limits=study.limits,
+            **own,
+        )
         self.surface = self._places.surface.triangles
         objective = row.objective(study, SAMPLES, SEARCHED)
         self.base = rounded(row.sign * objective.entropy(study.rig))
@@ -250,7 +270,8 @@ class WhereJob(Job):
         self, some: list[SurfacePlace], objective: Objective, workers: ExecutorSource
     ) -> list[SurfacePlace]:
         rigs = [self._places.with_sensor(each.pose) for each in some if not each.reason]
-        found, sign = evaluate_all(objective, rigs, executor=workers()), self.row.sign
+        found = evaluate_all(objective, rigs, executor=workers())
+        sign = self.row.sign
         values = iter([rounded(sign * each) for each in found])
         return [each if each.reason else replace(each, value=next(values)) for each in some]
 

@@ -19,10 +19,22 @@ from .solid import MountedView, border
 
 Entries = list[dict[str, Any]]
 
-FLOAT, UNSIGNED = 5126, 5125
-ARRAY, ELEMENTS = 34962, 34963
-LINES, TRIANGLES = 1, 4
-MAGIC, JSON_CHUNK, BINARY_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
+FLOAT = 5126
+UNSIGNED = 5125
+ARRAY = 34962
+ELEMENTS = 34963
+LINES = 1
+TRIANGLES = 4
+MAGIC = 0x46546C67
+JSON_CHUNK = 0x4E4F534A
+BINARY_CHUNK = 0x004E4942
+EXTERIOR = "Grp_Exterior"
+STATIC = "Grp_Exterior_Static"
+DYNAMIC = "Grp_Exterior_Dynamic"
+REAR_AXLE = "Grp_Rear_Axle_Center"
+GLASS_ALPHA = 0.45
+SPOKES = 8
+"""Lines from the sensor to each border; a picture's begins at a corner, so four go to corners."""
 
 
 def y_up(points: Floats) -> Floats:
@@ -104,11 +116,6 @@ def _chunk(kind: int, data: bytes, padding: bytes) -> bytes:
     return struct.pack("<II", len(data), kind) + data
 
 
-EXTERIOR, STATIC, DYNAMIC = "Grp_Exterior", "Grp_Exterior_Static", "Grp_Exterior_Dynamic"
-REAR_AXLE = "Grp_Rear_Axle_Center"
-GLASS_ALPHA = 0.45
-
-
 def add_vehicle(
     scene: GlbScene,
     vehicle: Vehicle | None,
@@ -138,10 +145,6 @@ def _parts(scene: GlbScene, vehicle: Vehicle, taken: Collection[str]) -> list[in
             mesh = scene.add_mesh(name, points, index.reshape(-1, 3), material)
             nodes.append(scene.add_node(f"{name} (body)" if name in taken else name, mesh=mesh))
     return nodes
-
-
-SPOKES = 8
-"""Lines from the sensor to each border; a picture's begins at a corner, so four go to corners."""
 
 
 def view_wires(view: MountedView) -> list[Floats]:

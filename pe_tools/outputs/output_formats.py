@@ -22,11 +22,16 @@ from ..exchange import Written, write_files
 from . import scene_gltf
 from .request import OutputRequest
 
+OF_EXAMPLE = ("footprints", "footprints-dxf", "masks", "nebula", "rerun", "solids")
+"""Outputs of the plugin that is shipped as an example."""
+EXAMPLE = "the plugin perception-entropy-outputs: pip install examples/plugin"
+OUTPUT = "output"  # The sort of plugins that lead to a `SceneOutput`
+
 
 def _with_library(name: str, title: str, request: OutputRequest) -> tuple[Written, list[str]]:
     """Write by a function of a library's module; `InputError` without it, or for what it raises."""
     expected = install_hint("library", name)
-    point, function = required_plugin("library", name, title, "library", expected)
+    point, function = required_plugin("library", name, title, "library", expected=expected)
     written: tuple[Written, list[str]] = call_plugin(point, function, request)
     return written
 
@@ -56,10 +61,6 @@ _ROWS = (
         has_range=False,
     ),
 )
-OF_EXAMPLE = ("footprints", "footprints-dxf", "masks", "nebula", "rerun", "solids")
-"""Outputs of the plugin that is shipped as an example."""
-EXAMPLE = "the plugin perception-entropy-outputs: pip install examples/plugin"
-OUTPUT = "output"  # The sort of plugins that lead to a `SceneOutput`
 
 
 @cache
@@ -76,7 +77,7 @@ def scene_outputs() -> Mapping[str, SceneOutput]:
 def _plugin_output(name: str) -> SceneOutput:
     """Return the output of a plugin; `InputError` where it is missing or no output."""
     expected = EXAMPLE if name in OF_EXAMPLE else "a package that brings it"
-    point, row = required_plugin(OUTPUT, name, "export", f"output {name!r}", expected)
+    point, row = required_plugin(OUTPUT, name, "export", f"output {name!r}", expected=expected)
     if not isinstance(row, SceneOutput) or row.name != name:
         expected = f"a SceneOutput named {name!r}"
         raise InputError(plugin_name(point), "entry point", expected, type(row).__name__)

@@ -11,6 +11,12 @@ from pe_core.study import Study
 
 from ..graphics import Rgb
 
+NO_RANGE_M = 80.0
+"""How far a sensor is drawn that has no range of its own: as far as the paper looks ahead."""
+BLIND: Rgb = (0.75, 0.12, 0.12)
+BODY: Rgb = (0.72, 0.74, 0.76)
+GLASS: Rgb = (0.35, 0.42, 0.48)
+
 
 def plain_names(names: Sequence[str]) -> tuple[dict[str, str], list[str]]:
     """Return a name of files for each name, and a message for each name that changed. Plain names
@@ -21,15 +27,12 @@ def plain_names(names: Sequence[str]) -> tuple[dict[str, str], list[str]]:
         unique = stem = file_stem(name, "sensor")
         number = 2
         while unique.lower() in taken:
-            unique, number = f"{stem}_{number}", number + 1
+            unique = f"{stem}_{number}"
+            number = number + 1
         plain_by_name[name] = unique
     return plain_by_name, [
         f"{a}: called {b} in names of files" for a, b in plain_by_name.items() if a != b
     ]
-
-
-NO_RANGE_M = 80.0
-"""How far a sensor is drawn that has no range of its own: as far as the paper looks ahead."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,11 +57,6 @@ class OutputRequest:
         if limit is None:
             return sensor_range if math.isfinite(sensor_range) else NO_RANGE_M
         return min(sensor_range, limit)
-
-
-BLIND: Rgb = (0.75, 0.12, 0.12)
-BODY: Rgb = (0.72, 0.74, 0.76)
-GLASS: Rgb = (0.35, 0.42, 0.48)
 
 
 def linear(color: Rgb) -> list[float]:

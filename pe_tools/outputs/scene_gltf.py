@@ -20,19 +20,22 @@ from .glb import LINES, GlbScene, add_vehicle, view_wires, y_up
 from .request import OutputRequest
 from .solid import free_solid, mounted_view
 
-FILE, TITLE = "scene.glb", "glTF"
+FILE = "scene.glb"
+TITLE = "glTF"
 ROOT = "Grp_Root"
 REACH_M = 4.0  # How far fields of view go unless told
 VIEW_ALPHA = 0.18
 LOOKING_ALONG_X = [0.0, -math.sqrt(0.5), 0.0, math.sqrt(0.5)]
 """Quaternion (x, y, z, w) that turns -z of a glTF camera to a sensor's x."""
-NEAR_M, FAR_M = 0.1, 1000.0
+NEAR_M = 0.1
+FAR_M = 1000.0
 STEP = math.radians(1.0)  # Approximate angular size of the triangles, seen from the sensor [rad]
 
 
 def write(request: OutputRequest) -> tuple[Written, list[str]]:
     """Return the scene in one file, and lines on what is not in it."""
-    study, scene = request.study, GlbScene()
+    study = request.study
+    scene = GlbScene()
     sensors, left_out = with_pictures(portable_sensors(study.rig), centred, TITLE)
     names = {sensor.name for sensor in study.rig}
     nodes = add_vehicle(scene, study.vehicle, study.reference, names)
@@ -61,7 +64,8 @@ def _camera(scene: GlbScene, portable: PortableSensor) -> list[int]:
     picture = portable.picture
     if picture is None or picture.size is None:
         return []
-    wide, high = picture.size[0] / picture.fx, picture.size[1] / picture.fy
+    wide = picture.size[0] / picture.fx
+    high = picture.size[1] / picture.fy
     perspective: dict[str, Any] = {"yfov": 2.0 * math.atan(high / 2.0), "aspectRatio": wide / high}
     perspective |= {"znear": NEAR_M, "zfar": FAR_M}
     # Not the sensor's own name: trimesh merges a node and a camera with the same name.
@@ -83,8 +87,13 @@ def _view(scene: GlbScene, request: OutputRequest, sensor: Sensor, color: Rgb) -
     steps = np.delete(np.arange(ends[-1] - 1), ends[:-1] - 1)
     material = scene.add_material(name, color, VIEW_ALPHA)
     sides = scene.add_mesh(name, _own(sensor, solid.points), solid.faces, material)
-    drawn = np.stack([steps, steps + 1], axis=1), scene.add_material(f"{name}, edges", color)
-    edges = scene.add_mesh(f"{name}, edges", _own(sensor, np.vstack(lines)), *drawn, LINES)
+    edges = scene.add_mesh(
+        f"{name}, edges",
+        _own(sensor, np.vstack(lines)),
+        np.stack([steps, steps + 1], axis=1),
+        scene.add_material(f"{name}, edges", color),
+        mode=LINES,
+    )
     return [scene.add_node(name, mesh=sides), scene.add_node(f"{sensor.name} edges", mesh=edges)]
 
 

@@ -37,7 +37,8 @@ def border(faces: Ints) -> Ints:
     """Return the edges (E, 2) that belong to one face only, in the direction of that face."""
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     size = int(faces.max()) + 1 if len(faces) else 1
-    forward, back = edges[:, 0] * size + edges[:, 1], edges[:, 1] * size + edges[:, 0]
+    forward = edges[:, 0] * size + edges[:, 1]
+    back = edges[:, 1] * size + edges[:, 0]
     return edges[~np.isin(forward, back)]
 
 
@@ -73,7 +74,8 @@ def mounted_view(
     ends = np.full(len(directions), reach)
     body = None if vehicle is None else kind_of(sensor).opaque(vehicle)
     if body is not None:
-        position, through = sensor.pose.position, sensor.model.sees_through_glass
+        position = sensor.pose.position
+        through = sensor.model.sees_through_glass
         hits = body.first_hit(position, directions, through)
         ends = np.clip(hits.distance, NEAREST_M, reach)
-    return MountedView(np.asarray(sensor.pose.position), directions, patch.faces, reach, ends)
+    return MountedView(np.asarray(sensor.pose.position), directions, patch.faces, reach, ends=ends)

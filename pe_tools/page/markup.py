@@ -20,7 +20,8 @@ TEMPLATES = Path(__file__).with_name("templates")
 ALLOWED_SPACES = "\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}"
 """Spaces that count as not printable, but occur in texts of this page."""
 MINUS = "\N{MINUS SIGN}"
-joined, percent = advice.joined, advice.percent
+joined = advice.joined
+percent = advice.percent
 
 
 def render(template: str, **values: Any) -> Markup:

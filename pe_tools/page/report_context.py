@@ -16,6 +16,9 @@ T = TypeVar("T")
 MAX_TRIANGLES = 200_000  # Of the vehicle in pictures on the page; rays are cast at all triangles
 MAP_STEP_M = 1.0
 MAX_STUDIES = 6  # On one page, side by side
+TODAY = "today"
+"""Date that stands for the day of the run. Without it the same study gives the same bytes."""
+MAX_LETTERS = 200
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,11 +110,6 @@ def keyed_contexts(contexts: Sequence[ReportContext]) -> tuple[ReportContext, ..
         replace(context, key=key, study_count=len(contexts))
         for context, key in zip(contexts, ascii_lowercase, strict=False)
     )
-
-
-TODAY = "today"
-"""Date that stands for the day of the run. Without it the same study gives the same bytes."""
-MAX_LETTERS = 200
 
 
 @dataclass(frozen=True, slots=True)

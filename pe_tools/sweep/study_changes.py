@@ -20,7 +20,9 @@ RANGE = re.compile(r"(\d{1,9}):(\d{1,9})")
 MAX_RUNS = 10_000  # A sweep of more runs is taken for a typing error
 MAX_PARTS = 30
 SOURCE = "command line"
-OPENING, CLOSING, QUOTES = "[{", "]}", "\"'"
+OPENING = "[{"
+CLOSING = "]}"
+QUOTES = "\"'"
 TomlPath = tuple[str | int, ...]  # Keys of tables, and indices in arrays of tables
 
 
@@ -79,7 +81,8 @@ def _counted(text: str) -> Sequence[str]:
     """Return the whole numbers from A up to, but not, B of "A:B"; of others the text itself."""
     if (found := RANGE.fullmatch(text)) is None:
         return [text]
-    first, end = int(found[1]), int(found[2])
+    first = int(found[1])
+    end = int(found[2])
     if not 0 < end - first <= MAX_RUNS:
         raise InputError(SOURCE, "range", f"A:B with 1 to {MAX_RUNS:,} numbers", shown(text))
     return [str(number) for number in range(first, end)]
@@ -87,7 +90,9 @@ def _counted(text: str) -> Sequence[str]:
 
 def _split(text: str) -> Iterator[str]:
     """Split at commas that are in neither a list, a table nor quotes."""
-    depth, quote, start = 0, "", 0
+    depth = 0
+    quote = ""
+    start = 0
     for place, letter in enumerate(text):
         if quote:
             quote = "" if letter == quote else quote

@@ -121,7 +121,9 @@ def run_all(
     def call_of(name: str) -> Call:
         return Call(run_task, (make_task(name),))
 
-    with closing(run_tasks(pool.executor, deque(names), call_of, pool.width, WAIT_S)) as batches:
+    with closing(
+        run_tasks(pool.executor, deque(names), call_of, pool.width, wait_s=WAIT_S)
+    ) as batches:
         pool.check()
         while should_continue():
             try:
@@ -133,7 +135,8 @@ def run_all(
                 return
             for name, result in batch:
                 if isinstance(result, WorkerDied):
-                    expected, found = "a worker that survives its task", "two that died"
+                    expected = "a worker that survives its task"
+                    found = "two that died"
                     result = InputError(name, "worker", expected, f"{found} ({result.reason})")
                 on_result(name, result)
             pool.check()

@@ -18,13 +18,18 @@ from ..jobs import FileSet, Outcome, fingerprint, prepare_folder
 from ..wording import aligned, percent
 from .sweep_runner import SweepRun
 
-SWEEP_CSV, SWEEP_JSON = "sweep.csv", "sweep.json"
-WAITING, BEGUN, DONE, FAILED = "waiting", "begun", "done", "failed"
+SWEEP_CSV = "sweep.csv"
+SWEEP_JSON = "sweep.json"
+WAITING = "waiting"
+BEGUN = "begun"
+DONE = "done"
+FAILED = "failed"
 UNWRITTEN = "not written"  # The status of a run whose results could not be written
 BEST = "*"
 BEFORE = "_before"
 """Ends the name of a column of the given study, beside that of the result."""
-OVER_FRAMES, CHECKED = "entropy_over_frames", "requirements_checked"
+OVER_FRAMES = "entropy_over_frames"
+CHECKED = "requirements_checked"
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,18 +63,19 @@ def row_of(
     """Return the row of a run's result, with the status and the message of one that succeeded."""
     if isinstance(result, InputError):
         return SweepRow(run, FAILED, message=str(result))
-    before, after = result.before, result.after
+    before = result.before
+    after = result.after
     ap_before, ap = (o.ap for o in result.in_traffic) if result.in_traffic else (None, None)
     met = [verdict.met for verdict in result.verdicts]
     return SweepRow(
-        run,
-        status,
-        before.entropy,
-        after.entropy,
-        after.coverage,
-        message,
-        ap_before,
-        ap,
+        run=run,
+        status=status,
+        before=before.entropy,
+        entropy=after.entropy,
+        coverage=after.coverage,
+        message=message,
+        ap_before=ap_before,
+        ap=ap,
         figures=result.figures,
         met=(sum(met), len(met)) if met else None,
     )
@@ -85,20 +91,21 @@ def row_of_result(run: SweepRun, folder: Path, kind: str) -> SweepRow | None:
         same = data["inputs"]["study_sha256"] == fingerprint(run.study)
         if made != (kind, False, __version__) or not same:
             return None
-        before, entropy = float(data["before"]["entropy"]), float(data["entropy"])
+        before = float(data["before"]["entropy"])
+        entropy = float(data["entropy"])
         found = data.get(EXPECTED_AP)
         ends = ("before", "after")
         aps = [None if found is None else float(found[end]["ap"]) for end in ends]
         met = [bool(verdict["met"]) for verdict in data.get("requirements", ())]
         return SweepRow(
-            run,
-            DONE,
-            before,
-            entropy,
-            float(data["coverage"]),
-            "",
-            aps[0],
-            aps[1],
+            run=run,
+            status=DONE,
+            before=before,
+            entropy=entropy,
+            coverage=float(data["coverage"]),
+            message="",
+            ap_before=aps[0],
+            ap=aps[1],
             figures=_read_figures(data.get("figures")),
             met=(sum(met), len(met)) if met else None,
         )
@@ -132,7 +139,8 @@ def write_table(rows: Sequence[SweepRow], kind: str, folder: Path) -> dict[str, 
 def table_lines(rows: Sequence[SweepRow], kind: str) -> list[str]:
     """Return the lines of the table for the terminal: key figures are those of the results. Lowest
     entropy and highest AP are marked."""
-    keys, several = _keys(rows), len({row.run.study_name for row in rows}) > 1
+    keys = _keys(rows)
+    several = len({row.run.study_name for row in rows}) > 1
     heads = [*["study"] * several, *keys, *["start"] * (kind != "score"), "entropy", "coverage"]
     lowest = min((r.entropy for r in rows if r.entropy is not None), default=None)
     highest = max((r.ap for r in rows if r.ap is not None), default=None)
@@ -203,7 +211,8 @@ def _dict(row: SweepRow, kind: str) -> dict[str, Any]:
 
 def _table(rows: Sequence[SweepRow], kind: str) -> list[list[object]]:
     """Return the table: the names of its columns, and a line for each run."""
-    keys, runs = _keys(rows), [_dict(row, kind) for row in rows]
+    keys = _keys(rows)
+    runs = [_dict(row, kind) for row in rows]
     own = ("run", "study", "changes")
     figures = list(dict.fromkeys(name for data in runs for name in data if name not in own))
     lines: list[list[object]] = [["run", "study", *keys, *figures]]

@@ -26,7 +26,8 @@ from .runs import RunFiles, add_run_options, do_runs, runs, seed_by_seed
 from .scan_curves import scan_curves, write_curves
 from .scores import placement_scores
 
-FOLDER, QUICK_FOLDER = "docs/validity/own", "validity-own-quick"
+FOLDER = "docs/validity/own"
+QUICK_FOLDER = "validity-own-quick"
 
 
 def validate_own(args: argparse.Namespace, folder: Path) -> Answer:
@@ -60,7 +61,8 @@ def _study(
     """Return what follows from the results of all runs, written to files, and the scores."""
     results = {name: each.read() for name, each in files.items()}
     if len(searched) == len(plans[AFTER_SEARCH].searches.rigs):  # no search is done
-        searched, results[AFTER_SEARCH] = [], {}
+        searched = []
+        results[AFTER_SEARCH] = {}
     tried = [r.placement for r in files[CAMERAS].all if r.name in results[CAMERAS]]
     chosen = {
         OWN: _tested(plans[OWN], results[OWN]),
@@ -68,7 +70,8 @@ def _study(
         AFTER_SEARCH: searched,
     }
     scores = {name: _scores(files[name], chosen[name]) for name in plans}
-    own, done = plans[OWN], (results[OWN], scores[OWN])
+    own = plans[OWN]
+    done = (results[OWN], scores[OWN])
     found = {
         OWN: analysis(own, *done),
         CAMERAS: camera_analysis(plans[CAMERAS], results[CAMERAS], scores[CAMERAS]),

@@ -27,14 +27,18 @@ from .scores import TRAFFIC
 START = "start"
 """Name of the placement before a search; those after it have that of their objective."""
 PLACEMENTS = "placements.json"
-POSITION_DIGITS, ANGLE_DIGITS = 3, 2
+POSITION_DIGITS = 3
+ANGLE_DIGITS = 2
 """Of a placement [m, deg]: what is scored and cast is what the file says."""
 LIDARS = (2, 4)
 """Of a rig on a roof."""
-ROOF_M, ABOVE_M = 0.3, 0.1
+ROOF_M = 0.3
+ABOVE_M = 0.1
 """The roof is what is so near to the top of a body. A search starts so high above it."""
 INTERVAL_SEEDS = 3
 """Differences of fewer seeds have no interval."""
+Aps = Sequence[float | None]
+"""AP of a placement by seed; None for a run that is missing."""
 
 
 def whats_of(plan: Plan) -> tuple[str, ...]:
@@ -66,7 +70,8 @@ def _on_roof(body: pe.Vehicle, count: int) -> tuple[PoseValues, ...]:
     """Return poses at the middles of the roof's sides (two LiDARs) or at its corners (four)."""
     corners = body.triangles.reshape(-1, 3)
     roof = corners[corners[:, 2] >= body.bounds[1][2] - ROOF_M, :2]
-    low, high = roof.min(axis=0) + EDGE_M, roof.max(axis=0) - EDGE_M
+    low = roof.min(axis=0) + EDGE_M
+    high = roof.max(axis=0) - EDGE_M
     along = (high[0], low[0]) if count > LIDARS[0] else ((low[0] + high[0]) / 2.0,)
     places = [(x, y, top_near(body, x, y) + ABOVE_M) for x in along for y in (high[1], low[1])]
     return tuple((*(round(float(w), 3) for w in place), 0.0, 0.0, 0.0) for place in places)
@@ -103,8 +108,11 @@ def placement_of(
     plan: Plan, name: str, what: str, poses: tuple[PoseValues, ...], seed: int | None = None
 ) -> Placement:
     """Return a placement of a rig by what found it."""
-    rig, named = plan.searches.rigs[name], placement_name(name, what, seed)
-    return Placement(named, rig.vehicle, poses, False, AFTER_SEARCH, rig.model)
+    rig = plan.searches.rigs[name]
+    named = placement_name(name, what, seed)
+    return Placement(
+        named, rig.vehicle, poses, all_round=False, design=AFTER_SEARCH, model=rig.model
+    )
 
 
 def searched_placements(
@@ -115,7 +123,8 @@ def searched_placements(
     `report` takes a line for each. Without it none is run, and placements that are not there are
     left out. A file of another plan is an `InputError`.
     """
-    path, rule = folder / PLACEMENTS, plan.searches
+    path = folder / PLACEMENTS
+    rule = plan.searches
     kept: Json = {"plan": plan.digest, "searches": {}}
     if path.exists():
         kept = read_json(path)
@@ -134,7 +143,7 @@ def searched_placements(
                 write_bytes(path, dump_json(kept).encode())
             if key in kept["searches"]:
                 poses = tuple(map(tuple, kept["searches"][key]["poses"]))
-                placements.append(placement_of(plan, name, objective, poses, named))
+                placements.append(placement_of(plan, name, objective, poses, seed=named))
     return placements
 
 
@@ -154,7 +163,8 @@ def _search(plan: Plan, name: str, objective: str, seed: int) -> Json:
     outcome = job.outcome
     assert outcome is not None
     poses = tuple(_rounded(sensor.pose) for sensor in outcome.study.rig)
-    in_traffic, key = outcome.in_traffic, "x y z roll pitch yaw"
+    in_traffic = outcome.in_traffic
+    key = "x y z roll pitch yaw"
     return {
         "method": outcome.start.search.method,
         "seed": seed,
@@ -175,14 +185,14 @@ def _rounded(pose: pe.Pose) -> PoseValues:
 
 # What the runs say.
 
-Aps = Sequence[float | None]
-"""AP of a placement by seed; None for a run that is missing."""
-
 
 def after_search_analysis(plan: Plan, results: Results, scores: Results) -> Json:
     """Return all that follows from the results of the runs, as JSON data."""
-    names, objectives, whats = plan.searches.rigs, plan.searches.objectives, whats_of(plan)
-    planned, rigs = len(names) * len(whats) * len(plan.training.seeds), dict[str, Json]()
+    names = plan.searches.rigs
+    objectives = plan.searches.objectives
+    whats = whats_of(plan)
+    planned = len(names) * len(whats) * len(plan.training.seeds)
+    rigs = dict[str, Json]()
     for rig in names:
         aps = {what: _aps(plan, rig, what, results) for what in whats}
         rigs[rig] = {
@@ -195,7 +205,9 @@ def after_search_analysis(plan: Plan, results: Results, scores: Results) -> Json
         if len(results) == planned:  # how much more is found after the last objective's search
             ends = objectives[0], objectives[-1]
             rigs[rig]["by_ring"] = {
-                ring: _difference(*(_aps(plan, rig, o, results, mean_ap_in(ring)) for o in ends))
+                ring: _difference(
+                    *(_aps(plan, rig, o, results, ap_of=mean_ap_in(ring)) for o in ends)
+                )
                 for ring in rings_of(plan)
             }
     verdicts = {o: [rig["after"][o]["verdict"] for rig in rigs.values()] for o in objectives}

@@ -39,8 +39,12 @@ from .scores import BEAMS, COVERAGE, EXPECTED_AP, PRIMARY, SPACE
 
 SHOWN = (PRIMARY, COVERAGE, EXPECTED_AP)
 """Scores that are looked at by ring."""
-STUDIES, STUDY_RESAMPLES = 1000, 1000
+STUDIES = 1000
+STUDY_RESAMPLES = 1000
 """Made-up studies from which a power is computed, and bootstraps of each one."""
+TABLE = Path(__file__).parents[1] / "published" / "data" / "place3d_segmentation.json"
+SCORES = "segmentation.json"
+CONDITIONS = {"clean": "clean", "adverse_mean": "mean of the adverse conditions"}
 
 
 def afterwards(plan: Plan, results: Results, scores: Results, curves: Json) -> Json:
@@ -66,7 +70,8 @@ def afterwards(plan: Plan, results: Results, scores: Results, curves: Json) -> J
 def _better_half(plan: Plan, design: DesignResults, scores: Results) -> Json:
     """Return other figures of the better half, and why its percentile interval is unsure."""
     index, half = design.samples.better_half()
-    values, rule = design.all_values(scores)[PRIMARY][index], plan.statistics
+    values = design.all_values(scores)[PRIMARY][index]
+    rule = plan.statistics
     corrected, mean = bca_interval(values, half, rule, plan.seed)
     found = float(rho_within(values, half.ap, half.members))
     quick = rule.but(resamples=min(rule.resamples, STUDY_RESAMPLES))
@@ -75,14 +80,18 @@ def _better_half(plan: Plan, design: DesignResults, scores: Results) -> Json:
         "bca": [rounded(v) for v in corrected],
         "bootstrap_mean": rounded(mean),
         "power": [
-            {"rho": rounded(rho), "share": rounded(power(rho, half, quick, plan.seed, STUDIES))}
+            {
+                "rho": rounded(rho),
+                "share": rounded(power(rho, half, quick, plan.seed, studies=STUDIES)),
+            }
             for rho in (rule.useful_rho, found)
         ],
     }
 
 
 def _all_round(plan: Plan, part: DesignResults, scores: Results) -> Json:
-    samples, rows = part.samples, {}
+    samples = part.samples
+    rows = {}
     for name, values in part.all_values(scores).items():
         if name != BEAMS:
             by_vehicle = {
@@ -112,7 +121,8 @@ def _beyond_coverage(plan: Plan, design: DesignResults, scores: Results) -> Json
 
 def _fewer_beams(plan: Plan, design: DesignResults, scores: Results) -> Json:
     """Return how scores order the pairs in which the rig with fewer beams finds more."""
-    values, samples = design.all_values(scores), design.samples
+    values = design.all_values(scores)
+    samples = design.samples
     better = better_ones(samples.ap, samples.hardware, samples.groups, plan.statistics.tie_ap)
     beams = values[BEAMS]
     first, second = np.nonzero(better & (beams[:, None] < beams))
@@ -140,10 +150,6 @@ def _curves_across(plan: Plan, results: Results, curves: Json) -> Json:
 
 # A look from outside: Place3D's segmentation networks, ten placements with four networks.
 
-TABLE = Path(__file__).parents[1] / "published" / "data" / "place3d_segmentation.json"
-SCORES = "segmentation.json"
-CONDITIONS = {"clean": "clean", "adverse_mean": "mean of the adverse conditions"}
-
 
 @cache
 def published() -> Json:
@@ -169,7 +175,8 @@ def segmentation_scores(folder: Path, report: Callable[[str], None]) -> dict[str
 
 def _scorer() -> Callable[[str], Json]:
     """Return a function that scores a placement, as the page on published detectors does."""
-    body, road = body_of("box"), pe.Prior.road()
+    body = body_of("box")
+    road = pe.Prior.road()
     voxels = pe.Evaluator(SPACE, road, body, workers=1)
     rules = {traffic: TargetRule("objects", traffic) for traffic in (False, True)}
     objects = {t: ObjectEvaluator(SPACE, road, body, targets=rule) for t, rule in rules.items()}

@@ -38,7 +38,10 @@ Results = Mapping[str, Json]
 ApOf = Callable[[Json], float]
 """Returns the AP of a run's results."""
 
-HOLDS, REFUTED, UNDECIDED, OPEN = "holds", "refuted", "not decided", "open"
+HOLDS = "holds"
+REFUTED = "refuted"
+UNDECIDED = "not decided"
+OPEN = "open"
 FRESH = "mixed, fresh"
 """The mixed detector at placements that it was never trained with."""
 WITH_PRIMARY_TEST = (FIXED, CAMERAS)
@@ -97,7 +100,8 @@ class DesignResults:
 def analysis(plan: Plan, results: Results, scores: Results) -> Json:
     """Return what the plan asks for, as JSON data."""
     tables = {d.name: design_table(plan, d, scores) for d in designs_of(plan, results)}
-    pairs, steps = _pairs(plan, results, scores), _steps(plan, results, scores)
+    pairs = _pairs(plan, results, scores)
+    steps = _steps(plan, results, scores)
     return {
         "runs": {"done": len(results), "planned": len(runs(plan))},
         "designs": tables,
@@ -152,7 +156,8 @@ def of_mixed(
     name: str, wanted: Sequence[Run], chosen: Sequence[Placement], results: Results
 ) -> DesignResults:
     """Return what a detector for many placements found at them; only at fresh ones for `FRESH`."""
-    by_name, aps = {p.name: p for p in chosen}, dict[Placement, list[float]]()
+    by_name = {p.name: p for p in chosen}
+    aps = dict[Placement, list[float]]()
     done = [run for run in wanted if run.name in results]
     for run in done:
         for placement, found in results[run.name]["placements"].items():
@@ -168,7 +173,9 @@ def _design(
     count = min(map(len, aps.values()), default=0)
     values = np.array([list(row)[:count] for row in aps.values()]).reshape(len(aps), count)
     groups, hardware = (np.array([getattr(p, k) for p in aps]) for k in ("vehicle", "hardware"))
-    return DesignResults(name, list(aps), PlacementSamples(values, groups, hardware), done, planned)
+    return DesignResults(
+        name, list(aps), PlacementSamples(values, groups, hardware), done, planned=planned
+    )
 
 
 def _of_design(name: str) -> list[ComparedScore]:
@@ -196,7 +203,8 @@ def design_table(plan: Plan, design: DesignResults, scores: Results) -> Json:
 
 
 def _row(plan: Plan, design: DesignResults, score: ComparedScore, scores: Results) -> Json:
-    values, samples = design.values(score, scores), design.samples
+    values = design.values(score, scores)
+    samples = design.samples
     heights = np.array([p.mean_height for p in design.chosen])
     row = rho_of(plan, samples, values)
     row["p"] = permutation_p(values, samples, plan.statistics, plan.seed)
@@ -220,12 +228,13 @@ def rank_of(
     plan: Plan, samples: PlacementSamples, values: Floats, given: Floats | None = None
 ) -> Json:
     """Return rho as `rho_of`, its interval corrected for bias, and its p; nothing is rounded."""
-    rule, seed = plan.statistics, plan.seed
+    rule = plan.statistics
+    seed = plan.seed
     if given is None:
         p = permutation_p(values, samples, rule, seed)
     else:
-        p = permutation_p_beyond(values, given, samples, rule, seed)
-    limits, _ = bca_interval(values, samples, rule, seed, given)
+        p = permutation_p_beyond(values, given, samples, rule, seed=seed)
+    limits, _ = bca_interval(values, samples, rule, seed, given=given)
     rho = float(rho_statistic(values, samples, given)(samples.whole))
     return {"rho": rho, "interval": list(limits), "p": p}
 
@@ -246,9 +255,15 @@ def share_of(
     """
 
     def share(index: Ints, ap: Floats) -> float:
-        tie, what = plan.statistics.tie_ap, (samples.hardware[index], samples.groups[index])
-        found = ordered_share(values[index], ap, *what, tie)
-        return found if less is None else found - ordered_share(less[index], ap, *what, tie)
+        tie = plan.statistics.tie_ap
+        hardware = samples.hardware[index]
+        groups = samples.groups[index]
+        found = ordered_share(values[index], ap, hardware, groups, tie=tie)
+        return (
+            found
+            if less is None
+            else found - ordered_share(less[index], ap, hardware, groups, tie=tie)
+        )
 
     def shares(drawn: Resample) -> Floats:
         pairs = zip(np.atleast_2d(drawn.index), np.atleast_2d(drawn.ap), strict=True)
@@ -265,7 +280,8 @@ def _pairs(plan: Plan, results: Results, scores: Results) -> Json:
     head = {"done": sum(p.done for p in parts), "planned": sum(p.planned for p in parts)}
     if not all(part.has_figures for part in parts):
         return {**head, "scores": {}}
-    values, samples = design.all_values(scores), design.samples
+    values = design.all_values(scores)
+    samples = design.samples
     rows = {name: share_of(plan, samples, v) for name, v in values.items()}
     difference = share_of(plan, samples, values[EXPECTED_AP], values[PRIMARY])
     return {**head, "scores": rows, "expected_ap_minus_primary": difference}
@@ -298,7 +314,8 @@ def _statements(
     plan: Plan, tables: Mapping[str, Json], pairs: Json, steps: Sequence[Json]
 ) -> list[Json]:
     """Return the statements of the plan, each with its figures, its verdict and its marks."""
-    rule, fixed = plan.statistics, tables[FIXED]
+    rule = plan.statistics
+    fixed = tables[FIXED]
     primary = fixed["scores"].get(PRIMARY, {})
     half, given = (primary.get(key) or {} for key in ("better_half", "given_height"))
     share = pairs["scores"].get(PRIMARY, {})
@@ -370,7 +387,8 @@ def camera_analysis(plan: Plan, results: Results, scores: Results) -> Json:
         for score, row in found["scores"].items()
     }
     if found["scores"]:
-        aps, members = design.samples.aps, design.samples.members
+        aps = design.samples.aps
+        members = design.samples.members
         seen = design_table(plan, design.all_round(), scores)["scores"]
         found["all_round"] = {score: row["rho"] for score, row in seen.items()}
         found["mean_ap"] = round(float(design.samples.ap.mean()), 4)
@@ -381,7 +399,8 @@ def camera_analysis(plan: Plan, results: Results, scores: Results) -> Json:
 
 def is_too_noisy(plan: Plan, found: Json) -> bool:
     """Whether the detectors find too little, or their seeds agree too little, for a statement."""
-    rule, seed_rho = plan.statistics, found.get("seed_rho")
+    rule = plan.statistics
+    seed_rho = found.get("seed_rho")
     return seed_rho is None or seed_rho < rule.min_seed_rho or bool(found["mean_ap"] < rule.min_ap)
 
 

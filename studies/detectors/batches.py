@@ -36,6 +36,8 @@ Inputs = Singles | tuple[Singles, NDArray[np.int32]]
 """Of the network *grid* or that of pictures, or features of points and their pillars (*points*)."""
 FEATURES = 4
 WHITE = np.float32(255.0)
+_STEPS = np.arange(-REACH, REACH + 1)
+_PEAK = np.exp(-(_STEPS[:, None] ** 2 + _STEPS**2) / (2.0 * SIGMA**2)).astype(np.float32)
 
 
 def inputs(scenes: Sequence[RegionObjects], region: Plan, mirrors: Sequence[Mirrors]) -> Inputs:
@@ -74,7 +76,8 @@ def voxel_inputs(
     scenes: Sequence[RegionVoxels], region: Plan, mirrors: Sequence[Mirrors]
 ) -> Singles:
     """Return the input of the network *grid*, (B, X, Y, layers)."""
-    (nx, ny), layers = shape_of(region), scenes[0].layers
+    nx, ny = shape_of(region)
+    layers = scenes[0].layers
     x = np.zeros((len(scenes), nx * ny * layers), np.float32)
     for k, voxels in enumerate(scenes):
         x[k, voxels.cells] = LEVELS[voxels.counts]
@@ -113,14 +116,12 @@ def _in_cells(centers: np.ndarray, region: Plan) -> np.ndarray:
     return (centers + np.array([region.x_m, region.y_m])) / (STRIDE * region.cell_m)
 
 
-_STEPS = np.arange(-REACH, REACH + 1)
-_PEAK = np.exp(-(_STEPS[:, None] ** 2 + _STEPS**2) / (2.0 * SIGMA**2)).astype(np.float32)
-
-
 def _add_peak(heat: Singles, i: int, j: int) -> None:
     """Raise a class's heat map (X, Y) round a cell."""
-    x0, x1 = max(i - REACH, 0), min(i + REACH + 1, heat.shape[0])
-    y0, y1 = max(j - REACH, 0), min(j + REACH + 1, heat.shape[1])
+    x0 = max(i - REACH, 0)
+    x1 = min(i + REACH + 1, heat.shape[0])
+    y0 = max(j - REACH, 0)
+    y1 = min(j + REACH + 1, heat.shape[1])
     peak = _PEAK[x0 - i + REACH : x1 - i + REACH, y0 - j + REACH : y1 - j + REACH]
     np.maximum(heat[x0:x1, y0:y1], peak, out=heat[x0:x1, y0:y1])
 
@@ -141,7 +142,8 @@ def detections(
         i, j = np.nonzero(peaks[:, :, c])
         scores = heat[i, j, c]
         best = np.argsort(-scores, kind="stable")[:MAX_DETECTIONS]
-        i, j = i[best], j[best]
+        i = i[best]
+        j = j[best]
         cells = np.column_stack([i, j]) + 0.5 + offsets[i, j]
         centers = cells * (STRIDE * region.cell_m) - (region.x_m, region.y_m)
         found.append((scores[best], centers))

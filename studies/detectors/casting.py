@@ -36,6 +36,8 @@ GROUND_M = 0.15
 """Points up to this height are taken last: most of them are of the ground."""
 NOISE = 7
 """Makes the seed of the noise another one than that of the scene."""
+MOTION = 11
+"""Makes the seed of the motion another one than that of the scene."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +114,8 @@ def first_hits(
     `flat` says whether there is flat ground at z = 0; directions (B, 3) are of length 1.
     """
     hits = VisibleTriangles(tree, origin).first_hit(directions)
-    distance, face = hits.distance, hits.face
+    distance = hits.distance
+    face = hits.face
     if flat:
         down = directions[:, 2]
         with np.errstate(divide="ignore"):
@@ -133,7 +136,8 @@ class FreeBeams:
         directions = rotate(sensor.pose.ground_from_sensor, model.directions)
         hits = vehicle(placement.vehicle).first_hit(sensor.pose.position, directions)
         self.directions = directions[np.isinf(hits.distance)]
-        self.min_range, self.max_range = model.min_range, model.max_range
+        self.min_range = model.min_range
+        self.max_range = model.max_range
 
     def first_hits(self, tree: TriangleTree, flat: bool) -> tuple[Floats, Ints]:
         """Return distance (B,) [m], inf for a miss, and triangle (B,), -1 for ground and misses."""
@@ -148,7 +152,9 @@ class Caster:
     def __init__(
         self, plan: Plan, placement: Placement, world: str, source: SceneSource = scene
     ) -> None:
-        self._plan, self._placement, self._world = plan, placement, world
+        self._plan = plan
+        self._placement = placement
+        self._world = world
         self._source = source
         self._beams = [FreeBeams(placement, k) for k in range(len(placement.poses))]
 
@@ -172,7 +178,8 @@ class Caster:
         content = self._source(self._plan, self._placement.vehicle, split, self._world, number)
         tree = TriangleTree(content.triangles)
         rule = self._plan.scenes
-        positions, beams = [], np.zeros(len(content.labels), np.int64)
+        positions = []
+        beams = np.zeros(len(content.labels), np.int64)
         for k, lidar in enumerate(self._beams):
             rng = np.random.default_rng([self._plan.seed, NOISE, SPLITS.index(split), number, k])
             distance, face = lidar.first_hits(tree, content.flat)
@@ -208,10 +215,6 @@ def chosen_points(positions: Floats, region: Plan, seed: int) -> Floats:
     return shuffled[np.argsort(shuffled[:, 2] <= GROUND_M, kind="stable")][:MAX_POINTS]
 
 
-MOTION = 11
-"""Makes the seed of the motion another one than that of the scene."""
-
-
 @dataclass(frozen=True, slots=True)
 class MovingScene:
     """A scene at its last frame, the velocities of its objects (N, 2), and the own speed [m/s]."""
@@ -235,7 +238,8 @@ class MovingScenes:
     """
 
     def __init__(self, plan: Plan) -> None:
-        self._plan, rule = plan, plan.frames.motion
+        self._plan = plan
+        rule = plan.frames.motion
         self.times = [(k + 1 - rule.count) / rule.rate_hz for k in range(rule.count)]
         self.moving = lru_cache(maxsize=1)(self._moving)
 
@@ -248,10 +252,11 @@ class MovingScenes:
 
     def _moving(self, vehicle_name: str, split: str, number: int) -> MovingScene:
         """Return a scene by its number, without what would meet the vehicle in some frame."""
-        study, rule = self._plan, self._plan.frames.motion
+        study = self._plan
+        rule = self._plan.frames.motion
         seed = [study.seed, study.vehicles.index(vehicle_name), SPLITS.index(split), number]
         rng = np.random.default_rng(seed)
-        objects, distractors = standing(study, vehicle_name, split, number, rng)
+        objects, distractors = standing(study, vehicle_name, split, number, rng=rng)
         rng = np.random.default_rng([*seed, MOTION])
         own_speed = float(rng.uniform(*rule.own_speed))
         speeds = np.array([rule.speeds[name] for name in objects.names])
@@ -265,8 +270,9 @@ class MovingScenes:
         free = self._free(vehicle_name, objects, velocities - own)
         still = np.zeros((len(distractors.names), 2))
         kept = self._free(vehicle_name, distractors, still - own)
-        what = objects.subset(free), distractors.subset(kept)
-        return MovingScene(*what, velocities[free], own_speed)
+        return MovingScene(
+            objects.subset(free), distractors.subset(kept), velocities[free], own_speed
+        )
 
     def _free(self, vehicle_name: str, things: Things, relative: Floats) -> list[int]:
         """Return the things whose circle never meets the vehicle's rectangle."""
@@ -283,7 +289,8 @@ class FramesCaster:
     """Casts the beams of a placement into the frames of moving scenes."""
 
     def __init__(self, plan: Plan, placement: Placement) -> None:
-        self._plan, self._scenes = plan, MovingScenes(plan)
+        self._plan = plan
+        self._scenes = MovingScenes(plan)
         self._vehicle = placement.vehicle
         self._caster = Caster(plan, placement, "", self._scenes)
 
@@ -293,7 +300,8 @@ class FramesCaster:
         The latter have two channels for each layer: counts of the last frame, and of all earlier
         ones. Both are in the vehicle's frame of the last one: own motion is known exactly.
         """
-        region, times = self._plan.region, self._scenes.times
+        region = self._plan.region
+        times = self._scenes.times
         frames = [self._caster.points(split, number * len(times) + k) for k in range(len(times))]
         content, last = frames[-1]
         speed = self._scenes.moving(self._vehicle, split, number).own_speed

@@ -31,13 +31,18 @@ STRIDE = 2
 """Cells of the input along a side of a cell of the output."""
 FIRST_BIAS = -3.5
 """Of the heat maps: at first a centre has a probability of 3 % everywhere."""
-WIDTH, DEEP_WIDTH = 16, 32
+WIDTH = 16
+DEEP_WIDTH = 32
 WARM_UP_STEPS = 100
 OFFSETS = 2
 """Outputs besides the heat maps: the offset of the centre along x and y."""
-BETAS, EPSILON = (0.9, 0.999), 1e-8
+BETAS = (0.9, 0.999)
+EPSILON = 1e-8
 NEAR_ZERO = 1e-4
 """Probabilities stay so far from 0 and 1."""
+COLORS = 3
+PICTURE = "picture_"
+"""Begins the names of the weights that work on pictures."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,7 +192,7 @@ class Detector:
                 value = batch_loss(weights, x, targets)
             gradient = tape.gradient(value, weights)
             now = rate * tf.minimum(1.0, number / WARM_UP_STEPS)
-            weights, moments = _adam(weights, gradient, moments, number, now)
+            weights, moments = _adam(weights, gradient, moments, number, rate=now)
             decay = tf.minimum(average, number / (number + 10.0))
             mean = {k: decay * mean[k] + (1.0 - decay) * w for k, w in weights.items()}
             return weights, mean, moments
@@ -239,11 +244,6 @@ def versions() -> dict[str, str]:
     """Return what computes: TensorFlow's version and the kind of device."""
     gpus = tf.config.list_physical_devices("GPU")
     return {"tensorflow": tf.__version__, "device": "gpu" if gpus else "cpu"}
-
-
-COLORS = 3
-PICTURE = "picture_"
-"""Begins the names of the weights that work on pictures."""
 
 
 def pictures_network(lifting: Lifting, classes: int) -> Network:

@@ -32,10 +32,15 @@ from .scores import SPACE, placement_scores
 
 TITLE = "# One frame and five, in motion"
 TEMPLATE = "frames.md.j2"
-ONE, FIVE, ONE_FRAME = "one", "five", "one_frame"
+ONE = "one"
+FIVE = "five"
+ONE_FRAME = "one_frame"
 """The arms, and where a run has the results of the first."""
-BETTER, WORSE, ALIKE = "ranks better", "ranks worse", "alike"
-MORE, FEWER = "five frames find more", "five frames find fewer"
+BETTER = "ranks better"
+WORSE = "ranks worse"
+ALIKE = "alike"
+MORE = "five frames find more"
+FEWER = "five frames find fewer"
 
 
 def every_q(plan: Plan) -> tuple[float, ...]:
@@ -146,10 +151,11 @@ def rank_over_frames(args: argparse.Namespace, folder: Path) -> Answer:
     check_page(folder, TITLE, "detectors.frames")
     files = RunFiles(prepare_folder(folder), plan, frames_runs(plan))
     do_runs(args, files)
-    results, scores = files.read(), dict[str, Json]()
+    results = files.read()
+    scores = dict[str, Json]()
     if len(results) == len(files.all):
         rigs = [(placement, placement.rig()) for placement in frames_placements(plan)]
-        scores = placement_scores(plan, rigs, folder, print_progress, frame_scorer(plan))
+        scores = placement_scores(plan, rigs, folder, print_progress, scored=frame_scorer(plan))
     found = frames_analysis(plan, results, scores)
     write_bytes(folder / RESULTS, dump_json(found).encode())
     write_bytes(folder / PAGE, page(plan, found).encode())

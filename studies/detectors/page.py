@@ -65,8 +65,11 @@ def _why_nothing(plan: Plan, found: Json) -> tuple[bool, float | None]:
 
 def page(study: Study, scores_outside: Mapping[str, Json]) -> str:
     """Return the page as Markdown; `scores_outside` are those of Place3D's placements."""
-    plan, found, cameras = study.plans[OWN], study.found[OWN], study.found["cameras"]
-    rule, camera_plan = plan.statistics, study.plans["cameras"]
+    plan = study.plans[OWN]
+    found = study.found[OWN]
+    cameras = study.found["cameras"]
+    rule = plan.statistics
+    camera_plan = study.plans["cameras"]
     too_noisy, least_rho = _why_nothing(camera_plan, cameras)
     values = {
         "found": found,

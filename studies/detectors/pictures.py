@@ -24,20 +24,33 @@ from .placements import Placement, camera_model, in_picture, pose_of, vehicle
 from .plan import PLAIN, SPLITS, Plan, shape_of
 from .scenes import Scene, scene
 
-LOOK, NOISE = 11, 12
+LOOK = 11
+NOISE = 12
 """Make the seeds of colours and of noise other ones than that of the scene."""
 SUN_DEG = (20.0, 70.0)
 """Elevation of the sun."""
 COLORS = (0.05, 0.95)
 """Red, green and blue of a surface."""
-GROUND, TINT = (0.25, 0.6), 0.03
+GROUND = (0.25, 0.6)
+TINT = 0.03
 """Brightness of the ground, and the deviation of its red, green and blue."""
 SKY = ((0.4, 0.8), (0.5, 0.9), (0.6, 1.0))
-WAVES, WAVE_M = 4, (1.5, 20.0)
+WAVES = 4
+WAVE_M = (1.5, 20.0)
 """Waves of brightness on the ground, and their lengths."""
 BODY = 0.15
 """Brightness of the own vehicle."""
 WHITE = 255.0
+HEIGHTS_M = (0.2, 0.8, 1.5)
+"""Heights above the ground at which a cell takes features."""
+VIEWS = 2
+"""At most so many cameras give features of a point: those nearest to it."""
+CELL_VALUES = 4
+"""Values of a cell's geometry: seen or not, direction from the nearest camera (2), distance."""
+FAR_M = 40.0
+"""Distance at which that value is 1."""
+NEAR_M = 4.0
+"""Nearer ground is as this one for a pixel's value."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +70,8 @@ class SceneColors:
     @classmethod
     def of(cls, content: Scene, rule: Plan, rng: np.random.Generator) -> SceneColors:
         """Return the colours of a scene, drawn at random."""
-        elevation, azimuth = np.radians(rng.uniform(*SUN_DEG)), rng.uniform(0.0, 2.0 * np.pi)
+        elevation = np.radians(rng.uniform(*SUN_DEG))
+        azimuth = rng.uniform(0.0, 2.0 * np.pi)
         flat = np.cos(elevation)
         sun = np.array([flat * np.cos(azimuth), flat * np.sin(azimuth), np.sin(elevation)])
         first, second = (content.triangles[:, k] - content.triangles[:, 0] for k in (1, 2))
@@ -65,7 +79,8 @@ class SceneColors:
         normals /= np.maximum(np.sqrt((normals**2).sum(axis=1, keepdims=True)), 1e-12)
         light = rule.ambient + (1.0 - rule.ambient) * np.maximum(normals @ sun, 0.0)
         solids = rng.uniform(*COLORS, (int(content.solids.max(initial=-1)) + 1, 3))
-        lengths, turns = rng.uniform(*WAVE_M, WAVES), rng.uniform(0.0, np.pi, WAVES)
+        lengths = rng.uniform(*WAVE_M, WAVES)
+        turns = rng.uniform(0.0, np.pi, WAVES)
         waves = np.stack([np.cos(turns), np.sin(turns)], axis=1) * (2.0 * np.pi / lengths)[:, None]
         ground = rng.uniform(*GROUND) + rng.normal(0.0, TINT, 3)
         return cls(
@@ -73,8 +88,8 @@ class SceneColors:
             ground * (rule.ambient + (1.0 - rule.ambient) * sun[2]),
             np.array([rng.uniform(*bounds) for bounds in SKY]),
             waves,
-            rng.uniform(0.0, 2.0 * np.pi, WAVES),
-            rule.ground_contrast,
+            phases=rng.uniform(0.0, 2.0 * np.pi, WAVES),
+            contrast=rule.ground_contrast,
         )
 
     def seen(self, points: Floats, face: Ints) -> Floats:
@@ -97,28 +112,34 @@ class FreePixels:
 
     def __init__(self, plan: Plan, placement: Placement, number: int) -> None:
         model = camera_model(plan.cameras.rig)
-        sensor, width, height = placement.rig(model).sensors[number], model.width, model.height
+        sensor = placement.rig(model).sensors[number]
+        width = model.width
+        height = model.height
         rays = picture_rays(sensor, width * height)
         self.origin = np.array(sensor.pose.position)
         hits = vehicle(placement.vehicle).first_hit(sensor.pose.position, rays, True)
         free = np.isinf(hits.distance)
-        self.directions, self.free = rays[free], free.reshape(width, height)
+        self.directions = rays[free]
+        self.free = free.reshape(width, height)
 
 
 class Renderer:
     """Renders scenes as a placement's cameras see them."""
 
     def __init__(self, plan: Plan, placement: Placement) -> None:
-        self._plan, self._placement = plan, placement
+        self._plan = plan
+        self._placement = placement
         self.cameras = [FreePixels(plan, placement, k) for k in range(len(placement.poses))]
 
     def pictures(self, split: str, number: int) -> RegionPictures:
         """Return the pictures of a scene."""
-        study, rule = self._plan, self._plan.cameras.pictures
-        content = scene(study, self._placement.vehicle, split, PLAIN, number)
+        study = self._plan
+        rule = self._plan.cameras.pictures
+        content = scene(study, self._placement.vehicle, split, PLAIN, number=number)
         seed = [study.seed, SPLITS.index(split), number]
         colors = SceneColors.of(content, rule, np.random.default_rng([*seed, LOOK]))
-        tree, beams = TriangleTree(content.triangles), np.zeros(len(content.labels), np.int64)
+        tree = TriangleTree(content.triangles)
+        beams = np.zeros(len(content.labels), np.int64)
         pictures = []
         for k, camera in enumerate(self.cameras):
             distance, face = first_hits(tree, content.flat, camera.origin, camera.directions)
@@ -130,18 +151,6 @@ class Renderer:
             noisy = picture + rng.normal(0.0, rule.noise, picture.shape)
             pictures.append(np.clip(np.rint(noisy * WHITE), 0.0, WHITE).astype(np.uint8))
         return RegionPictures(*region_objects(content, beams, study.region), np.stack(pictures))
-
-
-HEIGHTS_M = (0.2, 0.8, 1.5)
-"""Heights above the ground at which a cell takes features."""
-VIEWS = 2
-"""At most so many cameras give features of a point: those nearest to it."""
-CELL_VALUES = 4
-"""Values of a cell's geometry: seen or not, direction from the nearest camera (2), distance."""
-FAR_M = 40.0
-"""Distance at which that value is 1."""
-NEAR_M = 4.0
-"""Nearer ground is as this one for a pixel's value."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,7 +177,7 @@ class Lifting:
         ground = _cell_centers(plan.region)
         points = np.stack([np.insert(ground, 2, z, axis=-1) for z in HEIGHTS_M], axis=1)
         views = [
-            _view(model, pose_of(values).rpy, camera, points, shape)
+            _view(model, pose_of(values).rpy, camera, points, shape=shape)
             for values, camera in zip(placement.poses, cameras, strict=True)
         ]
         total = len(cameras) * shape[0] * shape[1]

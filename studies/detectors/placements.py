@@ -40,6 +40,8 @@ NEIGHBOURHOOD_M = 0.15
 """A LiDAR on the roof is above everything within this distance."""
 EDGE_M = 0.1
 """LiDARs on the roof keep this distance from the edge of the rectangle round the body."""
+DRAWN_BY = ("seed", "vehicles", "placements", "hardware", "fixed", "across", "mixed")
+"""What the placements of LiDARs depend on: drawing takes seconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,10 +112,6 @@ def vehicle(name: str) -> pe.Vehicle:
     return pe.Vehicle(mesh.triangles, mesh.parts, mesh.part_names)
 
 
-DRAWN_BY = ("seed", "vehicles", "placements", "hardware", "fixed", "across", "mixed")
-"""What the placements of LiDARs depend on: drawing takes seconds."""
-
-
 def placements(plan: Plan) -> tuple[Placement, ...]:
     """Return all placements of the plan of LiDARs, design by design, vehicle by vehicle."""
     return _drawn(Plan({key: plan[key] for key in DRAWN_BY}))
@@ -131,28 +129,29 @@ def listing(digest: str, drawn: Sequence[Placement]) -> Json:
 
 
 def _fixed(plan: Plan, name: str) -> list[Placement]:
-    drawn = _draws(plan, name, FIXED, plan.fixed.lidars, plan.fixed.channels)
+    drawn = _draws(plan, name, FIXED, plan.fixed.lidars, channels=plan.fixed.channels)
     return first_of_each(drawn, plan.fixed)
 
 
 def _across(plan: Plan, name: str) -> list[Placement]:
     kept: list[Placement] = []
     for lidars, channels, count in plan.across.hardware:
-        drawn = (p for p in _draws(plan, name, ACROSS, lidars, channels) if p.all_round)
+        drawn = (p for p in _draws(plan, name, ACROSS, lidars, channels=channels) if p.all_round)
         kept += [next(drawn) for _ in range(count)]
     return numbered(kept)
 
 
 def _mixed(plan: Plan, name: str) -> list[Placement]:
     """Placements of the mixed detector besides those of the fixed design; trained ones first."""
-    drawn = _draws(plan, name, MIXED, plan.fixed.lidars, plan.fixed.channels)
+    drawn = _draws(plan, name, MIXED, plan.fixed.lidars, channels=plan.fixed.channels)
     total = (plan.mixed.trained + plan.mixed.fresh) // len(plan.vehicles)
     return numbered([next(drawn) for _ in range(total)])
 
 
 def first_of_each(drawn: Iterator[Placement], rule: Plan) -> list[Placement]:
     """Return the first so many placements that see all round, and then that are blind somewhere."""
-    count, kept = {True: rule.all_round, False: rule.blind}, list[Placement]()
+    count = {True: rule.all_round, False: rule.blind}
+    kept = list[Placement]()
     for placement in drawn:
         if sum(p.all_round == placement.all_round for p in kept) < count[placement.all_round]:
             kept.append(placement)
@@ -170,7 +169,9 @@ def _draws(plan: Plan, name: str, design: str, lidars: int, channels: int) -> It
     """Yield placements of some hardware on a vehicle, without end but for `MAX_DRAWS`."""
     keys = (plan.seed, plan.vehicles.index(name), (FIXED, ACROSS, MIXED).index(design))
     rng = np.random.default_rng([*keys, lidars, channels])
-    body, rule, model = vehicle(name), plan.placements, catalog.load(plan.hardware[str(channels)])
+    body = vehicle(name)
+    rule = plan.placements
+    model = catalog.load(plan.hardware[str(channels)])
     assert isinstance(model, Lidar)
     elevations = float(model.elevations.min()), float(model.elevations.max())
 
@@ -180,7 +181,9 @@ def _draws(plan: Plan, name: str, design: str, lidars: int, channels: int) -> It
 
     for poses in drawn_poses(body, rule, rng, lidars):
         seen = sees_all_round(body, rule, in_view, poses)
-        yield Placement(f"{design}-{name}", name, tuple(poses), seen, design, model.name)
+        yield Placement(
+            f"{design}-{name}", name, tuple(poses), seen, design=design, model=model.name
+        )
     raise AssertionError(f"no placement of {design} on {name} in {MAX_DRAWS} draws")
 
 
@@ -211,7 +214,8 @@ def _pose_source(
     def side() -> tuple[float, float, float]:
         length, width = (high - low)[:2] + 2.0 * rule.side_gap_m
         along = rng.uniform(0.0, 2.0 * (length + width))
-        x0, y0 = low[0] - rule.side_gap_m, low[1] - rule.side_gap_m
+        x0 = low[0] - rule.side_gap_m
+        y0 = low[1] - rule.side_gap_m
         z = rng.uniform(*rule.side_height_m)
         if along < 2.0 * length:
             return x0 + along % length, y0 + width * (along >= length), z
@@ -248,7 +252,8 @@ def sees_all_round(
     """Whether in each direction a point near the ground is seen by a sensor, past the body."""
     seen = np.zeros(rule.round_directions, bool)
     angles = 2.0 * np.pi * np.arange(rule.round_directions) / rule.round_directions
-    x, y = rule.round_distance_m * np.cos(angles), rule.round_distance_m * np.sin(angles)
+    x = rule.round_distance_m * np.cos(angles)
+    y = rule.round_distance_m * np.sin(angles)
     for values in poses:
         pose = pose_of(values)
         for height in rule.round_heights_m:
@@ -281,9 +286,12 @@ def _drawn_cameras(own: Plan) -> tuple[Placement, ...]:
 
 
 def _camera_draws(own: Plan) -> Iterator[Placement]:
-    name, count, model = own.rig.vehicle, own.rig.cameras, camera_model(own.rig)
+    name = own.rig.vehicle
+    count = own.rig.cameras
+    model = camera_model(own.rig)
     rng = np.random.default_rng([own.seed, count])
-    body, rule = vehicle(name), own.placements
+    body = vehicle(name)
+    rule = own.placements
 
     def in_view(directions: Floats) -> Flags:
         return in_picture(model, directions)[2]
@@ -293,7 +301,7 @@ def _camera_draws(own: Plan) -> Iterator[Placement]:
         yaws += rng.uniform(-rule.yaw_deg, rule.yaw_deg, count)
         turned = tuple(_looking_outwards(body.bounds, poses, yaws))
         seen = sees_all_round(body, rule, in_view, turned)
-        yield Placement(f"{CAMERAS}-{name}", name, turned, seen, CAMERAS, "")
+        yield Placement(f"{CAMERAS}-{name}", name, turned, seen, design=CAMERAS, model="")
     raise AssertionError(f"no placement of cameras on {name}")
 
 
@@ -330,7 +338,8 @@ def in_picture(model: Camera, directions: Floats) -> tuple[Floats, Floats, Flags
 
 def frames_placements(plan: Plan) -> list[Placement]:
     """Return the first placements of the first plan's design *mixed*, vehicles by turns."""
-    drawn, each = [p for p in placements(full_plan()) if p.design == MIXED], plan.frames.each
+    drawn = [p for p in placements(full_plan()) if p.design == MIXED]
+    each = plan.frames.each
     groups = [[p for p in drawn if p.vehicle == name][:each] for name in plan.vehicles]
     turns = zip(*groups, strict=True)
     return [_renamed(p, MIXED, FRAMES) for turn in turns for p in turn]
@@ -373,6 +382,7 @@ def arm_placements(plan: Plan) -> list[Placement]:
 @cache
 def arm_lidar(rule: Plan, rows: int) -> Lidar:
     """Return the LiDAR of so many rows: all have the same number of beams."""
-    columns, top = rule.beams // rows, math.radians(rule.elevation_deg)
+    columns = rule.beams // rows
+    top = math.radians(rule.elevation_deg)
     elevations = np.linspace(-top, top, rows)
     return Lidar(f"{rows} x {columns}", elevations, columns, rule.max_range_m)

@@ -15,20 +15,43 @@ from pathlib import Path
 from typing import Any
 
 PLANS = Path(__file__).parent / "plans"
-FIXED, ACROSS, MIXED = "fixed", "across", "mixed"
+FIXED = "fixed"
+ACROSS = "across"
+MIXED = "mixed"
 """The designs: one rig at many placements; rigs of other hardware; one detector for many."""
-CAMERAS, AFTER_SEARCH, FRAMES = "cameras", "after_search", "frames"
+CAMERAS = "cameras"
+AFTER_SEARCH = "after_search"
+FRAMES = "frames"
 """The designs of the other studies, and their folders."""
-SECOND, GOOD, EQUAL_M, LAYOUTS, SEARCHES = "second", "good", "equal-m", "layouts", "searches"
+SECOND = "second"
+GOOD = "good"
+EQUAL_M = "equal-m"
+LAYOUTS = "layouts"
+SEARCHES = "searches"
 """The folder of the second plan, and its parts. Its file has those that had code first."""
-LAYOUT_SEEDS, SEARCH_SEEDS, SEARCHED_SEEDS = (1, 2, 3), (1, 2, 3), (1, 2)
+LAYOUT_SEEDS = (1, 2, 3)
+SEARCH_SEEDS = (1, 2, 3)
+SEARCHED_SEEDS = (1, 2)
 """Of the mixed detector; of the searches, and of the detectors after them."""
 SHUTTLE = "shuttle"
 SPLITS = ("train", "validation", "test")
-PLAIN, TOWN = "plain", "town"
+PLAIN = "plain"
+TOWN = "town"
 """Worlds: flat ground with distractors; hills, houses and parked rows besides."""
-GRID, POINTS = "grid", "points"
+GRID = "grid"
+POINTS = "points"
 """Detectors: counts of points in a grid of voxels; learned features of the points of a pillar."""
+QUICK_SCENES = {"train": 8, "validation": 4, "test": 4}
+QUICK = {
+    "scenes": QUICK_SCENES,
+    "mixed": {"trained": 2, "fresh": 0, "scenes": 8, "test_scenes": 4},
+    "training": {"seeds": (1,), "min_epochs": 2, "max_epochs": 2},
+    "statistics": {"permutations": 99, "resamples": 50, "scenes": 8},
+}
+QUICK_SEARCHES = {"samples": 4096, "evaluations": 6}
+"""What a plan has that only shows that everything runs."""
+OWN = "."
+"""The folder of the study of LiDARs, from that of all."""
 
 
 class Plan(Mapping[str, Any]):
@@ -159,17 +182,6 @@ def full_second_plan() -> Plan:
     return full_plan().but(digest=digest, second=own, searches=searches, **seeds)
 
 
-QUICK_SCENES = {"train": 8, "validation": 4, "test": 4}
-QUICK = {
-    "scenes": QUICK_SCENES,
-    "mixed": {"trained": 2, "fresh": 0, "scenes": 8, "test_scenes": 4},
-    "training": {"seeds": (1,), "min_epochs": 2, "max_epochs": 2},
-    "statistics": {"permutations": 99, "resamples": 50, "scenes": 8},
-}
-QUICK_SEARCHES = {"samples": 4096, "evaluations": 6}
-"""What a plan has that only shows that everything runs."""
-
-
 def quickly(plan: Plan, **changes: Any) -> Plan:
     """Return a plan with few scenes and short trainings, and with other changes."""
     return plan.but(digest=f"quick-{plan.digest}", **QUICK).but(**changes)
@@ -224,8 +236,6 @@ def quick_second_plan() -> Plan:
     return quickly(plan, second=own, searches=searches, **seeds)
 
 
-OWN = "."
-"""The folder of the study of LiDARs, from that of all."""
 FULL_AND_QUICK = {
     OWN: (full_plan, quick_plan),
     CAMERAS: (full_camera_plan, quick_camera_plan),

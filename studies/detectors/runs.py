@@ -125,7 +125,9 @@ class RunFiles:
     """The results of the runs of a plan, in their order, in the folder of its study."""
 
     def __init__(self, folder: Path, plan: Plan, planned: Sequence[Run]) -> None:
-        self.folder, self.plan, self.all = folder, plan, list(planned)
+        self.folder = folder
+        self.plan = plan
+        self.all = list(planned)
 
     def path(self, run: Run) -> Path:
         """Return the file of a run."""
@@ -175,7 +177,8 @@ def do_runs(args: argparse.Namespace, files: RunFiles, layouts: Layouts | None =
     Results that are there without `args.resume` are an `InputError`.
     """
     files.read()  # complains now, not after hours
-    missing, total = files.missing(), len(files.all)
+    missing = files.missing()
+    total = len(files.all)
     done = total - len(missing)
     if args.page_only or args.runs == 0 or not missing:
         return

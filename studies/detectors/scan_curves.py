@@ -31,11 +31,14 @@ from .placements import Placement, vehicle
 from .plan import FIXED, Plan
 from .scores import scored_objects
 
-A_BOUNDS, B_BOUNDS = (0.001, 1.0), (-4.0, 1.5)
+A_BOUNDS = (0.001, 1.0)
+B_BOUNDS = (-4.0, 1.5)
 """Bounds of the fit. A curve at a bound is reported as such by its figures."""
 STARTS = 25
 """Values of a and of b that are tried before the descent."""
-MAX_STEPS, DAMPING, SMALLEST = 200, 1e-6, 1e-6
+MAX_STEPS = 200
+DAMPING = 1e-6
+SMALLEST = 1e-6
 """Of the descent: steps, damping at first, and a step that ends it; figures have four decimals."""
 TINY = 1e-12
 """Keeps the equations of a step solvable where no object changes its AP."""
@@ -43,6 +46,12 @@ MAX_RESAMPLES = 1000
 """Bootstraps of the intervals: each one is a fit."""
 MIN_HALF = 4
 """Fewer placements in a half give no figures."""
+SOURCE = "docs/validity/own: the study's detector at the odd placements of its fixed design"
+HEAD = """\
+# AP curves of LiDARs' objects for `[ap] model = "scans"`: AP = a ln m + b, m the number of beams.
+# Written by `python -m studies.detectors --page-only --curves FILE`; do not edit it.
+
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +112,8 @@ def fitted_curve(beams: BeamCounts, ap: Floats, start: pe.ApCurve | None = None)
     start = start or min(
         (pe.ApCurve(float(a), float(b)) for a, b in grid), key=lambda c: _square(beams, ap, c)
     )
-    at, damping = np.array([start.a, start.b]), DAMPING
+    at = np.array([start.a, start.b])
+    damping = DAMPING
     logs = np.log(np.maximum(beams.m, 1.0))
     error = _square(beams, ap, start)
     for _ in range(MAX_STEPS):
@@ -121,7 +131,8 @@ def fitted_curve(beams: BeamCounts, ap: Floats, start: pe.ApCurve | None = None)
         better = now < error
         damping = damping / 10.0 if better else damping * 10.0
         if better:
-            at, error = there, now
+            at = there
+            error = now
     return pe.ApCurve(*map(float, at))
 
 
@@ -139,24 +150,29 @@ def scan_curves(plan: Plan, results: Results) -> Json:
     found |= {"fitted": len(odd), "judged": len(even), "classes": {}}
     if min(len(odd), len(even)) < MIN_HALF:
         return found
-    found["seeds"], classes = whole.samples.aps.shape[1], {}
+    found["seeds"] = whole.samples.aps.shape[1]
+    classes = {}
     for name, beams in beam_counts(plan, chosen).items():
         samples = plain_design(plan, [FIXED], results, mean_ap_of(name)).samples
-        classes[name] = _of_class(plan, name, beams, samples, odd, even)
+        classes[name] = _of_class(plan, name, beams, samples, odd=odd, even=even)
     return {**found, "placements": [chosen[k].name for k in even], "classes": classes}
 
 
 def _of_class(
     plan: Plan, name: str, beams: BeamCounts, samples: PlacementSamples, odd: Ints, even: Ints
 ) -> Json:
-    shipped, fitted, judged = LIDAR.object_curves[name], beams.subset(odd), beams.subset(even)
-    of_odd, of_even = samples.ap[odd], samples.ap[even]
+    shipped = LIDAR.object_curves[name]
+    fitted = beams.subset(odd)
+    judged = beams.subset(even)
+    of_odd = samples.ap[odd]
+    of_even = samples.ap[even]
     exact = fitted_curve(fitted, of_odd)  # errors are those of what a file has
     own = pe.ApCurve(round(exact.a, 4), round(exact.b, 4))
-    before, after = judged.expected_ap(shipped), judged.expected_ap(own)
+    before = judged.expected_ap(shipped)
+    after = judged.expected_ap(own)
     return {
         **_written(own),
-        **_intervals(plan, fitted, judged, samples, odd, even, own),
+        **_intervals(plan, fitted, judged, samples, odd=odd, even=even, own=own),
         "shipped": _written(shipped),
         "rmse": {
             "fitted": [_rmse(fitted.expected_ap(c), of_odd) for c in (shipped, own)],
@@ -178,7 +194,8 @@ def _intervals(
     own: pe.ApCurve,
 ) -> Json:
     """Return intervals of a, b and the error judged: placements and seeds are drawn again."""
-    curves, errors = list[tuple[float, float]](), list[float]()
+    curves = list[tuple[float, float]]()
+    errors = list[float]()
     rule = plan.statistics.but(resamples=min(plan.statistics.resamples, MAX_RESAMPLES))
     parts = (resamples(samples.subset(half), rule, plan.seed) for half in (odd, even))
     for of_odd, of_even in zip(*parts, strict=True):
@@ -202,14 +219,6 @@ def _rows(values: Floats) -> list[float]:
 
 def _written(curve: pe.ApCurve) -> Json:
     return {"a": round(curve.a, 4), "b": round(curve.b, 4)}
-
-
-SOURCE = "docs/validity/own: the study's detector at the odd placements of its fixed design"
-HEAD = """\
-# AP curves of LiDARs' objects for `[ap] model = "scans"`: AP = a ln m + b, m the number of beams.
-# Written by `python -m studies.detectors --page-only --curves FILE`; do not edit it.
-
-"""
 
 
 def curves_text(found: Json, date: str) -> str:

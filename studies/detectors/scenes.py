@@ -32,6 +32,9 @@ FACTORS = (0.6, 1.4)
 """Limits of that factor."""
 GAP_M = 0.2
 """Distractors keep this distance from circles round objects."""
+EVERY_FRAMES = 20
+"""A frame every 2 s: logs have 10 Hz."""
+BOLLARD = "bollard"
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +79,7 @@ def scene(plan: Plan, vehicle_name: str, split: str, world: str, number: int) ->
     """Return a scene of a split by its number."""
     seed = [plan.seed, plan.vehicles.index(vehicle_name), SPLITS.index(split), number]
     rng = np.random.default_rng(seed)
-    objects, distractors = standing(plan, vehicle_name, split, number, rng)
+    objects, distractors = standing(plan, vehicle_name, split, number, rng=rng)
     if world != TOWN:
         return assembled(objects, distractors, None, [])
     ground = Ground(rng)
@@ -99,7 +102,8 @@ def assembled(
     objects: Things, distractors: Things, ground: Ground | None, more: list[Floats]
 ) -> Scene:
     """Return the scene of objects to be found, distractors, ground (None: flat) and houses."""
-    triangles, owners = [], []
+    triangles = []
+    owners = []
     for things, are_objects in ((objects, True), (distractors, False)):
         feet = things.feet.copy()
         if ground is not None:
@@ -119,8 +123,8 @@ def assembled(
         np.concatenate(owners),
         np.repeat(np.arange(len(owners)), [len(o) for o in owners]),
         objects.feet[:, :2].copy(),
-        labels,
-        ground is None,
+        labels=labels,
+        flat=ground is None,
     )
 
 
@@ -144,7 +148,7 @@ def _count(plan: Plan, split: str) -> int:
 @lru_cache(maxsize=8)
 def _sampled(digest: str, vehicle_name: str, count: int, shift: float) -> SampledObjects:
     rule = TargetRule("objects", True, max(count, MIN_SCENES))
-    return sample_objects(pe.Prior.road(), SPACE, vehicle(vehicle_name), rule, shift)
+    return sample_objects(pe.Prior.road(), SPACE, vehicle(vehicle_name), rule, shift=shift)
 
 
 def _distractors(
@@ -170,7 +174,8 @@ def _free(things: Things, occupied: Things, vehicle_name: str) -> Things:
     outside = np.maximum(np.abs(things.feet[:, :2] - (high + low)[:2] / 2.0) - half, 0.0)
     radii = things.radii + GAP_M
     free = np.hypot(outside[:, 0], outside[:, 1]) > radii
-    feet, others = list(occupied.feet[:, :2]), list(occupied.radii)
+    feet = list(occupied.feet[:, :2])
+    others = list(occupied.radii)
     kept = []
     for k in np.flatnonzero(free):
         distances = np.sqrt(((np.array(feet).reshape(-1, 2) - things.feet[k, :2]) ** 2).sum(axis=1))
@@ -187,11 +192,6 @@ def _joined(first: Things, second: Things) -> Things:
         for name in ("feet", "sizes", "yaws")
     )
     return Things([*first.names, *second.names], feet, sizes, yaws)
-
-
-EVERY_FRAMES = 20
-"""A frame every 2 s: logs have 10 Hz."""
-BOLLARD = "bollard"
 
 
 class Layouts:

@@ -19,11 +19,13 @@ from .plan import Plan
 
 SCORES = "scores.json"
 SPACE = pe.PerceptionSpace()
-ALONE, TRAFFIC = "alone", "traffic"
+ALONE = "alone"
+TRAFFIC = "traffic"
 PRIMARY = "perception entropy, road prior"
 EXPECTED_AP = "expected AP, in traffic"
 COVERAGE = "coverage"
-HEIGHT, BEAMS = "mean height", "number of beams"
+HEIGHT = "mean height"
+BEAMS = "number of beams"
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,6 +26,25 @@ DISTRACTORS = {
 """Length, width, height [m] of what is no object to be found."""
 Solid = tuple[Any, ...]
 """Arguments of `solid`."""
+WHOLE = (-0.5, 0.5)
+WAVES = 3
+WAVE_M = (40.0, 120.0)
+WAVE_SLOPE = 0.025
+"""Greatest slope of a wave; three of them rarely add up to more than 5 %."""
+GROUND_M = (64.0, 44.0)
+"""Half length and half width of the ground."""
+CELL_M = 4.0
+HOUSES = 10
+HOUSE_ATTEMPTS = 40
+HOUSE_M = ((8.0, 16.0), (6.0, 10.0), (4.0, 9.0))
+STREET_M = 10.0
+"""Half the width that is free of houses."""
+ROW_M = 5.5
+"""Distance of a row of parked cars from the middle of the street."""
+ROW_LENGTH_M = 25.0
+SPACING_M = (5.6, 7.0)
+PARKED_SHARE = 0.7
+CAR_M = (4.6, 1.9, 1.7)
 
 
 def solid(
@@ -60,7 +79,6 @@ def _wheels(at: float, length: float, height: float) -> list[Solid]:
     return [((x - length, x + length), y, (0.0, height)) for x in (-at, at) for y in sides]
 
 
-WHOLE = (-0.5, 0.5)
 SHAPES: dict[str, list[Solid]] = {
     "car": [
         (WHOLE, WHOLE, (0.13, 0.56)),
@@ -109,29 +127,12 @@ def unit_mesh(name: str) -> Floats:
 def placed_mesh(name: str, foot: Floats, size: Floats, yaw: float) -> Floats:
     """Return the mesh of an object that stands at `foot` (3,), with a size (3,) [m, rad]."""
     triangles = unit_mesh(name) * size
-    cos, sin = np.cos(yaw), np.sin(yaw)
-    x, y, z = triangles[..., 0], triangles[..., 1], triangles[..., 2]
+    cos = np.cos(yaw)
+    sin = np.sin(yaw)
+    x = triangles[..., 0]
+    y = triangles[..., 1]
+    z = triangles[..., 2]
     return np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1) + foot
-
-
-WAVES = 3
-WAVE_M = (40.0, 120.0)
-WAVE_SLOPE = 0.025
-"""Greatest slope of a wave; three of them rarely add up to more than 5 %."""
-GROUND_M = (64.0, 44.0)
-"""Half length and half width of the ground."""
-CELL_M = 4.0
-HOUSES = 10
-HOUSE_ATTEMPTS = 40
-HOUSE_M = ((8.0, 16.0), (6.0, 10.0), (4.0, 9.0))
-STREET_M = 10.0
-"""Half the width that is free of houses."""
-ROW_M = 5.5
-"""Distance of a row of parked cars from the middle of the street."""
-ROW_LENGTH_M = 25.0
-SPACING_M = (5.6, 7.0)
-PARKED_SHARE = 0.7
-CAR_M = (4.6, 1.9, 1.7)
 
 
 class Ground:
@@ -156,7 +157,10 @@ class Ground:
         xs, ys = (np.arange(-half, half + CELL_M / 2.0, CELL_M) for half in GROUND_M)
         x, y = np.meshgrid(xs, ys, indexing="ij")
         points = np.stack([x, y, self.height(x, y)], axis=-1)
-        a, b, c, d = points[:-1, :-1], points[1:, :-1], points[1:, 1:], points[:-1, 1:]
+        a = points[:-1, :-1]
+        b = points[1:, :-1]
+        c = points[1:, 1:]
+        d = points[:-1, 1:]
         halves = [np.stack(corners, axis=2).reshape(-1, 3, 3) for corners in ((a, b, c), (a, c, d))]
         return np.concatenate(halves)
 
@@ -184,6 +188,11 @@ def house_triangles(rng: np.random.Generator, occupied: Floats) -> list[Floats]:
         offsets = np.abs(occupied - (x, y))
         inside = (offsets[:, 0] < length / 2.0 + 3.0) & (offsets[:, 1] < width / 2.0 + 3.0)
         if not inside.any() and len(houses) < HOUSES:
-            box = (x - length / 2.0, x + length / 2.0), (y - width / 2.0, y + width / 2.0)
-            houses.append(solid(*box, (-3.0, height)))
+            houses.append(
+                solid(
+                    (x - length / 2.0, x + length / 2.0),
+                    (y - width / 2.0, y + width / 2.0),
+                    (-3.0, height),
+                )
+            )
     return houses

@@ -22,7 +22,8 @@ plt = pyplot()
 SHOWN = (PRIMARY, EXPECTED_AP, HEIGHT)
 LABELS = ("perception entropy [nats]", "expected AP in traffic", "mean height [m]")
 COLORS = (BLUE, ORANGE)
-CURVES, CURVE_LABELS = ("shipped", "scans"), ("shipped curves", "from scans")
+CURVES = ("shipped", "scans")
+CURVE_LABELS = ("shipped curves", "from scans")
 SHOWN_SCENE = ("test", 0)
 """Split and number of the scene whose pictures are shown."""
 
@@ -62,10 +63,12 @@ def ap_against_scores(path: Path, plan: Plan, design: DesignResults, scores: Res
 
 
 def _panel(panel: Axes, plan: Plan, design: DesignResults, values: np.ndarray) -> None:
-    aps, mean = design.samples.aps, design.samples.ap
+    aps = design.samples.aps
+    mean = design.samples.ap
     for vehicle, color in zip(plan.vehicles, COLORS, strict=False):
         index = np.flatnonzero(design.samples.groups == vehicle)
-        low, high = aps[index].min(axis=1), aps[index].max(axis=1)
+        low = aps[index].min(axis=1)
+        high = aps[index].max(axis=1)
         panel.vlines(values[index], low, high, color=color, lw=1.0, alpha=0.5)
         panel.plot(values[index], mean[index], "o", color=color, ms=4.5, label=vehicle)
     remove_frame(panel)

@@ -31,6 +31,9 @@ from .plan import CAMERAS, FIXED, FRAMES, MIXED, PLAIN, POINTS, SPLITS, Plan, sh
 from .runs import Run, run_digest
 from .scenes import CLASSES, Layouts, scene
 
+TRAIN, VALIDATION, TEST = SPLITS
+BySplit = dict[str, list[RegionObjects]]
+
 
 @dataclass(frozen=True, slots=True)
 class Trained:
@@ -55,13 +58,15 @@ def train(
 
     The seed sets first weights, the order of scenes and the mirroring.
     """
-    started, rule = time.process_time(), plan.training
+    started = time.process_time()
+    rule = plan.training
     rng = np.random.default_rng([seed, 1])
     state = detector.start(seed)
     losses: list[float] = []
-    best, converged = state.average, False
+    best = state.average
+    converged = False
     while len(losses) < rule.max_epochs and not converged:
-        _epoch(detector, state, plan, scenes, rng)
+        _epoch(detector, state, plan, scenes, rng=rng)
         losses.append(_mean_loss(detector, state.average, plan, validation))
         if losses[-1] == min(losses):
             best = state.average
@@ -88,7 +93,8 @@ def _epoch(
     scenes: Sequence[RegionObjects],
     rng: np.random.Generator,
 ) -> None:
-    size, region = plan.training.batch, plan.region
+    size = plan.training.batch
+    region = plan.region
     order = rng.permutation(len(scenes))
     for first in range(0, len(order) - size + 1, size):
         batch = [scenes[k] for k in order[first : first + size]]
@@ -110,7 +116,8 @@ def _batches(
 def _mean_loss(
     detector: Detector, weights: Weights, plan: Plan, scenes: Sequence[RegionObjects]
 ) -> float:
-    size, region = plan.training.batch, plan.region
+    size = plan.training.batch
+    region = plan.region
     mirrors = [NEITHER] * size
     losses = [
         detector.loss(weights, inputs(batch, region, mirrors), targets(batch, region, mirrors))
@@ -124,7 +131,8 @@ def tested(
 ) -> list[list[ClassScene]]:
     """Return detections and objects of the test's scenes, by class."""
     by_class: list[list[ClassScene]] = [[] for _ in CLASSES]
-    size, region = plan.training.batch, plan.region
+    size = plan.training.batch
+    region = plan.region
     for batch, count in _batches(scenes, size):
         heat, offsets = detector.outputs(weights, inputs(batch, region, [NEITHER] * size))
         for k in range(count):
@@ -132,10 +140,6 @@ def tested(
                 objects = batch[k].centers[batch[k].labels == c].astype(float)
                 by_class[c].append(ClassScene(scores, centers, objects))
     return by_class
-
-
-TRAIN, VALIDATION, TEST = SPLITS
-BySplit = dict[str, list[RegionObjects]]
 
 
 @dataclass(frozen=True)
@@ -156,7 +160,8 @@ def result_of(plan: Plan, run: Run, layouts: Layouts | None = None) -> Json:
         found = _mixed(plan, run, layouts)
     elif run.design == CAMERAS:
         network = pictures_network(Lifting.of(plan, run.placement), len(CLASSES))
-        make, counts = Renderer(plan, run.placement).pictures, plan.cameras.scenes
+        make = Renderer(plan, run.placement).pictures
+        counts = plan.cameras.scenes
         found = _of_placement(plan, run, network, _scenes(make, counts))
     elif run.design == FRAMES:
         both = _scenes(FramesCaster(plan, run.placement).voxels, plan.scenes)
@@ -167,7 +172,8 @@ def result_of(plan: Plan, run: Run, layouts: Layouts | None = None) -> Json:
             arms.append(_of_placement(plan, run, network, scenes))
         found = {**arms[1], "one_frame": arms[0]}
     else:
-        caster, network = Caster(plan, run.placement, run.world), grid_network(LAYERS, len(CLASSES))
+        caster = Caster(plan, run.placement, run.world)
+        network = grid_network(LAYERS, len(CLASSES))
         if run.detector == POINTS:
             network = points_network(FEATURES, shape_of(plan.region), len(CLASSES))
         cast = caster.cloud if run.detector == POINTS else caster.voxels
@@ -185,7 +191,7 @@ def _scenes(make: Callable[[str, int], Any], counts: Mapping[str, int]) -> dict[
 def _of_placement(plan: Plan, run: Run, network: Network, scenes: BySplit) -> Json:
     """Train and test a detector with what one placement sees."""
     detector = Detector(network, plan.training.rate, plan.training.average)
-    trained, training = train(detector, plan, scenes[TRAIN], scenes[VALIDATION], run.seed)
+    trained, training = train(detector, plan, scenes[TRAIN], scenes[VALIDATION], seed=run.seed)
     found = results(plan, scenes[TEST], tested(detector, trained.weights, plan, scenes[TEST]))
     return {**found, "training": training}
 
@@ -196,9 +202,11 @@ def _mixed(plan: Plan, run: Run, layouts: Layouts | None) -> Json:
     With `layouts` it is tested in all of these, at the good placements of the second plan.
     """
     trained_with, fresh = mixed_placements(plan)
-    chosen, count = [*trained_with, *fresh], plan.mixed.test_scenes
+    chosen = [*trained_with, *fresh]
+    count = plan.mixed.test_scenes
     if layouts:
-        chosen, count = list(good_placements(plan)), len(layouts)
+        chosen = list(good_placements(plan))
+        count = len(layouts)
     network = grid_network(LAYERS, len(CLASSES))
     detector = Detector(network, plan.training.rate, plan.training.average)
     counts = {TRAIN: plan.mixed.scenes, VALIDATION: plan.scenes[VALIDATION]}
@@ -207,7 +215,7 @@ def _mixed(plan: Plan, run: Run, layouts: Layouts | None) -> Json:
         split: [casters[k % len(casters)].voxels(split, k) for k in range(number)]
         for split, number in counts.items()
     }
-    trained, training = train(detector, plan, scenes[TRAIN], scenes[VALIDATION], run.seed)
+    trained, training = train(detector, plan, scenes[TRAIN], scenes[VALIDATION], seed=run.seed)
     by_placement = {}
     for placement in chosen:
         caster = Caster(plan, placement, run.world, layouts or scene)

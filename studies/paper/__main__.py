@@ -19,7 +19,8 @@ from .findings import Findings, page_values
 from .plots import draw_all
 
 TITLE = "# The paper's experiments, reproduced"
-FOLDER, QUICK_FOLDER = "docs/reproduction", "reproduction-quick"
+FOLDER = "docs/reproduction"
+QUICK_FOLDER = "reproduction-quick"
 DIFFERENT = 1
 """Exit status when a claim holds under none of the priors, or a result is not reproduced."""
 

@@ -50,7 +50,8 @@ def min_entropy(camera: Camera, distance: Floats, side: float, curve: ApCurve) -
 
 def max_distance_for(camera: Camera, entropy: float, side: float, curve: ApCurve) -> float:
     """Return the distance [m] beyond which no voxel has an entropy as low as that [nats]."""
-    low, high = 0.01, 1000.0
+    low = 0.01
+    high = 1000.0
     for _ in range(60):
         middle = (low + high) / 2.0
         if min_entropy(camera, np.array([middle]), side, curve)[0] <= entropy:

@@ -50,6 +50,12 @@ CURVE_M = (1.0, 80.0, 80)
 """First distance, last distance [m] and number of points of the curve of a bound."""
 MAP_COLUMNS = 20
 """Columns of 0.1 m in a square of the priors' plots."""
+WITH_ROAD_PRIOR = tuple(
+    (row, "road")
+    for row in ("3_default", "3_front", "1_pandar64", "1_hdl64e", "2_60deg", "2_120deg")
+)
+WITH_HIGHWAY_PRIOR = tuple((row, "highway") for row in CAMERA_ROWS)
+"""The one ordering that depends on the prior is searched under two."""
 
 
 @dataclass(frozen=True)
@@ -78,13 +84,6 @@ class Effort:
         values: Json = {k: tuple(v) if isinstance(v, list) else v for k, v in data.items()}
         return cls(**{**values, "rows": tuple((row, prior) for row, prior in data["rows"])})
 
-
-WITH_ROAD_PRIOR = tuple(
-    (row, "road")
-    for row in ("3_default", "3_front", "1_pandar64", "1_hdl64e", "2_60deg", "2_120deg")
-)
-WITH_HIGHWAY_PRIOR = tuple((row, "highway") for row in CAMERA_ROWS)
-"""The one ordering that depends on the prior is searched under two."""
 
 FULL = Effort(
     samples=0,
@@ -121,7 +120,8 @@ def plan(effort: Effort, values: Values) -> list[Task]:
 def _searches(effort: Effort, values: Values) -> Iterator[Task]:
     samples = {"search_samples": effort.search_samples, "samples": effort.samples}
     for row, prior in effort.rows:
-        starts, best = starts_of(row, effort), best_start(row, prior, values, effort)
+        starts = starts_of(row, effort)
+        best = best_start(row, prior, values, effort)
         common = {"row": row, "prior": prior, **samples}
         for start in starts if len(starts) > 1 else ():
             pilot = {"candidates": effort.pilot_candidates, "seed": effort.seeds[0]}
@@ -133,7 +133,8 @@ def _searches(effort: Effort, values: Values) -> Iterator[Task]:
 
 def scores_and_figures(effort: Effort) -> list[Task]:
     """Return the tasks that need no search."""
-    tasks, samples = list[Task](), {"samples": effort.samples}
+    tasks = list[Task]()
+    samples = {"samples": effort.samples}
 
     def add(name: str, function: Callable[..., Json], **arguments: Any) -> None:
         tasks.append(Task(name, function, arguments))
@@ -252,9 +253,12 @@ def vary(row: str, setting: str, samples: int) -> Json:
     if setting != EXPECTED_COUNTS:
         return _score_data(replace(SETTINGS[setting](study), samples=samples))
     (sensor,) = study.rig
-    lidar, position = cast(pe.Lidar, sensor.model), sensor.pose.position
+    lidar = cast(pe.Lidar, sensor.model)
+    position = sensor.pose.position
     centers = _sample(replace(study, vehicle=None)).centers
-    entropy = expected_entropy(lidar, position, centers, study.space.interval, study.model.lidar)
+    entropy = expected_entropy(
+        lidar, position, centers, study.space.interval, curve=study.model.lidar
+    )
     return {"entropy": entropy, "coverage": None}
 
 
@@ -265,7 +269,9 @@ def bound(row: str, prior: str) -> Json:
     """
     study = with_prior(study_of(row), prior)
     (sensor,) = study.rig
-    camera, curve, side = cast(pe.Camera, sensor.model), study.model.camera, study.space.interval
+    camera = cast(pe.Camera, sensor.model)
+    curve = study.model.camera
+    side = study.space.interval
     centers = _sample(study).centers
     distance = np.sqrt(((centers - np.asarray(sensor.pose.position)) ** 2).sum(axis=1))
     least = min_entropy(camera, distance, side, curve)

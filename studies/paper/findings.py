@@ -37,9 +37,11 @@ FIGURE_NATS = 0.1
 """Two entropies that differ by at most this are the same figure."""
 ABOUT_M = 0.25
 """A sensor that is this near to a corner, or to a height, is there: a tenth of the bus's height."""
-APART_M, APART_DEG = 0.01, 0.1
+APART_M = 0.01
+APART_DEG = 0.1
 """Two LiDARs that differ by more than one of these have different heights or pitches."""
-AT_BOUND_M, MAX_MOVE_M = 0.2, 2.0
+AT_BOUND_M = 0.2
+MAX_MOVE_M = 2.0
 """A search that ends this near to a bound ends at it; it moves a sensor so far along an axis."""
 CLEAR = 2.0
 """Standard deviations from which two searches differ by more than chance."""
@@ -190,10 +192,12 @@ def statements(f: Findings) -> dict[str, bool]:
     """Return what the discussion on the page states, and whether it follows from the results."""
     if not all(f.best(row.name) and len(f.searches(row.name)) > 1 for row in ROWS):
         return {"all rows are searched with several seeds": False}
-    varied, bounds = f.varied(), f.with_prefix("bound/")
+    varied = f.varied()
+    bounds = f.with_prefix("bound/")
     cameras = [end["camera"] for row in CAMERA_ROWS for end in f.positions(row)]
     alone, both = f.pitch_changes()
-    peaks, differences = f.pitch_peaks(), f.height_differences()
+    peaks = f.pitch_peaks()
+    differences = f.height_differences()
     printed = [ROW[row].entropy for row in LIDAR_ROWS]
 
     def off(values: Sequence[float]) -> float:

@@ -19,6 +19,30 @@ PRIORS = ("road", "uniform", "highway")
 
 Position = tuple[float, float, float]
 """A sensor's position x, y, z [m], in the ground frame."""
+ROOF_M = 1.45
+"""Height of the sedan's roof."""
+HALF_LENGTH_M = 3.03
+HALF_WIDTH_M = 1.01
+MIDDLE_M = 1.3
+"""Positions of the bus's corners, and half its height."""
+CAMERAS = {
+    "camera_front": (HALF_LENGTH_M, 0.0, MIDDLE_M),
+    "camera_rear": (-HALF_LENGTH_M, 0.0, MIDDLE_M),
+}
+PITCH_HEIGHT_M = 1.05
+"""Height of the two LiDARs of the pitch figure: the printed one of experiment 3's front pair."""
+Variation = Callable[[pe.Study], pe.Study]
+KITTI = {
+    "car": (29.5, 13.93, 5.73, 0.73),
+    "pedestrian": (8.1, 6.55, 13.26, 0.817),
+    "cyclist": (12.2, 11.77, 9.5, 0.009),
+    "truck": (59.5, 2.07, 14.22, 0.318),
+}
+"""decay_x, laplace_y, gauss_y [m], laplace_share: the form of the road prior, fitted by maximum
+likelihood to the labels of KITTI tracking (21 sequences, ahead of the car only), without cones."""
+KITTI_POSITIONS = "positions as in KITTI"
+EXPECTED_COUNTS = "expected beam counts, no vehicle"
+"""A setting that is no variation of the study: it is computed by `analytic.expected_entropy`."""
 
 
 @dataclass(frozen=True)
@@ -40,12 +64,6 @@ class Row:
         return int(self.name[0])
 
 
-ROOF_M = 1.45
-"""Height of the sedan's roof."""
-HALF_LENGTH_M, HALF_WIDTH_M, MIDDLE_M = 3.03, 1.01, 1.3
-"""Positions of the bus's corners, and half its height."""
-
-
 def _lidars_at_corners(first: tuple[int, int], second: tuple[int, int]) -> dict[str, Position]:
     """Positions of the bus's two LiDARs at corners, which are given by the signs of x and y."""
     return {
@@ -61,10 +79,6 @@ CORNERS = {
     "left": _lidars_at_corners((1, 1), (-1, 1)),
 }
 """All pairs of different corners, mirror images left out."""
-CAMERAS = {
-    "camera_front": (HALF_LENGTH_M, 0.0, MIDDLE_M),
-    "camera_rear": (-HALF_LENGTH_M, 0.0, MIDDLE_M),
-}
 
 ROWS = (
     Row("1_pandar64", "Pandar64", 1.6429, {"roof": {"roof": (0.0, 0.0, ROOF_M)}}),
@@ -76,9 +90,6 @@ ROWS = (
     Row("4_cameras", "two Pandar40, two cameras", 0.8965, {"front": CORNERS["front"] | CAMERAS}),
 )
 ROW = {row.name: row for row in ROWS}
-
-PITCH_HEIGHT_M = 1.05
-"""Height of the two LiDARs of the pitch figure: the printed one of experiment 3's front pair."""
 
 
 @cache
@@ -116,17 +127,6 @@ def with_pitch_difference(study: pe.Study, height: float, difference_deg: float)
 
 # Variations: experiment 1 with one setting changed at a time.
 
-Variation = Callable[[pe.Study], pe.Study]
-
-KITTI = {
-    "car": (29.5, 13.93, 5.73, 0.73),
-    "pedestrian": (8.1, 6.55, 13.26, 0.817),
-    "cyclist": (12.2, 11.77, 9.5, 0.009),
-    "truck": (59.5, 2.07, 14.22, 0.318),
-}
-"""decay_x, laplace_y, gauss_y [m], laplace_share: the form of the road prior, fitted by maximum
-likelihood to the labels of KITTI tracking (21 sequences, ahead of the car only), without cones."""
-
 
 def _vary_classes(vary: Callable[[pe.ObjectClass], pe.ObjectClass]) -> Variation:
     def varied(study: pe.Study) -> pe.Study:
@@ -163,7 +163,6 @@ def _voxel_side(side: float) -> Variation:
     return varied
 
 
-KITTI_POSITIONS = "positions as in KITTI"
 SETTINGS: dict[str, Variation] = {
     "as shipped": lambda study: study,
     "objects half as far ahead and behind": _scale_x(0.5),
@@ -176,5 +175,3 @@ SETTINGS: dict[str, Variation] = {
     "no vehicle": lambda study: replace(study, vehicle=None),
 }
 """The variation of the study, by the name of the setting."""
-EXPECTED_COUNTS = "expected beam counts, no vehicle"
-"""A setting that is no variation of the study: it is computed by `analytic.expected_entropy`."""

@@ -36,9 +36,11 @@ HFOV_COLORS = {30: SKY, 60: BLUE, 120: ORANGE}
 PRINTED_60 = ROW["2_60deg"].entropy
 VIEWS = ((0, 1), (0, 2))
 """Axes of the vehicle that are right and up in a view: from above, and from the right side."""
-MARGIN_M, WIDTH_IN = (0.75, 0.3, 0.3), 6.4
+MARGIN_M = (0.75, 0.3, 0.3)
+WIDTH_IN = 6.4
 """Margin around vehicle and sensors along x, y, z; width of the picture."""
-DARKEST, LIGHTEST = 0.72, 0.93
+DARKEST = 0.72
+LIGHTEST = 0.93
 """Greys of the vehicle's triangles: facing sideways, and facing the viewer."""
 PITCH_LINE_M = 0.7
 """Length of the line that shows where a sensor's x axis points."""
@@ -153,7 +155,8 @@ def bounds(path: Path, values: Mapping[str, Any]) -> None:
         curve = values[f"bound_curve/{hfov}"]
         axes.plot(curve["distance_m"], curve["entropy"], color=color, label=f"{hfov} deg")
     axes.axhline(PRINTED_60, color="black", lw=1, ls="--")
-    label, below = f"printed for 60 deg: {PRINTED_60}", {"textcoords": "offset points", "va": "top"}
+    label = f"printed for 60 deg: {PRINTED_60}"
+    below = {"textcoords": "offset points", "va": "top"}
     axes.annotate(label, (80, PRINTED_60), (0, -4), ha="right", **below)
     axes.set(xlabel="distance from the camera [m]", xlim=(0, 80))
     axes.set_ylabel("least entropy of a voxel [nats]")
@@ -174,7 +177,8 @@ def draw_placements(path: Path, row: Row, ends: Sequence[Mapping[str, Any]]) -> 
     low, high = _extent(study, ends)
     length, width, height = high - low
     scale = WIDTH_IN / length
-    size, heights = (WIDTH_IN + 1.0, (width + height) * scale + 1.6), (width, height)
+    size = (WIDTH_IN + 1.0, (width + height) * scale + 1.6)
+    heights = (width, height)
     layout: dict[str, Any] = {"sharex": True, "layout": "constrained", "height_ratios": heights}
     figure, axes = plt.subplots(2, 1, figsize=size, **layout)
     for view, axis in zip(axes, VIEWS, strict=True):
@@ -183,8 +187,15 @@ def draw_placements(path: Path, row: Row, ends: Sequence[Mapping[str, Any]]) -> 
         for color, sensor in zip(PALETTE, study.rig, strict=False):
             for placement in ends:
                 pose = placement[sensor.name]
-                _mark(view, pose["position"], pose["rotation"], axis, color, filled=True)
-            _mark(view, sensor.pose.position, sensor.pose.rotation_deg, axis, color, filled=False)
+                _mark(view, pose["position"], pose["rotation"], axis, color=color, filled=True)
+            _mark(
+                view,
+                sensor.pose.position,
+                sensor.pose.rotation_deg,
+                axis,
+                color=color,
+                filled=False,
+            )
         view.set(xlim=(low[0], high[0]), ylim=(low[axis[1]], high[axis[1]]), aspect="equal")
         remove_frame(view)
     axes[0].set_ylabel("y, left [m]")
@@ -242,7 +253,8 @@ def _mark(
     else:
         view.plot([u], [v], "o", color=color, mfc="none", ms=11, mew=1.8, zorder=4)
     if axis == (0, 2):
-        pitch, yaw = np.radians(rotation[1]), np.radians(rotation[2])
+        pitch = np.radians(rotation[1])
+        yaw = np.radians(rotation[2])
         tip = u + PITCH_LINE_M * np.cos(pitch) * np.cos(yaw), v - PITCH_LINE_M * np.sin(pitch)
         view.plot([u, tip[0]], [v, tip[1]], color=color, lw=1, ls="-" if filled else ":", zorder=2)
 
@@ -267,7 +279,8 @@ def draw_ap_curves(path: Path, fits: Mapping[str, Any]) -> None:
 
 
 def _draw_ap_curve(axes: Axes, fit: Mapping[str, Any]) -> None:
-    m, ap = np.array(fit["m"]), np.array(fit["ap"])
+    m = np.array(fit["m"])
+    ap = np.array(fit["ap"])
     used = np.array([not why for why in fit["left_out"]])
     x = np.geomspace(m[m > 0].min() / 1.5, m.max() * 1.5, 200)
     axes.plot(x, np.clip(fit["a"] * np.log(x) + fit["b"], 0.001, 0.999), color=ORANGE)

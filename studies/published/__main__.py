@@ -28,7 +28,8 @@ from .scores import BASE, BODY_M, papers, variants
 from .tasks import FULL, QUICK, ValidityEffort, plan
 
 TITLE = "# Do the scores rank placements as detectors do?"
-FOLDER, QUICK_FOLDER = "docs/validity/published", "validity-quick"
+FOLDER = "docs/validity/published"
+QUICK_FOLDER = "validity-quick"
 
 
 def validate(args: argparse.Namespace, folder: Path) -> Answer:

@@ -27,7 +27,9 @@ from .scores import (
 )
 from .tasks import ValidityEffort
 
-ALL, LEVEL, LAYOUTS = "all", "none rolled", "LiDAR layouts"
+ALL = "all"
+LEVEL = "none rolled"
+LAYOUTS = "LiDAR layouts"
 """Which placements are ranked: all; all without a printed roll; or all, where those that differ
 only in their cameras count as one."""
 TREATMENTS = {
@@ -88,7 +90,7 @@ class RankComparison:
 
         def value(name: str) -> float:
             reading = self.reading if self.paper.rolled(name) else READINGS[0]
-            return score.value(Rating(self.paper, name, reading, self.cls, choice), values)
+            return score.value(Rating(self.paper, name, reading, self.cls, choice=choice), values)
 
         return [_mean(map(value, names)) for names in self.placements]
 
@@ -151,7 +153,8 @@ def _correlation(
 ) -> Json:
     ap = comparison.ap
     score_values = comparison.score_values(score, values)
-    chance, mean = comparison.chance(score_values), comparison.mean_rho(score_values)
+    chance = comparison.chance(score_values)
+    mean = comparison.mean_rho(score_values)
     means = [mean]
     means += [comparison.mean_rho(comparison.score_values(score, values, c)) for c in varied]
     defined = [rho for rho in means if rho is not None]
@@ -184,8 +187,8 @@ def over_papers(values: Values, cls: str = MAIN_CLASS) -> list[Json]:
     for reading, selection in TREATMENTS:
         selection_2 = LAYOUTS if selection == LAYOUTS else ALL
         pair = (
-            RankComparison(first, CLEAN, cls, reading, selection),
-            RankComparison(second, CLEAN, cls, READINGS[0], selection_2),
+            RankComparison(first, CLEAN, cls, reading, selection=selection),
+            RankComparison(second, CLEAN, cls, READINGS[0], selection=selection_2),
         )
         tests = [_over_both(score, pair, values) for score in CANDIDATES]
         for test, adjusted in zip(tests, holm([t["p"] for t in tests]), strict=True):

@@ -55,7 +55,8 @@ def _heights(panel: Axes, paper: Paper, color: str) -> None:
 
 def _scaled_ap(paper: Paper, names: Sequence[str]) -> np.ndarray:
     ap = np.array([[row[MAIN_CLASS][n] for n in names] for row in paper.ap[CLEAN].values()])
-    low, high = ap.min(axis=1, keepdims=True), ap.max(axis=1, keepdims=True)
+    low = ap.min(axis=1, keepdims=True)
+    high = ap.max(axis=1, keepdims=True)
     mean: np.ndarray = ((ap - low) / (high - low)).mean(axis=0)
     return mean
 
@@ -64,7 +65,8 @@ def _labels(paper: Paper, names: Sequence[str], mean: np.ndarray) -> list[tuple[
     """Return name, x and y of the labels; those of nearly the same height do not overlap."""
     labels: list[tuple[str, float, float]] = []
     for k in np.argsort(mean):
-        x, y = paper.height(names[k]), float(mean[k])
+        x = paper.height(names[k])
+        y = float(mean[k])
         below = [q for _, p, q in labels if abs(p - x) < 0.1]
         labels.append((names[k].replace("_", " "), x, max(y, *(q + 0.05 for q in below), -1.0)))
     return labels

@@ -25,10 +25,45 @@ from ..paper.paper import STUDIES
 from ..results_file import Values, read_json
 
 TABLE = Path(__file__).parent / "data" / "published_placements.json"
-DEGREES, RADIANS = "degrees", "radians"
+DEGREES = "degrees"
+RADIANS = "radians"
 READINGS = (DEGREES, RADIANS)
 """The units that a printed roll may have."""
 CLEAN = "clean"
+NumberVector = Sequence[float] | np.ndarray
+BODY_M = (4.902, 2.128, 1.511)
+"""Length, width, height of the simulated Lincoln MKZ 2017, as in the papers' repositories."""
+BODIES = ("box", "none", "sedan")
+"""The body that occludes: a box of `BODY_M`; nothing; the sedan that comes with the project."""
+DENSITIES = (1.0, 0.5, 2.0)
+"""Factor on the number of objects that are around the vehicle at once."""
+CURVES = ("fitted", "carried over")
+"""AP curves of objects: those of the project; or, for LiDARs too, the paper's curve of a voxel
+carried over to the size of a class."""
+PARTS = ("own class", "all classes")
+"""The part of a score that is compared with the AP of a class: that of the class, or the whole."""
+ALONE = "alone"
+TRAFFIC = "traffic"
+"""Whether voxels and objects are occluded by the vehicle only, or by other road users too."""
+BOX_FACES = np.array(
+    [
+        (0, 1, 3),
+        (0, 3, 2),
+        (4, 6, 7),
+        (4, 7, 5),  # rear, front
+        (0, 4, 5),
+        (0, 5, 1),
+        (2, 3, 7),
+        (2, 7, 6),  # right, left
+        (0, 2, 6),
+        (0, 6, 4),
+        (1, 5, 7),
+        (1, 7, 3),  # below, above
+    ]
+)
+"""Corners of a box's triangles, (12, 3); the number of a corner has one bit each for x, y and z."""
+OBJECTS = "objects"
+HEIGHT = "height"
 
 
 @dataclass(frozen=True)
@@ -91,7 +126,8 @@ class Paper:
 
 
 def _camera(row: Mapping[str, Any]) -> pe.Camera:
-    (width, height), hfov_deg = row["image"], row["hfov_deg"]
+    width, height = row["image"]
+    hfov_deg = row["hfov_deg"]
     return pe.Camera(f"camera of {hfov_deg} deg", width, height, math.radians(hfov_deg))
 
 
@@ -106,33 +142,6 @@ def papers() -> tuple[Paper, ...]:
 def paper_of(name: str) -> Paper:
     """Return a paper by its id."""
     return next(paper for paper in papers() if paper.id == name)
-
-
-NumberVector = Sequence[float] | np.ndarray
-
-BODY_M = (4.902, 2.128, 1.511)
-"""Length, width, height of the simulated Lincoln MKZ 2017, as in the papers' repositories."""
-
-BODIES = ("box", "none", "sedan")
-"""The body that occludes: a box of `BODY_M`; nothing; the sedan that comes with the project."""
-DENSITIES = (1.0, 0.5, 2.0)
-"""Factor on the number of objects that are around the vehicle at once."""
-CURVES = ("fitted", "carried over")
-"""AP curves of objects: those of the project; or, for LiDARs too, the paper's curve of a voxel
-carried over to the size of a class."""
-PARTS = ("own class", "all classes")
-"""The part of a score that is compared with the AP of a class: that of the class, or the whole."""
-ALONE, TRAFFIC = "alone", "traffic"
-"""Whether voxels and objects are occluded by the vehicle only, or by other road users too."""
-
-BOX_FACES = np.array(
-    [
-        *((0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5)),  # rear, front
-        *((0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6)),  # right, left
-        *((0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)),  # below, above
-    ]
-)
-"""Corners of a box's triangles, (12, 3); the number of a corner has one bit each for x, y and z."""
 
 
 @dataclass(frozen=True)
@@ -250,7 +259,8 @@ class RankedScore:
 
     def value(self, rating: Rating, values: Values) -> float:
         """Return the score of a placement, higher for better, from the computed values."""
-        paper, choice = rating.paper, rating.choice
+        paper = rating.paper
+        choice = rating.choice
         if self.source == HEIGHT:
             return paper.height(rating.placement)
         if self.source in paper.surrogates:
@@ -263,7 +273,6 @@ class RankedScore:
         return self.sign * float((of_class if choice.part == PARTS[0] else whole)[self.key])
 
 
-OBJECTS, HEIGHT = "objects", "height"
 OWN = (
     RankedScore("perception entropy, road prior", "road", "entropy", -1.0),
     RankedScore("perception entropy, uniform prior", "uniform", "entropy", -1.0),

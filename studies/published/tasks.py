@@ -51,8 +51,22 @@ class ValidityEffort:
     all_variants: bool
 
 
-FULL = ValidityEffort(0, 262_144, 32_768, 16, 500, True)
-QUICK = ValidityEffort(8_192, 8_192, 4_096, 1, 8, False)
+FULL = ValidityEffort(
+    samples=0,
+    variant_samples=262_144,
+    traffic_samples=32_768,
+    traffic_scenes=16,
+    scenes=500,
+    all_variants=True,
+)
+QUICK = ValidityEffort(
+    samples=8_192,
+    variant_samples=8_192,
+    traffic_samples=4_096,
+    traffic_scenes=1,
+    scenes=8,
+    all_variants=False,
+)
 
 
 def plan(effort: ValidityEffort, values: Values) -> list[Task]:
@@ -68,7 +82,7 @@ def _tasks(effort: ValidityEffort) -> dict[str, Task]:
         for paper in papers()
         for placement in paper.placements
         for reading in paper.readings(placement)
-        for task in _tasks_of(effort, choice, paper.id, placement, reading)
+        for task in _tasks_of(effort, choice, paper.id, placement, reading=reading)
     )
     return {task.name: task for task in tasks}
 
@@ -77,18 +91,29 @@ def _tasks_of(
     effort: ValidityEffort, choice: ScoreChoice, paper: str, placement: str, reading: str
 ) -> Iterator[Task]:
     """Yield the tasks of a placement: voxels and objects, alone and in traffic."""
-    key = paper, placement, reading
     arguments: dict[str, Any] = {"paper": paper, "placement": placement, "reading": reading}
     arguments["body"] = choice.body
     samples = effort.samples if choice == BASE else effort.variant_samples
-    yield Task(voxel_name(*key, ALONE, choice), voxels, {**arguments, "samples": samples})
+    yield Task(
+        voxel_name(paper, placement, reading, ALONE, choice=choice),
+        voxels,
+        {**arguments, "samples": samples},
+    )
     arguments["density"] = choice.density
     counts = {"samples": effort.traffic_samples, "scenes": effort.traffic_scenes}
-    yield Task(voxel_name(*key, TRAFFIC, choice), voxels_in_traffic, {**arguments, **counts})
+    yield Task(
+        voxel_name(paper, placement, reading, TRAFFIC, choice=choice),
+        voxels_in_traffic,
+        {**arguments, **counts},
+    )
     arguments |= {"curves": choice.curves, "scenes": effort.scenes}
     for traffic in (ALONE, TRAFFIC):
         in_traffic = {"traffic": traffic == TRAFFIC}
-        yield Task(object_name(*key, traffic, choice), objects, {**arguments, **in_traffic})
+        yield Task(
+            object_name(paper, placement, reading, traffic, choice=choice),
+            objects,
+            {**arguments, **in_traffic},
+        )
 
 
 def voxels(paper: str, placement: str, reading: str, body: str, samples: int) -> Json:
@@ -104,7 +129,7 @@ def voxels_in_traffic(
     rig = paper_of(paper).rig(placement, reading)
     found = {}
     for prior in PRIORS:
-        evaluators = _evaluators_in_traffic(prior, body, density, samples, scenes)
+        evaluators = _evaluators_in_traffic(prior, body, density, samples, scenes=scenes)
         found[prior] = _mean([_score_data(evaluator.score(rig)) for evaluator in evaluators])
     return found
 
@@ -121,7 +146,7 @@ def objects(
 ) -> Json:
     """Score a placement's objects, each alone or, in traffic, all occluding each other."""
     rig = paper_of(paper).rig(placement, reading)
-    score = _object_evaluator(body, density, curves, traffic, scenes).score(rig)
+    score = _object_evaluator(body, density, curves, traffic, scenes=scenes).score(rig)
     of_objects = score.objects
     assert of_objects is not None
     return {

@@ -21,7 +21,8 @@ from .statistics import BOOTSTRAP, compared, hidden_and_seen, read_cameras, stat
 
 FOLDER = "docs/validity/road"
 TITLE = "# Points on the road: predicted and counted"
-FIT_EVERY, GAIN = 5, 0.01
+FIT_EVERY = 5
+GAIN = 0.01
 """Frames of a fit: those 0.1 s apart are nearly the same. A step is kept for this share of loss."""
 CHUNK = 12
 """Frames measured together: a bound of the memory."""
@@ -68,11 +69,13 @@ def held_against_the_road(args: argparse.Namespace, folder: Path) -> Answer:
 
 def measured(args: argparse.Namespace) -> Json:
     """Return all figures as JSON data."""
-    logs, rig = read_logs(Path(args.logs)), read_lidars(Path(args.logs))
+    logs = read_logs(Path(args.logs))
+    rig = read_lidars(Path(args.logs))
     further = read_logs(Path(args.further)) if args.further else []
     beams = [crossings(log.every(FIT_EVERY), rig) for log in logs]
     found: Json = {"logs": {}, "steps": {}, "values": {}}
-    fits, predictions = [], []
+    fits = []
+    predictions = []
     for k, log in enumerate(logs):
         print_progress(f"{log.name}: fitting to the others")
         others = [b for j, b in enumerate(beams) if j != k]

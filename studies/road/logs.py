@@ -14,7 +14,8 @@ from pe_core.base import Floats, Ints
 from pe_core.scene.objects import Objects
 from pe_tools.exchange import pose_from_quaternion
 
-EGO, OTHER = "EGO_VEHICLE", "other"
+EGO = "EGO_VEHICLE"
+OTHER = "other"
 CATEGORIES = {
     "car": "REGULAR_VEHICLE",
     "truck": "LARGE_VEHICLE BOX_TRUCK TRUCK TRUCK_CAB VEHICULAR_TRAILER BUS SCHOOL_BUS "
@@ -77,7 +78,8 @@ def read_logs(folder: Path) -> list[Log]:
 
 def _log(path: Path) -> Log:
     columns = "timestamp_ns track_uuid category num_interior_pts"
-    sizes, places = "length_m width_m height_m", "tx_m ty_m tz_m"
+    sizes = "length_m width_m height_m"
+    places = "tx_m ty_m tz_m"
     data = read_table(path, f"{columns} {sizes} {places} qw qx qy qz")
     kept = np.flatnonzero(data["category"] != EGO)
     data = {name: values[kept] for name, values in data.items()}
@@ -88,8 +90,8 @@ def _log(path: Path) -> Log:
         np.stack([data[name] for name in sizes.split()], axis=1),
         yaws,
         np.array([CLASS_OF.get(name, len(CLASSES) - 1) for name in data["category"]]),
-        CLASSES,
-        np.unique(data["timestamp_ns"], return_inverse=True)[1],
+        class_names=CLASSES,
+        scenes=np.unique(data["timestamp_ns"], return_inverse=True)[1],
     )
     tracks = np.unique(data["track_uuid"].astype(str), return_inverse=True)[1]
     return Log(path.parent.name, objects, data["num_interior_pts"].astype(np.int64), tracks)

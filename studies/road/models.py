@@ -45,7 +45,8 @@ Cells = dict[tuple[str, int], Ints]
 
 def cells_of(log: Log) -> Cells:
     """Return the cells of a log."""
-    labels, distance = log.objects.labels, log.distance
+    labels = log.objects.labels
+    distance = log.distance
     found = {
         (name, ring): np.flatnonzero((labels == k) & (distance >= low) & (distance < high))
         for k, name in enumerate(CLASSES)
@@ -84,7 +85,8 @@ class Fitted:
 
 def crossings(log: Log, rig: pe.Rig) -> Crossings:
     """Return all crossings of a rig's beams and a log's boxes."""
-    kernel, parts = LidarObjects(ObjectView(log.objects, None, True)), []
+    kernel = LidarObjects(ObjectView(log.objects, None, True))
+    parts = []
     for k, sensor in enumerate(rig):
         hits = kernel.crossings(sensor)
         boxes = PlacedBoxes.of(log.objects, sensor.pose.position)
@@ -95,18 +97,21 @@ def crossings(log: Log, rig: pe.Rig) -> Crossings:
 
 def cosines(hits: BoxHits, boxes: PlacedBoxes, directions: Floats) -> Floats:
     """Return the cosine (H,) between each beam and the normal of the face that it enters by."""
-    enter, cosine = np.full(len(hits.box), -np.inf), np.zeros(len(hits.box))
+    enter = np.full(len(hits.box), -np.inf)
+    cosine = np.zeros(len(hits.box))
     for k, speed in enumerate(boxes.along(hits.box, directions)):
-        offset, half = boxes.offsets[hits.box, k], boxes.halves[hits.box, k]
+        offset = boxes.offsets[hits.box, k]
+        half = boxes.halves[hits.box, k]
         with np.errstate(divide="ignore", invalid="ignore"):
             t = np.minimum((offset - half) / speed, (offset + half) / speed)
         later = t > enter
-        enter[later], cosine[later] = t[later], np.abs(speed[later])
+        enter[later] = t[later]
+        cosine[later] = np.abs(speed[later])
     return cosine
 
 
 def _passed(beams: Crossings, fill: Floats) -> Floats:
-    return passed(beams.box, beams.ray, beams.enter, beams.log.objects.scenes, fill)
+    return passed(beams.box, beams.ray, beams.enter, beams.log.objects.scenes, fill=fill)
 
 
 def _returns(beams: Crossings, half: Floats | float, step: str) -> Floats | float:
@@ -141,10 +146,8 @@ def _fill(name: str, size: tuple[float, float, float], along: Floats, up: Floats
     tree = TriangleTree(placed_mesh(name, np.zeros(3), np.array(size), 0.0))
     hit = inside = 0
     for angle in np.pi * np.arange(8) / 8:
-        axis, side = (
-            np.array([np.cos(angle), np.sin(angle)]),
-            np.array([-np.sin(angle), np.cos(angle)]),
-        )
+        axis = np.array([np.cos(angle), np.sin(angle)])
+        side = np.array([-np.sin(angle), np.cos(angle)])
         half = (abs(side[0]) * size[0] + abs(side[1]) * size[1]) / 2.0
         far = 1000.0
         start = np.array([*(-far * axis), size[2] / 2.0])
@@ -159,7 +162,8 @@ def _fill(name: str, size: tuple[float, float, float], along: Floats, up: Floats
 def fit(step: str, logs: Sequence[Crossings], start: Fitted | None = None) -> Fitted:
     """Return a step with the values that minimise the loss over some logs."""
     count = len(CLASSES)
-    fill, half = np.ones(count), np.full(count, np.inf)
+    fill = np.ones(count)
+    half = np.full(count, np.inf)
     if step == SOLID:
         return Fitted(step, fill, half)
     fill = mesh_fills() if start is None else start.fill.copy()

@@ -21,6 +21,19 @@ from ..results_file import Json
 from .logs import CLASSES, Log, read_table
 from .models import MIN_BOXES, RINGS_M, Cells
 
+LEAST = 0.5
+"""With less m, no point is predicted."""
+GOALS = {"ratio": (0.8, 1.25), "none": (-0.1, 0.1), "rho": (0.8, 1.0)}
+JUDGED = {"ratio": ("car", "pedestrian"), "rho": ("car", "pedestrian"), "none": CLASSES}
+HOLDS = "holds"
+REFUTED = "refuted"
+OPEN = "not decided"
+RING = "ring_"
+WHOLE = 0.95
+"""A box with this share of its pixels is not hidden."""
+BLOCK = 16
+"""Frames measured together."""
+
 
 @dataclass(frozen=True)
 class Bootstrap:
@@ -31,11 +44,6 @@ class Bootstrap:
 
 
 BOOTSTRAP = Bootstrap(20261126)
-LEAST = 0.5
-"""With less m, no point is predicted."""
-GOALS = {"ratio": (0.8, 1.25), "none": (-0.1, 0.1), "rho": (0.8, 1.0)}
-JUDGED = {"ratio": ("car", "pedestrian"), "rho": ("car", "pedestrian"), "none": CLASSES}
-HOLDS, REFUTED, OPEN = "holds", "refuted", "not decided"
 
 
 def ratio(counted: Ints, m: Floats) -> float:
@@ -72,10 +80,10 @@ def compared(log: Log, m: Floats, cells: Cells) -> Json:
     for k, name in enumerate(CLASSES[:-1]):
         boxes = np.flatnonzero(log.objects.labels == k)
         if len(boxes) >= MIN_BOXES:
-            found[name] = {"all": _cell(log, m, boxes, name, ("rho",))}
+            found[name] = {"all": _cell(log, m, boxes, name, figures=("rho",))}
             found[name] |= {
                 f"{RINGS_M[ring]:g} to {RINGS_M[ring + 1]:g} m": {
-                    **_cell(log, m, own, name, ("ratio", "none")),
+                    **_cell(log, m, own, name, figures=("ratio", "none")),
                     "rho": rounded(rank_correlation(log.points[own], m[own])),
                     "without_points": rounded(np.mean(log.points[own] == 0)),
                     "poisson": rounded(np.mean(np.exp(-m[own])) - np.mean(log.points[own] == 0)),
@@ -146,13 +154,6 @@ def statements(by_log: Json) -> list[Json]:
     return rows
 
 
-RING = "ring_"
-WHOLE = 0.95
-"""A box with this share of its pixels is not hidden."""
-BLOCK = 16
-"""Frames measured together."""
-
-
 def read_cameras(folder: Path) -> tuple[str, pe.Rig]:
     """Return the first log with a calibration, and its ring cameras as pinholes."""
     path = sorted(folder.glob("*/calibration/egovehicle_SE3_sensor.feather"))[0]
@@ -184,7 +185,8 @@ def hidden_and_seen(log: Log, rig: pe.Rig) -> Json:
         kept = np.flatnonzero((scenes >= first) & (scenes < first + BLOCK))
         if len(kept):
             some = log.objects.some(kept)
-            alone[:, kept], traffic[:, kept] = _pixels(some, rig, False), _pixels(some, rig, True)
+            alone[:, kept] = _pixels(some, rig, False)
+            traffic[:, kept] = _pixels(some, rig, True)
     in_field = (alone > 0.0).any(axis=0)
     groups = {
         "hidden": in_field & (traffic == 0.0).all(axis=0),

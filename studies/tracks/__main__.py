@@ -29,8 +29,10 @@ CARS_AND_PEDESTRIANS = "car and pedestrian"
 GOALS = {
     "1. First sight of cars and pedestrians": (CARS_AND_PEDESTRIANS, "first_s", -NEAR_S, NEAR_S),
     "2. Confirmed tracks of cars and pedestrians": (
-        *(CARS_AND_PEDESTRIANS, "confirmed_s"),
-        *(-NEAR_S, NEAR_S),
+        CARS_AND_PEDESTRIANS,
+        "confirmed_s",
+        -NEAR_S,
+        NEAR_S,
     ),
     "3. Nothing is seen that is not there": ("all", "invented", 0.0, 0.1),
 }
@@ -60,7 +62,8 @@ def page_of(found: Json) -> str:
 
 def measured(args: argparse.Namespace) -> Json:
     """Return all figures as JSON data; the model `road` has what was fitted to the other logs."""
-    logs, rig = read_logs(Path(args.logs)), read_lidars(Path(args.logs))
+    logs = read_logs(Path(args.logs))
+    rig = read_lidars(Path(args.logs))
     road = read_json(Path(ROAD) / RESULTS)
     found: Json = {"logs": {}, "persistence": {}, "counts": {}, "memory": {}}
     by_road: list[tuple[Log, np.ndarray]] = []

@@ -71,11 +71,15 @@ class Linked:
     @classmethod
     def of(cls, pairs: Pairs) -> Linked:
         """Return those of pairs; groups that are always or never seen have none."""
-        then, count = pairs.then.sum(axis=0), pairs.all.sum(axis=0)
-        first, both = pairs.first.sum(axis=0), pairs.both.sum(axis=0)
+        then = pairs.then.sum(axis=0)
+        count = pairs.all.sum(axis=0)
+        first = pairs.first.sum(axis=0)
+        both = pairs.both.sum(axis=0)
         kept = (first > 0.0) & (then > 0.0) & (then < count)
-        then, count = then[kept], count[kept]
-        first, both = first[kept], both[kept]
+        then = then[kept]
+        count = count[kept]
+        first = first[kept]
+        both = both[kept]
         p = then / count
         return cls(first / count, p, (both / first - p) / (1.0 - p), count)
 
@@ -201,7 +205,9 @@ def memory(logs: Sequence[tuple[Log, Floats]], n: int) -> Json:
         whole: Cells = {lag: [] for lag in LAGS}
         for log, m in logs:
             for name in OF_CLASSES:
-                cells = {lag: [pairs_of_class(log, m, name, lag, n, groups)] for lag in LAGS}
+                cells = {
+                    lag: [pairs_of_class(log, m, name, lag, n=n, groups=groups)] for lag in LAGS
+                }
                 if min(cells[lag][0].total for lag in JUDGED) >= MIN_PAIRS:
                     rows[f"{log.name}, {name}"] = row(cells)
                     for lag in LAGS:

@@ -16,12 +16,20 @@ from ..road.statistics import HOLDS, OPEN, REFUTED, Bootstrap, rank_correlation,
 
 FRAME_S = 0.1
 POINTS = (1, 5, 20)
-NEEDED, WINDOW = 3, 5
+NEEDED = 3
+WINDOW = 5
 UNSEEN = 5
 """First frames at which a track that counts is not seen."""
 NEAR_S = 0.5
 MIN_TRACKS = 10
 BOOTSTRAP = Bootstrap(20261127)
+OF_BOTH: dict[str, tuple[str, Callable[[Floats], float]]] = {
+    "first_s": ("first", lambda late: float(np.median(late))),
+    "confirmed_s": ("confirmed", lambda late: float(np.median(late))),
+    "error_s": ("confirmed", lambda late: float(np.median(np.abs(late)))),
+    "near": ("confirmed", lambda late: float(np.mean(np.abs(late) <= NEAR_S + 1e-9))),
+}
+"""Figures of predicted minus real times [s]: medians, of the absolute ones, share within 0.5 s."""
 
 
 def tracks_of(log: Log) -> list[Ints]:
@@ -71,7 +79,8 @@ class Pair:
 
     def late(self, what: str) -> float | None:
         """Return predicted minus real time of "first" or "confirmed" [s]; None: one is never."""
-        a, b = getattr(self.real, what), getattr(self.said, what)
+        a = getattr(self.real, what)
+        b = getattr(self.said, what)
         return None if a is None or b is None else (b - a) * FRAME_S
 
 
@@ -79,7 +88,8 @@ def pairs_of(log: Log, m: Floats, n: int) -> list[Pair]:
     """Return the tracks of a log that are unseen at first, counted and predicted."""
     pairs = []
     for boxes in tracks_of(log):
-        real, said = log.points[boxes] >= n, m[boxes] >= threshold(n)
+        real = log.points[boxes] >= n
+        said = m[boxes] >= threshold(n)
         if len(boxes) <= UNSEEN or real[:UNSEEN].any() or said[:UNSEEN].any():
             continue
         moments = Moments.of(real), Moments.of(said)
@@ -111,15 +121,6 @@ def invented(pairs: Sequence[Pair]) -> float:
     return float(
         np.mean([p.said.confirmed is not None and p.real.confirmed is None for p in pairs])
     )
-
-
-OF_BOTH: dict[str, tuple[str, Callable[[Floats], float]]] = {
-    "first_s": ("first", lambda late: float(np.median(late))),
-    "confirmed_s": ("confirmed", lambda late: float(np.median(late))),
-    "error_s": ("confirmed", lambda late: float(np.median(np.abs(late)))),
-    "near": ("confirmed", lambda late: float(np.mean(np.abs(late) <= NEAR_S + 1e-9))),
-}
-"""Figures of predicted minus real times [s]: medians, of the absolute ones, share within 0.5 s."""
 
 
 def compared(pairs: Sequence[Pair]) -> Json:
@@ -165,7 +166,8 @@ def persistence(log: Log, m: Floats, n: int) -> Mapping[str, Json]:
     """
     tracks = tracks_of(log)
     first, then = (np.concatenate([t[cut] for t in tracks]) for cut in (slice(-1), slice(1, None)))
-    seen, labels = log.points >= n, log.objects.labels
+    seen = log.points >= n
+    labels = log.objects.labels
     found: dict[str, Json] = {}
     for k, name in enumerate(CLASSES[:-1]):
         own = np.flatnonzero(labels[then] == k)
@@ -173,7 +175,8 @@ def persistence(log: Log, m: Floats, n: int) -> Mapping[str, Json]:
             continue
         rows = []
         for third in np.array_split(own[np.argsort(m[then[own]], kind="stable")], 3):
-            p, given = float(seen[then[third]].mean()), seen[first[third]]
+            p = float(seen[then[third]].mean())
+            given = seen[first[third]]
             if 0.0 < p < 1.0 and given.any():
                 again = float(seen[then[third]][given].mean())
                 rows.append((len(third), again / p, (again - p) / (1.0 - p)))

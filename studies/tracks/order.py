@@ -15,10 +15,12 @@ from pe_core.metric.frames import Frames
 from ..results_file import Json, read_json
 
 TABLE = Path(__file__).with_name("published.json")
-NOISES, COUNTS = (0.1, 1.0, 10.0), (2, 5, 16)
+NOISES = (0.1, 1.0, 10.0)
+COUNTS = (2, 5, 16)
 SHOWN = 1.0, 5
 NEAR = 0.25
-HOLDS, FAILS = "holds", "does not hold"
+HOLDS = "holds"
+FAILS = "does not hold"
 
 
 def over_frames(ap: Floats, frames: int, q: float) -> Floats:
@@ -31,8 +33,12 @@ def over_frames(ap: Floats, frames: int, q: float) -> Floats:
 def statements() -> list[list[str]]:
     """Return a row for each statement of the plan: what was published, and the verdict."""
     found: Json = read_json(TABLE)
-    late, rings, several = found["late"], found["rings"]["rows"], found["frames"]["rows"]
-    share, ratios, falls = np.array(late["share"]), {}, []
+    late = found["late"]
+    rings = found["rings"]["rows"]
+    several = found["frames"]["rows"]
+    share = np.array(late["share"])
+    ratios = {}
+    falls = []
     for name, values in late["rows"].items():
         lost = 1.0 - np.array(values) / values[0]
         falls.append(bool((np.diff(values) < 0.0).all()))
@@ -78,7 +84,8 @@ def statements() -> list[list[str]]:
 
 def expected() -> str:
     """Return what T1 and T2 say of the rings, at one noise and number of frames."""
-    rows, (q, count) = read_json(TABLE)["rings"]["rows"], SHOWN
+    rows = read_json(TABLE)["rings"]["rows"]
+    q, count = SHOWN
     ones = [np.array(row["one"]) for row in rows.values()]
     return "; ".join(_texts(over_frames(one, count, q) - one) for one in ones)
 

@@ -17,8 +17,16 @@ from tests.limits import HANG_S
 
 ROOT = Path(__file__).resolve().parents[2]
 FAST = (
-    *("--samples", "1024", "--set", "optimize.samples=1024"),
-    *("--method", "random", "--set", "optimize.candidates=2", "--seed", "3"),
+    "--samples",
+    "1024",
+    "--set",
+    "optimize.samples=1024",
+    "--method",
+    "random",
+    "--set",
+    "optimize.candidates=2",
+    "--seed",
+    "3",
 )
 
 
@@ -35,7 +43,9 @@ def run_here(blend, *arguments) -> Answer:
 
     Objects of the scene that was open before are gone.
     """
-    out, err, argv = io.StringIO(), io.StringIO(), [str(each) for each in (blend, *arguments)]
+    out = io.StringIO()
+    err = io.StringIO()
+    argv = [str(each) for each in (blend, *arguments)]
     with contextlib.redirect_stderr(err):
         status = run_on_file(argv, out)
     if Path(bpy.data.filepath) == Path(blend):
@@ -45,7 +55,8 @@ def run_here(blend, *arguments) -> Answer:
 
 def pe_here(*arguments) -> Answer:
     """``pe VERB`` in this process."""
-    out, err = io.StringIO(), io.StringIO()
+    out = io.StringIO()
+    err = io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         status = verbs.main([str(each) for each in arguments])
     return Answer(status, out.getvalue(), err.getvalue())

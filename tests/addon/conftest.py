@@ -33,7 +33,8 @@ def sent(content):
     from blender_addon import engine_process
     from pe_tools.engine_process.messages import packed, unpacked
 
-    shared, kinds = {}, tuple(engine_process.shared_types())
+    shared = {}
+    kinds = tuple(engine_process.shared_types())
 
     def number_of(part):
         if not isinstance(part, kinds):
@@ -50,7 +51,8 @@ def everything_is_sent():
     from blender_addon.engine import engine_process
     from blender_addon.operators.jobs import JobRow
 
-    call_here, finish = engine_process.call_here, JobRow.finish
+    call_here = engine_process.call_here
+    finish = JobRow.finish
 
     def called(function, arguments, deliver, fail, step=None):
         call_here(function, sent(arguments), lambda found: deliver(sent(found)), fail, step)

@@ -71,6 +71,7 @@ class Window:
     """What panels ask of the window that they are drawn in: wide enough for all columns."""
 
     def __init__(self, scene, active_object=None):
-        self.scene, self.active_object = scene, active_object
+        self.scene = scene
+        self.active_object = active_object
         self.region = SimpleNamespace(width=600)
         self.preferences = bpy.context.preferences

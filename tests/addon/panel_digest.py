@@ -21,7 +21,8 @@ def digest(scene) -> str:
     """
     from blender_addon.panels import CLASSES  # once there is bpy
 
-    window, drawn = layouts.Window(scene, scene.objects["roof"]), []
+    window = layouts.Window(scene, scene.objects["roof"])
+    drawn = []
     for panels in ("SIMPLE", "ALL"):
         scene.perception_entropy.panels = panels
         for cls in CLASSES:

@@ -14,8 +14,14 @@ from pe_tools.graphics import LayerShape
 ASSETS = Path(__file__).resolve().parents[2] / "blend_assets"
 
 CUBE = (
-    *((-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1)),
-    *((-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)),
+    (-1, -1, -1),
+    (1, -1, -1),
+    (1, 1, -1),
+    (-1, 1, -1),
+    (-1, -1, 1),
+    (1, -1, 1),
+    (1, 1, 1),
+    (-1, 1, 1),
 )
 CUBE_FACES = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
 
@@ -90,8 +96,10 @@ def seen_rig(car) -> bpy.types.Scene:
     """Return a car with a LiDAR, and now a camera at its front, all layers shown."""
     add_sensor("eye", "Camera 60 deg", location=(2.0, 0.0, 1.0))
     add_mount(car, "cabin", bpy.data.objects["cabin"])
-    settings, view = car.perception_entropy, car.perception_entropy.view
-    settings.space_x, settings.space_y = (-30.0, 30.0), (-15.0, 15.0)
+    settings = car.perception_entropy
+    view = car.perception_entropy.view
+    settings.space_x = (-30.0, 30.0)
+    settings.space_y = (-15.0, 15.0)
     for layer in LAYERS:
         setattr(view, f"show_{layer.name}", True)
     view.beams_of = "ALL"

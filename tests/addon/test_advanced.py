@@ -39,11 +39,18 @@ def full(car):
     add_own(channels=16, elevations=(-15.0, 15.0), max_range=90.0)
     scenes.add_sensor("bumper", model="My LiDAR", location=(2.2, 0.0, 0.6))
     bpy.ops.pe.add_row(rows="curves")
-    settings.curves["lidar"].own, settings.curves["lidar"].a = True, 0.2
-    settings.space_x, settings.space_interval, settings.clearance = (-20.0, 40.0), 0.2, 0.05
+    settings.curves["lidar"].own = True
+    settings.curves["lidar"].a = 0.2
+    settings.space_x = (-20.0, 40.0)
+    settings.space_interval = 0.2
+    settings.clearance = 0.05
     bounds = bpy.data.objects["roof"].perception_entropy
-    bounds.bounded[2], bounds.bounds_low[2], bounds.bounds_high[2] = True, 1.7, 1.9
-    bounds.bounded[4], bounds.bounds_low[4], bounds.bounds_high[4] = True, -5.0, 5.1
+    bounds.bounded[2] = True
+    bounds.bounds_low[2] = 1.7
+    bounds.bounds_high[2] = 1.9
+    bounds.bounded[4] = True
+    bounds.bounds_low[4] = -5.0
+    bounds.bounds_high[4] = 5.1
     return car
 
 
@@ -63,7 +70,8 @@ def test_a_name_that_is_taken_and_figures_that_cannot_be_are_said_at_the_row(car
     row = add_own(name="Pandar64")
     bridge.sync_own_sensors()
     assert "a name used once" in row.problem and catalog.load("Pandar64").max_range == 200.0
-    row.name, row.azimuths = "Mine", (10.0, -10.0)
+    row.name = "Mine"
+    row.azimuths = (10.0, -10.0)
     assert "horizontal_fov" in row.problem and "Mine" not in catalog.entries()
     row.azimuths = (-10.0, 10.0)
     assert not row.problem and "Mine" in catalog.entries()
@@ -71,7 +79,8 @@ def test_a_name_that_is_taken_and_figures_that_cannot_be_are_said_at_the_row(car
 
 def test_the_live_score_is_of_the_same_study(full):
     """What follows the hand is of the scene's own space and curves, as the score is."""
-    study, wish = scenes.study(), session.read_request(full, scenes.depsgraph())
+    study = scenes.study()
+    wish = session.read_request(full, scenes.depsgraph())
     problem = wish.problem
     assert (problem.space, problem.model) == (study.space, study.model)
     assert problem.vehicle.clearance == 0.05

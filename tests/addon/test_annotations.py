@@ -27,10 +27,20 @@ def joins(shape, start, end):
 
 def test_lines_tell_who_sees_the_place_and_from_whom_it_is_hidden():
     def told(name, m, reason):
-        return advice.SensorAtPlace(name, "lidar", m, 5.0, 0.5, None, reason)
+        return advice.SensorAtPlace(
+            name, "lidar", m, unhidden=5.0, ap=0.5, occluded_by=None, reason=reason
+        )
 
     seen = (told("a", 3.0, "sees"), told("b", 0.0, "occluded"), told("c", 0.0, "out of view"))
-    place = advice.AskedPlace((5.0, 1.0, 0.05), 1.0, 0.5, True, 1.0, False, seen)
+    place = advice.AskedPlace(
+        (5.0, 1.0, 0.05),
+        entropy=1.0,
+        ap=0.5,
+        seen=True,
+        density=1.0,
+        in_vehicle=False,
+        sensors=seen,
+    )
     shape = location_mark(place, [sensor(name, float(k)) for k, name in enumerate("abc")])
     for k, color in ((0, VISIBLE), (1, OCCLUDED)):
         assert joins(shape, (float(k), 0.0, 1.8), place.center)
@@ -69,7 +79,8 @@ def test_the_scene_shows_the_variant_whose_ghost_is_on(two):
 
 
 def test_a_wipe_shows_the_ground_of_both_variants_as_each_alone_is_shown(two):
-    (row,), view = two.perception_entropy.variants, two.perception_entropy.view
+    (row,) = two.perception_entropy.variants
+    view = two.perception_entropy.view
     view.show_ground = view.show_blind = view.show_reach = view.wipe = True
     before = scenes.drawn(two)
     assert set(before["blind"]) == {layers.WHOLE_RIG}, "no other variant is shown"
@@ -80,7 +91,8 @@ def test_a_wipe_shows_the_ground_of_both_variants_as_each_alone_is_shown(two):
     after = scenes.drawn(two)
     for layer in ("blind", "reach"):
         for name, alone in ((layers.WHOLE_RIG, before), (layers.OTHER_RIG, after)):
-            wanted, found = alone[layer][layers.WHOLE_RIG].lines, both[layer][name].lines
+            wanted = alone[layer][layers.WHOLE_RIG].lines
+            found = both[layer][name].lines
             assert np.array_equal(found.points, wanted.points)
     maps = [both["ground"][name] for name in (layers.WHOLE_RIG, layers.OTHER_RIG)]
     assert maps[0].legend == maps[1].legend, "both in the same colours"

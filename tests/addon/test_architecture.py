@@ -17,7 +17,12 @@ CALLS = {"analysis_calls", "engine_calls", "own_jobs", "sensor_kinds", "view_set
 ARRAYS = CALLS | {
     f"overlay.{name}"
     for name in (
-        *("annotations", "ground_layers", "heatmap", "layer_cache", "layers", "regions"),
+        "annotations",
+        "ground_layers",
+        "heatmap",
+        "layer_cache",
+        "layers",
+        "regions",
         "request",
     )
 }
@@ -85,6 +90,8 @@ ALLOWED = {
     name: set(to.split())
     for name, to in re.findall(r"^(\w[\w.]*):((?:.*\n)(?:    .*\n)*)", ARROWS, re.M)
 }
+ARRAY_TYPES = {"Flags", "Floats", "Ints", "Singles"}
+"""Types of arrays: every module's annotations name them."""
 
 
 def files():
@@ -213,10 +220,6 @@ def test_the_door_leads_into_rooms_only():
 def public_names(room):
     """What a room shows: its ``__all__``; without one, what does not begin with an underscore."""
     return set(getattr(room, "__all__", (n for n in dir(room) if not n.startswith("_"))))
-
-
-ARRAY_TYPES = {"Flags", "Floats", "Ints", "Singles"}
-"""Types of arrays: every module's annotations name them."""
 
 
 def beside_the_faces(tree):

@@ -70,7 +70,8 @@ def test_a_running_search_tells_the_view_each_time_it_finds_better(car, monkeypa
 
 def test_the_schedule_is_shown_and_written_for_the_method_that_has_it(car):
     """The candidates of one method stood beside every other, which did not use them."""
-    window, settings = layouts.Window(car), car.perception_entropy
+    window = layouts.Window(car)
+    settings = car.perception_entropy
     settings.interval = 0.5
     for name in search.METHODS:
         settings.method = name

@@ -6,14 +6,16 @@ import pytest
 from blender_addon import change_events, signals, wiring
 from tests.addon import scenes
 
-MOVED, RESTED = "moved", "rested"
+MOVED = "moved"
+RESTED = "rested"
 
 
 class Timers:
     """Blender's timers and the time, as a test wants them."""
 
     def __init__(self):
-        self.now, self.waiting = 0.0, {}
+        self.now = 0.0
+        self.waiting = {}
 
     def is_registered(self, function):
         return function in self.waiting
@@ -136,8 +138,16 @@ def play(car):
         lambda car: scenes.add_sensor("second"),
     ],
     ids=[
-        *("part", "points", "parent", "frame", "model", "sensor gone", "part gone"),
-        *("sensor hidden", "part hidden", "sensor added"),
+        "part",
+        "points",
+        "parent",
+        "frame",
+        "model",
+        "sensor gone",
+        "part gone",
+        "sensor hidden",
+        "part hidden",
+        "sensor added",
     ],
 )
 def test_whatever_changes_a_sensor_or_the_vehicle_is_reported(car, timers, heard, change):

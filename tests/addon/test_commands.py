@@ -14,6 +14,16 @@ from tests.addon import scenes
 from tests.addon.command_line import FAST, complaints, pe_here, run_alone, run_here
 from tests.limits import HANG_S
 
+DRIVE = """
+import os, sys, bpy
+bpy.ops.wm.open_mainfile(filepath=sys.argv[1])
+curve = bpy.data.objects["body"].driver_add("location", 2)
+curve.driver.type, curve.driver.expression = "SCRIPTED", "[0.9, frame][0]"
+bpy.context.preferences.filepaths.use_scripts_auto_execute = True
+bpy.ops.wm.save_as_mainfile(filepath=sys.argv[1])
+os._exit(0)  # bpy 4.5 would not end by itself
+"""
+
 
 def without_run(path: Path) -> dict:
     data = json.loads(path.read_text("utf-8"))
@@ -34,7 +44,8 @@ def test_explain_says_what_it_says_without_blender(blend, tmp_path):
     assert run_here(blend, "export", "-o", tmp_path / "study").returncode == 0
     study = tmp_path / "study" / "study.toml"
     for asked in (("--samples", "4096"), ("--at", "8", "2"), ("--at", "8", "2", "1", "--json")):
-        inside, outside = (run_here(blend, "explain", *asked), pe_here("explain", study, *asked))
+        inside = run_here(blend, "explain", *asked)
+        outside = pe_here("explain", study, *asked)
         assert inside.stdout == outside.stdout and inside.stdout, inside.stderr
         assert inside.returncode == outside.returncode == 0
 
@@ -42,8 +53,7 @@ def test_explain_says_what_it_says_without_blender(blend, tmp_path):
 def test_optimize_and_export_agree_with_the_engine(blend, tmp_path, all_errors):
     inside, study, outside = (tmp_path / name for name in ("inside", "study", "outside"))
     before = blend.read_bytes()
-    options = ("--no-review", *FAST, "-o", inside, "--json")
-    answer = run_alone(blend, "optimize", *options)
+    answer = run_alone(blend, "optimize", "--no-review", *FAST, "-o", inside, "--json")
     assert answer.returncode == 0, answer.stderr
     assert json.loads(answer.stdout)["run"]["versions"]["blender"] == bpy.app.version_string
     assert blend.read_bytes() == before
@@ -59,7 +69,8 @@ def test_optimize_and_export_agree_with_the_engine(blend, tmp_path, all_errors):
 
 def check_resumed(blend: Path, folder: Path) -> None:
     """The search goes on from a state that a kill would leave, to the same result."""
-    whole, begun = without_run(folder / "result.json"), jobs.read_search(folder)
+    whole = without_run(folder / "result.json")
+    begun = jobs.read_search(folder)
     state = jobs.SearchState(begun.study, begun.inputs)
     state.save(folder, begun.study, {"": begun.evaluated[:5]})
     answer = run_here(blend, "optimize", "--no-review", *FAST, "--resume", folder)
@@ -99,17 +110,6 @@ def test_bad_file_is_one_line_and_status_1(addon, tmp_path, name, found):
 def test_usage(blend):
     assert run_here(blend, "score", "--no-such-option").returncode == 2
     assert main([]) == 2
-
-
-DRIVE = """
-import os, sys, bpy
-bpy.ops.wm.open_mainfile(filepath=sys.argv[1])
-curve = bpy.data.objects["body"].driver_add("location", 2)
-curve.driver.type, curve.driver.expression = "SCRIPTED", "[0.9, frame][0]"
-bpy.context.preferences.filepaths.use_scripts_auto_execute = True
-bpy.ops.wm.save_as_mainfile(filepath=sys.argv[1])
-os._exit(0)  # bpy 4.5 would not end by itself
-"""
 
 
 def test_the_process_ends_though_the_file_has_a_driver_in_python(blend):

@@ -159,7 +159,8 @@ def test_a_search_places_sensors_as_drawn_in_whatever_state_is_shown(car):
     mirror.perception_entropy.free = (False, False, True, False, False, False)
     bpy.data.objects["roof"].perception_entropy.free = (False,) * 6
     car.frame_set(OPEN_FRAME)
-    settings.candidates, settings.samples = 4, 2048
+    settings.candidates = 4
+    settings.samples = 2048
     assert bpy.ops.pe.optimize() == {"FINISHED"}
     idle()
     assert car.frame_current == OPEN_FRAME and not settings.result_stale
@@ -171,13 +172,16 @@ def test_a_search_places_sensors_as_drawn_in_whatever_state_is_shown(car):
 
 def test_the_stored_score_is_not_shown_as_that_of_another_state(car):
     settings = scored_with_a_state(car)
-    live, settings.live.on = state.live_state(car.name), True
-    summary = pe.Score(2.5, 0.5, 0.01, {}, {}, {}, 10)
-    live.put(state.LiveScore(summary, None, True, None, live.requests))
+    live = state.live_state(car.name)
+    settings.live.on = True
+    summary = pe.Score(
+        entropy=2.5, coverage=0.5, stderr=0.01, per_class={}, per_zone={}, per_sensor={}, voxels=10
+    )
+    live.put(state.LiveScore(summary, baseline=None, exact=True, rig=None, number=live.requests))
     assert state.shown_score(car).stored
     car.frame_set(OPEN_FRAME)
     idle()
-    live.put(state.LiveScore(summary, None, True, None, live.requests))
+    live.put(state.LiveScore(summary, baseline=None, exact=True, rig=None, number=live.requests))
     found = state.shown_score(car)
     assert (found.entropy, found.stored, found.state) == (2.5, False, "door open")
     assert not settings.result_stale

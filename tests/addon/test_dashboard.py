@@ -63,7 +63,8 @@ def test_what_is_wanted_is_met_or_not_and_is_the_study_s(car):
         assert text in shown(car).texts("label")
         limit = scenes.study().limits.value("blind_ground")
         assert limit == pytest.approx(wanted, rel=1e-6)
-    settings.keep_blind_ground, settings.keep_ap_near = False, True
+    settings.keep_blind_ground = False
+    settings.keep_ap_near = True
     kept = [key for key, limit in scenes.study().limits if limit.kept]
     assert kept == ["blind_sector", "ap_near"]
     bpy.ops.pe.score()
@@ -83,7 +84,8 @@ def test_limits_that_are_written_are_those_that_are_read(car):
 def test_a_good_score_is_told_by_the_known_rigs_on_this_body(car):
     """As many are worse as by a score of each in its turn; another body is asked about again."""
     bpy.ops.pe.score()
-    study, settings = scenes.study(), car.perception_entropy
+    study = scenes.study()
+    settings = car.perception_entropy
     assert not [text for text in shown(car).texts("label") if "known rigs" in text]
     known_rigs.request(car, study, "of this body")
     kept = json.loads(settings.known_rigs_json)

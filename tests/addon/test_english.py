@@ -9,6 +9,11 @@ import blender_addon
 from blender_addon import english
 from blender_addon.english import CONTEXT
 
+WITH_CONTEXT = {"operator", "prop", "operator_menu_enum", "prop_search", "prop_menu_enum"}
+"""What is drawn of a type or property: a text that is written there is looked up in its context."""
+OTHERS = {"label", "menu", "popover", "progress", "invoke_props_dialog", "invoke_confirm"}
+TEXTS = {"text", "title", "confirm_text", "message"}
+
 
 def rna_of(cls):
     """Return the type as Blender has it; of an operator, its own."""
@@ -28,12 +33,6 @@ def test_every_name_is_looked_up_in_our_context_where_blender_has_no_word(addon)
         declared = english.own_properties(cls).keys() - {"name"}  # Blender's own name
         contexts = {each: rna_of(cls).properties[each].translation_context for each in declared}
         assert set(contexts.values()) <= {CONTEXT}, (cls, contexts)
-
-
-WITH_CONTEXT = {"operator", "prop", "operator_menu_enum", "prop_search", "prop_menu_enum"}
-"""What is drawn of a type or property: a text that is written there is looked up in its context."""
-OTHERS = {"label", "menu", "popover", "progress", "invoke_props_dialog", "invoke_confirm"}
-TEXTS = {"text", "title", "confirm_text", "message"}
 
 
 def is_written_there(node):

@@ -45,7 +45,8 @@ def bus(shipped):
 def test_the_mesh_file_holds_the_blend_file_s_triangles_and_the_readme_lists_the_glass(
     shipped, name
 ):
-    vehicle, mesh = shipped[name].vehicle, pt.read_mesh(scenes.ASSETS / f"{name}.npz")
+    vehicle = shipped[name].vehicle
+    mesh = pt.read_mesh(scenes.ASSETS / f"{name}.npz")
     assert mesh.triangles.tobytes() == vehicle.triangles.tobytes()
     assert np.array_equal(mesh.parts, vehicle.parts)
     assert mesh.part_names == vehicle.part_names
@@ -97,8 +98,7 @@ def test_the_demo_searches_by_default_for_a_lidar_and_a_camera(addon, tmp_path):
     options = shlex.split(re.search(r"OPTIONS=\((.*?)\)", script, re.DOTALL)[1])
     few = ("--evaluations", "5", "--samples", "1024", "--workers", "1")
     few += ("--set", "optimize.samples=1024")
-    more = ("--no-review", "--output", tmp_path)
-    answer = run_here(start, "optimize", *options, *few, *more)
+    answer = run_here(start, "optimize", *options, *few, "--no-review", "--output", tmp_path)
     assert answer.returncode == 0, answer.stderr
     result = json.loads((tmp_path / "result.json").read_text("utf-8"))
     assert result["method"] == search.DEFAULT_METHOD

@@ -87,7 +87,9 @@ def test_words_are_the_engines(car):
 def test_a_place_is_asked_as_the_engine_does(car):
     assert bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0)) == {"FINISHED"}
     study = scenes.study()
-    expected = advice.ask_place(study.rig, study.space, study.prior, study.vehicle, (6.0, 3.0, 0.0))
+    expected = advice.ask_place(
+        study.rig, study.space, study.prior, study.vehicle, point=(6.0, 3.0, 0.0)
+    )
     found = location_query.answer(car)
     assert found.lines == expected.text and found.place.sensors == expected.sensors
     car.objects["roof"].location.z = 2.4

@@ -7,6 +7,17 @@ import pytest
 
 from blender_addon.operators import exports, running_job
 
+OPERATORS = {
+    "page.html": ("export_review", {}),
+    "picture.svg": ("render_review", {}),
+    "scene.glb": ("export_scene", {"output": "gltf", "range_m": 5.0}),
+}
+STAGES = {
+    "page.html": ["scoring", "page"],
+    "picture.svg": ["scoring", "picture"],
+    "scene.glb": ["exporting"],
+}
+
 
 @pytest.fixture
 def small(car, small_pictures):
@@ -27,18 +38,6 @@ def job_of(small, monkeypatch):
         return made.pop()
 
     return make
-
-
-OPERATORS = {
-    "page.html": ("export_review", {}),
-    "picture.svg": ("render_review", {}),
-    "scene.glb": ("export_scene", {"output": "gltf", "range_m": 5.0}),
-}
-STAGES = {
-    "page.html": ["scoring", "page"],
-    "picture.svg": ["scoring", "picture"],
-    "scene.glb": ["exporting"],
-}
 
 
 @pytest.mark.parametrize("name", OPERATORS)

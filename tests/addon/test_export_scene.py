@@ -34,7 +34,8 @@ def test_every_output_of_the_panel_is_that_of_the_engine(seen, tmp_path, name):
 
 
 def test_blender_imports_sensors_where_they_stood(seen, tmp_path):
-    path, rig = exported(tmp_path, "gltf"), scenes.study().rig
+    path = exported(tmp_path, "gltf")
+    rig = scenes.study().rig
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     bpy.ops.import_scene.gltf(filepath=str(path))
     bpy.context.view_layer.update()
@@ -53,7 +54,8 @@ def test_blender_imports_sensors_where_they_stood(seen, tmp_path):
 
 
 def test_the_command_in_blender_writes_the_same(seen, tmp_path):
-    path, blend = exported(tmp_path, "gltf", range_m=5.0), tmp_path / "car.blend"
+    path = exported(tmp_path, "gltf", range_m=5.0)
+    blend = tmp_path / "car.blend"
     again = tmp_path / "again.glb"
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
     answer = run_here(blend, "export", "--to", "gltf", "--range", "5", "-o", again)

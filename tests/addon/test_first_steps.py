@@ -26,7 +26,8 @@ def body(scene):
     imported = scenes.add_collection(scene.collection, "Imported")
     root = bpy.data.objects.new("root", None)
     imported.objects.link(root)
-    shell, wheel = scenes.add_box(imported, "shell"), scenes.add_box(imported, "wheel")
+    shell = scenes.add_box(imported, "shell")
+    wheel = scenes.add_box(imported, "wheel")
     shell.parent = wheel.parent = root
     tree = scenes.add_box(imported, "tree")
     return SimpleNamespace(root=root, shell=shell, wheel=wheel, tree=tree)

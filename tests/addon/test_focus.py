@@ -21,6 +21,11 @@ AREAS = {
     "custom": [((-80.0, 80.0), (-40.0, 40.0))],
 }
 LABELS = "class,x,y,z,length,width,height,yaw\ncar,20,3,0.8,4,2,1.6,0\ntram,-30,5,1.5,20,2.5,3,90\n"
+IMPOSSIBLE = {
+    "x: expected two numbers, low before high, found [5.0, 5.0]": {"x_range": (5.0, 5.0)},
+    "y: expected two numbers, low before high, found [3.0, -2.5]": {"y_range": (3.0, -2.5)},
+    "classes: expected at least one class, found none": {"classes": set()},
+}
 
 
 def add_focus(scene, region="front", **settings) -> bpy.types.PropertyGroup:
@@ -55,13 +60,6 @@ def test_region_is_the_engines_focus(scene, region):
     assert bridge.prior_from_scene(scene).focus == expected
 
 
-IMPOSSIBLE = {
-    "x: expected two numbers, low before high, found [5.0, 5.0]": {"x_range": (5.0, 5.0)},
-    "y: expected two numbers, low before high, found [3.0, -2.5]": {"y_range": (3.0, -2.5)},
-    "classes: expected at least one class, found none": {"classes": set()},
-}
-
-
 @pytest.mark.parametrize("message", IMPOSSIBLE)
 def test_impossible_focus_is_one_line_that_names_it(car, message):
     add_focus(car)
@@ -76,7 +74,8 @@ def test_impossible_focus_is_one_line_that_names_it(car, message):
 
 def test_labelled_boxes(scene, labels):
     settings = scene.perception_entropy
-    settings.prior, settings.boxes = "boxes", str(labels)
+    settings.prior = "boxes"
+    settings.boxes = str(labels)
     add_focus(scene, "front")
     prior = bridge.prior_from_scene(scene)
     assert prior == pe.Prior.from_boxes(formats.read_boxes(labels), [pe.Focus(2.0, x=(0.0, INF))])

@@ -15,14 +15,16 @@ from tests.addon import scenes
 def asked(car):
     """Return a scene whose search has all goals."""
     settings = car.perception_entropy
-    settings.evaluations, settings.search_samples = 60, 1024
+    settings.evaluations = 60
+    settings.search_samples = 1024
     settings.score_samples = 1024
     return car
 
 
 def test_the_panel_finds_the_front_of_the_job(asked):
     settings = asked.perception_entropy
-    settings.front_objectives, settings.front_points = {"entropy", "height"}, 3
+    settings.front_objectives = {"entropy", "height"}
+    settings.front_points = 3
     # a lower sensor has more of both
     settings.keep_blind_ground = settings.keep_blind_sector = False
     job = FrontJob(scenes.study(), 1)
@@ -71,9 +73,11 @@ def test_goals_of_the_panel_are_those_of_the_study(asked):
     settings.keep_blind_ground = settings.keep_blind_sector = False
     assert scenes.study().limits == pe.Limits()
     assert scenes.study().search.goals == Goals()
-    settings.limit_entropy, settings.keep_entropy = -1.25, True
+    settings.limit_entropy = -1.25
+    settings.keep_entropy = True
     assert scenes.study().limits == pe.Limits(entropy=-1.25)
-    settings.stop_gain, settings.stop_over = 0.002, 40
+    settings.stop_gain = 0.002
+    settings.stop_over = 40
     bpy.data.objects["roof"].perception_entropy.stays = True
     goals = scenes.study().search.goals
     assert (goals.stop.seconds, goals.stop.over) == (None, 40)

@@ -14,6 +14,8 @@ from blender_addon.operators import place_sensor, placement, surface_pose
 from blender_addon.operators.surface_pose import SurfaceSpot
 from tests.addon import scenes
 
+ROOF = SurfaceSpot(Vector((-0.3, 0.0, 1.5)), Vector((0.0, 0.0, 1.0)), "cabin")
+
 
 class View3D:
     """Stands for Blender's 3D views: counts what is drawn into them."""
@@ -29,9 +31,6 @@ class View3D:
     @classmethod
     def draw_handler_remove(cls, handle, _region):
         cls.handles.remove(handle)
-
-
-ROOF = SurfaceSpot(Vector((-0.3, 0.0, 1.5)), Vector((0.0, 0.0, 1.0)), "cabin")
 
 
 @pytest.fixture

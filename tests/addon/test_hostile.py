@@ -12,7 +12,8 @@ from blender_addon.overlay import layers
 from tests.addon import scenes
 from tests.thorough import pairs
 
-GREATEST, LEAST = 2**31 - 1, -(2**31)
+GREATEST = 2**31 - 1
+LEAST = -(2**31)
 """Whole numbers that a property can hold."""
 FLOAT_MAX = 3.4028234663852886e38
 STOP_AT = {"score_samples": 16_777_216, "search_samples": 16_777_216, "candidates": 10_000_000}
@@ -28,6 +29,20 @@ NAMES = {
 }
 FIELDS = ("location", "scale", "rotation_euler")
 MUST_BE_REFUSED = ("line break", "colour of a terminal", "turned text")
+NUMBERS = (
+    ("score_samples", GREATEST),
+    ("search_samples", 1),
+    ("candidates", GREATEST),
+    ("candidates", LEAST),
+    ("seed", GREATEST),
+    ("seed", LEAST),
+    ("focus_index", GREATEST),
+    ("beam_limit", LEAST),
+    ("beam_length", FLOAT_MAX),
+    ("beam_length", math.nan),
+)
+FACTORS = (0.0, 1e-45, FLOAT_MAX, math.inf, math.nan)
+BOUNDS = ((math.nan, 1.0), (-FLOAT_MAX, FLOAT_MAX), (5.0, 5.0), (5.0, -5.0), (1e-45, 2e-45))
 
 
 @pytest.fixture
@@ -37,7 +52,9 @@ def small(car, monkeypatch):
     monkeypatch.setattr(layers, "BLIND_WITHIN_M", 1.0)
     car.objects["roof"].perception_entropy.model = "Velodyne VLP-16 Puck"
     settings = car.perception_entropy
-    settings.score_samples, settings.search_samples, settings.candidates = 1024, 1024, 1
+    settings.score_samples = 1024
+    settings.search_samples = 1024
+    settings.candidates = 1
     settings.method = "random"
     return car
 
@@ -57,7 +74,9 @@ def said_by(operator, **options) -> str | None:
 def assert_drawn_sound(scene):
     """What the 3D view shows is finite, whatever the scene holds."""
     small_view = scene.perception_entropy.view
-    small_view.beams_of, small_view.show_reach, small_view.show_heat = "ALL", True, True
+    small_view.beams_of = "ALL"
+    small_view.show_reach = True
+    small_view.show_heat = True
     for shapes in scenes.drawn(scene).values():
         for shape in shapes.values():
             for each in (shape.lines, shape.faces, shape.through, shape.thin):
@@ -68,15 +87,6 @@ def score_and_export(folder) -> list[str | None]:
     """What they say; a search reads the scene as they do, and takes longer."""
     path = str(folder / "study.toml")
     return [said_by(bpy.ops.pe.score), said_by(bpy.ops.pe.export_study, filepath=path)]
-
-
-NUMBERS = (
-    *(("score_samples", GREATEST), ("search_samples", 1), ("candidates", GREATEST)),
-    *(("candidates", LEAST), ("seed", GREATEST), ("seed", LEAST), ("focus_index", GREATEST)),
-    *(("beam_limit", LEAST), ("beam_length", FLOAT_MAX), ("beam_length", math.nan)),
-)
-FACTORS = (0.0, 1e-45, FLOAT_MAX, math.inf, math.nan)
-BOUNDS = ((math.nan, 1.0), (-FLOAT_MAX, FLOAT_MAX), (5.0, 5.0), (5.0, -5.0), (1e-45, 2e-45))
 
 
 @pytest.mark.filterwarnings("error")
@@ -115,7 +125,8 @@ def test_numbers_at_their_limits(small, tmp_path):
 )
 def test_names(small, tmp_path, what, kind):
     """Names that a terminal or a page would act on are refused, in a line that shows them."""
-    sensor, name = small.objects["roof"], NAMES[kind]
+    sensor = small.objects["roof"]
+    name = NAMES[kind]
     if what == "sensor":
         sensor.name = name
     elif what == "part":
@@ -166,7 +177,8 @@ class Reporter:
     """Stands for an operator: notes what it reports."""
 
     def report(self, level, text):
-        self.level, self.text = level, text
+        self.level = level
+        self.text = text
 
 
 def test_a_report_is_one_line_whatever_it_quotes():

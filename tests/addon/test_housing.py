@@ -22,7 +22,8 @@ def triangles_of(surface):
 def test_it_is_as_large_as_the_catalogue_says_about_the_optical_centre(name):
     housing = pe.catalog.housing(name)
     points = model_surface(name).points
-    low, high = points.min(axis=0), points.max(axis=0)
+    low = points.min(axis=0)
+    high = points.max(axis=0)
     assert high - low == pytest.approx(housing.size, abs=1e-9)
     assert low[2] == pytest.approx(-housing.optical_center[2], abs=1e-9)
     assert low[:2] + high[:2] == pytest.approx([0.0, 0.0], abs=1e-9)
@@ -67,7 +68,8 @@ def test_a_body_changes_no_score(car):
     bpy.ops.object.delete()
     bpy.ops.pe.add_sensor(model="Pandar64", housing=False)
     bare = bpy.context.object
-    bare.name, bare.location = "roof", (-0.43, 0.0, 1.8)
+    bare.name = "roof"
+    bare.location = (-0.43, 0.0, 1.8)
     bpy.context.view_layer.update()
     entropies = {
         study.evaluator().score(study.rig).entropy

@@ -29,15 +29,21 @@ def test_the_same_folder_again_is_one_set(blend, tmp_path, small_pictures):
         assert answer.returncode == 0, answer.stderr
     named = [path.name for path in out.iterdir() if not path.name.startswith(".")]
     expected = (
-        *("history.csv", "optimized.blend", "result.json", "review.html"),
-        *("search.json", "study.toml", "vehicle.npz"),
+        "history.csv",
+        "optimized.blend",
+        "result.json",
+        "review.html",
+        "search.json",
+        "study.toml",
+        "vehicle.npz",
     )
     assert sorted(named) == list(expected)
 
 
 @pytest.mark.usefixtures("heeded_signals")
 def test_being_told_to_end_keeps_the_best(blend, tmp_path):
-    out, log = tmp_path / "out", tmp_path / "log"
+    out = tmp_path / "out"
+    log = tmp_path / "log"
     arguments = (*FAST[:6], "--set", "optimize.candidates=100000", "-o", out)
     with log.open("w") as stderr:
         process = subprocess.Popen(

@@ -16,6 +16,17 @@ from blender_addon.panels import main
 from tests.addon import layouts, scenes
 from tests.engine.processes import finished
 
+CHANGES = {
+    "sensor moved": lambda car: setattr(car.objects["roof"], "location", (0.0, 0.3, 2.0)),
+    "sensor deleted": lambda car: bpy.data.objects.remove(car.objects["other"]),
+    "points moved": lambda car: (
+        setattr(car.objects["body"].data.vertices[0], "co", (-3.0, 0.0, 0.0)),
+        car.objects["body"].data.update(),
+    ),
+    "prior": lambda car: setattr(car.perception_entropy, "prior", "uniform"),
+    "frame": lambda car: car.frame_set(20),
+}
+
 
 def test_what_a_search_cost_is_stored_and_shown(car):
     car.perception_entropy.score_samples = car.perception_entropy.search_samples = 1024
@@ -83,7 +94,8 @@ def test_a_job_that_the_engine_runs_tells_how_it_ended(car):
 
 
 def test_result_goes_stale_and_comes_back(car):
-    settings, sensor = car.perception_entropy, car.objects["roof"]
+    settings = car.perception_entropy
+    sensor = car.objects["roof"]
     bpy.ops.pe.score()
     result_staleness.update_result()
     assert not settings.result_stale
@@ -144,18 +156,6 @@ def test_the_best_of_a_stopped_search_is_shown_before_its_result_and_taken_back_
     assert seen() == before
 
 
-CHANGES = {
-    "sensor moved": lambda car: setattr(car.objects["roof"], "location", (0.0, 0.3, 2.0)),
-    "sensor deleted": lambda car: bpy.data.objects.remove(car.objects["other"]),
-    "points moved": lambda car: (
-        setattr(car.objects["body"].data.vertices[0], "co", (-3.0, 0.0, 0.0)),
-        car.objects["body"].data.update(),
-    ),
-    "prior": lambda car: setattr(car.perception_entropy, "prior", "uniform"),
-    "frame": lambda car: car.frame_set(20),
-}
-
-
 @pytest.mark.parametrize(
     ("row", "change"),
     [*((jobs.SCORE, each) for each in CHANGES), (jobs.OPTIMIZE, "sensor moved")],
@@ -202,7 +202,8 @@ def test_a_sensor_that_something_holds_is_reported_before_the_work(car, hold, mo
 @pytest.mark.parametrize("stops", [1, 2])
 def test_esc_keeps_the_best_with_its_analysis_and_esc_again_without(car, stops):
     task = jobs.OPTIMIZE.read(Window(car))
-    run, analysed = pe_jobs.JobRun(task.job), stops == 1
+    run = pe_jobs.JobRun(task.job)
+    analysed = stops == 1
     for step in run:
         if step.progress.stage == "optimizing" and step.progress.evaluations >= 8:
             for _ in range(stops):

@@ -15,6 +15,13 @@ from tests.addon import scenes
 BLEND = library.FOLDER / "sensors.blend"
 CATALOGS = library.FOLDER / "blender_assets.cats.txt"
 KINDS = ("lidar", "camera")
+MINE = """
+["My LiDAR"]
+kind = "lidar"
+elevations_deg = [-15, 0, 5]
+azimuth_step_deg = 1.0
+max_range_m = 80
+"""
 
 
 def appended(*names):
@@ -43,7 +50,8 @@ def test_there_is_an_asset_for_every_lidar_and_camera_of_the_catalogue(assets):
 def test_each_is_a_sensor_with_its_body_a_place_in_the_catalogue_tags_and_a_picture(assets):
     catalogs = dict(re.findall(r"^([0-9a-f-]{36}):([^:]+):", CATALOGS.read_text(), re.MULTILINE))
     for obj in assets:
-        settings, data = obj.perception_entropy, obj.asset_data
+        settings = obj.perception_entropy
+        data = obj.asset_data
         assert settings.is_sensor, obj.name
         assert settings.stands_when_dropped, obj.name
         assert obj.data[KEY] == settings.model
@@ -112,18 +120,10 @@ def test_the_library_comes_and_goes_with_the_extension(enabled):
     assert libraries() == [*before, ours]
 
 
-MINE = """
-["My LiDAR"]
-kind = "lidar"
-elevations_deg = [-15, 0, 5]
-azimuth_step_deg = 1.0
-max_range_m = 80
-"""
-
-
 def test_sensors_of_an_own_catalogue_are_in_the_menus_of_all_files(enabled, tmp_path):
     """They go with the preference, and with the extension; a wrong file has its line."""
-    stored, path = enabled[1].preferences, tmp_path / "mine.toml"
+    stored = enabled[1].preferences
+    path = tmp_path / "mine.toml"
     path.write_text(MINE)
     stored.own_catalog = str(path)
     assert not own_catalog.problem and "My LiDAR" in operators.models("lidar")

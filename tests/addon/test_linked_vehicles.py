@@ -43,7 +43,8 @@ def test_an_instanced_vehicle_is_the_vehicle(car, tmp_path):
     expected, scene, linked = linked_car(tmp_path)
     holder = scenes.add_collection(scene.collection, "Holder")
     empty = bpy.data.objects.new("instance", None)
-    empty.instance_type, empty.instance_collection = "COLLECTION", linked
+    empty.instance_type = "COLLECTION"
+    empty.instance_collection = linked
     holder.objects.link(empty)
     scene.perception_entropy.vehicle = holder
     scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(-0.43, 0.0, 1.8))

@@ -26,10 +26,12 @@ SAMPLES = 4096
 class Window:
     """Blender's own as motion and session see it, with a window and no clock."""
 
-    data, types = bpy.data, bpy.types
+    data = bpy.data
+    types = bpy.types
 
     class app:
-        background, handlers = False, bpy.app.handlers
+        background = False
+        handlers = bpy.app.handlers
 
         class timers:
             is_registered = staticmethod(lambda _: True)
@@ -78,7 +80,8 @@ def told(summary):
 
 def test_a_drag_is_exact_and_compared_with_where_it_began(live, monkeypatch):
     """The story of two moves: every score is that of a study, to the bit."""
-    roof, start = live.objects["roof"], reading(live).summary
+    roof = live.objects["roof"]
+    start = reading(live).summary
     assert told(start) == told(exact()) and reading(live).exact and reading(live).before is None
     for _ in range(3):
         drag(roof)
@@ -119,7 +122,8 @@ def test_a_hand_that_rests_for_a_moment_does_not_begin_a_new_drag(live, monkeypa
 
 @pytest.mark.parametrize("by", [0.05, 0.0], ids=["clicked", "escaped"])
 def test_the_change_stays_when_the_hand_lets_go(live, monkeypatch, by):
-    start, roof = reading(live).summary, live.objects["roof"]
+    start = reading(live).summary
+    roof = live.objects["roof"]
     monkeypatch.setattr(session, "_moving_operator", lambda: 4711)
     drag(roof)
     rest()  # held still until it was scored
@@ -154,7 +158,8 @@ def test_one_score_is_shown_at_a_time(live, monkeypatch):
     """Panel and read-out take theirs from here: live, or stored where that is of the scene."""
     bpy.ops.pe.score()
     rest()
-    score, settings = state.shown_score(live), live.perception_entropy
+    score = state.shown_score(live)
+    settings = live.perception_entropy
     assert score.stored and score.exact and score.entropy == settings.result.entropy
     drag(live.objects["roof"])
     now = reading(live).summary
@@ -289,7 +294,8 @@ def test_a_search_s_gain_is_that_of_its_result(live):
     bpy.ops.pe.score()
     settings = live.perception_entropy
     data = json.loads(settings.result_json)
-    data["kind"], data["before"]["entropy"] = "optimize", data["entropy"] + 0.25
+    data["before"]["entropy"] = data["entropy"] + 0.25
+    data["kind"] = "optimize"
     settings.result_json = json.dumps(data)
     rest()
     text = readout_text.readout_of(reading(live), state.shown_score(live))

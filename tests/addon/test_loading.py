@@ -13,6 +13,20 @@ from blender_addon.engine import studies
 from tests.addon import scenes
 
 CORNERS = scenes.ASSETS / "examples" / "four_corners" / "study.toml"
+ROWS = {
+    "weather": "weathers",
+    "state": "states",
+    "prior.focus": "focus",
+    "ap.NAME": "curves",
+    "optimize.mount": "mounts",
+}
+"""Lists of a scene with the settings of a table."""
+IN_SCENE = [
+    (row.key.rpartition(".")[0], row)
+    for row in studies.setting_keys()
+    if row.setting.panel is not None
+    if row.key.rpartition(".")[0] in ROWS or not row.rows
+]
 
 
 def load(study):
@@ -37,29 +51,14 @@ def test_the_four_corners_come_into_an_empty_scene_to_the_bit(scene):
     assert (left.mirror_of, left.mount) == ("lidar_right", "roof corners")
     settings = scene.perception_entropy
     settings.score_samples = settings.search_samples = 1024
-    settings.method, settings.candidates = "random", 1
+    settings.method = "random"
+    settings.candidates = 1
     for row in settings.requirements:  # equal above, and this search does not keep them
         row.enabled = False
     here = scenes.study()
     kept = {"search": here.search, "samples": 1024, "requirements": ()}
     there = pe.Study(**{**vars(study), **kept})
     assert history(here) == history(there)
-
-
-ROWS = {
-    "weather": "weathers",
-    "state": "states",
-    "prior.focus": "focus",
-    "ap.NAME": "curves",
-    "optimize.mount": "mounts",
-}
-"""Lists of a scene with the settings of a table."""
-IN_SCENE = [
-    (row.key.rpartition(".")[0], row)
-    for row in studies.setting_keys()
-    if row.setting.panel is not None
-    if row.key.rpartition(".")[0] in ROWS or not row.rows
-]
 
 
 def other_value(setting):
@@ -91,7 +90,8 @@ def test_each_declared_setting_is_held_by_the_scene_as_it_was(scene):
     for table, row in IN_SCENE:
         group = getattr(settings, ROWS[table]).add() if row.rows else settings
         setting = row.setting
-        name, value = setting.panel.property, other_value(setting)
+        name = setting.panel.property
+        value = other_value(setting)
         value = setting.rule.checked("test", setting.name, value)
         setattr(group, name, bridge.property_value(setting, value))
         found = bridge.value_of_property(setting, getattr(group, name))

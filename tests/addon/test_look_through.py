@@ -38,7 +38,8 @@ def test_blender_s_picture_is_the_sensor_s(car, eye, model):
     eye.perception_entropy.model = model
     look(eye)
     sensor = bridge.sensor_from_object(eye, scenes.depsgraph())
-    camera, turned = sensor.model, sensor.pose.ground_from_sensor
+    camera = sensor.model
+    turned = sensor.pose.ground_from_sensor
     assert (car.render.resolution_x, car.render.resolution_y) == (camera.width, camera.height)
     for ahead, left, up in ((5.0, 0.0, 0.0), (5.0, 1.0, 0.4), (9.0, -2.0, -0.7)):
         point = turned @ [ahead, left, up] + sensor.pose.position
@@ -54,7 +55,8 @@ def view_area():
 
 def seen_in(area):
     """Return all that says what a view shows, as plain numbers."""
-    space, look = area.spaces.active, area.spaces.active.region_3d
+    space = area.spaces.active
+    look = area.spaces.active.region_3d
     return {
         "perspective": look.view_perspective,
         "along an axis": look.is_orthographic_side_view,
@@ -75,7 +77,8 @@ def looking(area, obj):
     look = area.spaces.active.region_3d
     assert look.view_perspective == "CAMERA"
     look.view_rotation = bpy.context.scene.camera.matrix_world.to_quaternion()
-    look.view_location, look.view_distance = (9.0, 9.0, 9.0), 3.0
+    look.view_location = (9.0, 9.0, 9.0)
+    look.view_distance = 3.0
 
 
 def leave_by_operator(_scene, area):
@@ -102,15 +105,21 @@ WAYS_BACK = (leave_by_operator, leave_by_undo, leave_by_losing_the_sensor)
 @pytest.mark.parametrize("orthographic", [False, True])
 def test_the_view_is_what_it_was_whatever_way_back(car, eye, leave, orthographic):
     area = view_area()
-    space, look = area.spaces.active, area.spaces.active.region_3d
+    space = area.spaces.active
+    look = area.spaces.active.region_3d
     own = bpy.data.objects.new("own", bpy.data.cameras.new("own"))
     car.collection.objects.link(own)
     turned = (0.5, 0.5, 0.5, 0.5) if orthographic else (0.8, 0.2, 0.4, 0.4)
     look.view_perspective = "ORTHO" if orthographic else "PERSP"
-    look.view_rotation, look.view_location, look.view_distance = turned, (0.1, 0.2, 0.3), 7.5
+    look.view_rotation = turned
+    look.view_location = (0.1, 0.2, 0.3)
+    look.view_distance = 7.5
     look.is_orthographic_side_view = orthographic
-    space.lens, space.clip_end, space.lock_camera = 35.0, 321.0, True
-    space.use_local_camera, space.camera = True, own
+    space.lens = 35.0
+    space.clip_end = 321.0
+    space.lock_camera = True
+    space.use_local_camera = True
+    space.camera = own
     for distance in (7.5, 9.0):  # what it was the first time is forgotten
         look.view_distance = distance
         before = seen_in(area)

@@ -15,6 +15,16 @@ RNG = np.random.default_rng(6)
 HOLED = [(0, 0, 0), (4, 0, 0), (4, 4, 0), (0, 4, 0), (1, 1, 0), (1, 2, 0), (2, 2, 0), (2, 1, 0)]
 QUADS = RNG.normal(size=(50, 4, 3)).round(3)
 """Quads that are not flat: how they are cut decides their area."""
+IMPORTERS = {
+    "obj": lambda path: bpy.ops.wm.obj_import(filepath=path),
+    "ply": lambda path: bpy.ops.wm.ply_import(filepath=path),
+    "stl": lambda path: bpy.ops.wm.stl_import(filepath=path),
+    "usda": lambda path: bpy.ops.wm.usd_import(filepath=path),
+    "dae": lambda path: bpy.ops.wm.collada_import(filepath=path),
+    "glb": lambda path: bpy.ops.import_scene.gltf(filepath=path),
+}
+NEEDS = {"usda": "pxr", "dae": "collada"}
+"""Libraries of the extra meshes."""
 
 
 def usd(ring):
@@ -44,16 +54,6 @@ FILES = {
     "box.glb": lambda: glb_file(*gltf()),
     "dart.dae": lambda: dae(*AREAS["a dart"][:2]).encode(),
 }
-IMPORTERS = {
-    "obj": lambda path: bpy.ops.wm.obj_import(filepath=path),
-    "ply": lambda path: bpy.ops.wm.ply_import(filepath=path),
-    "stl": lambda path: bpy.ops.wm.stl_import(filepath=path),
-    "usda": lambda path: bpy.ops.wm.usd_import(filepath=path),
-    "dae": lambda path: bpy.ops.wm.collada_import(filepath=path),
-    "glb": lambda path: bpy.ops.import_scene.gltf(filepath=path),
-}
-NEEDS = {"usda": "pxr", "dae": "collada"}
-"""Libraries of the extra meshes."""
 
 
 @pytest.mark.usefixtures("registered")

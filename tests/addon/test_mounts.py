@@ -20,7 +20,9 @@ TOP_M = 1.5
 def few_voxels(car):
     """Score and search on few voxels."""
     settings = car.perception_entropy
-    settings.score_samples, settings.search_samples, settings.candidates = 1024, 1024, 1
+    settings.score_samples = 1024
+    settings.search_samples = 1024
+    settings.candidates = 1
     settings.method = "random"
 
 
@@ -106,7 +108,9 @@ def test_sensors_on_a_rack_move_as_one(car):
 
 def test_what_every_placement_keeps_to(car):
     settings = car.perception_entropy
-    settings.limit_height, settings.limit_width, settings.limit_distance = 1.9, 1.7, 0.2
+    settings.limit_height = 1.9
+    settings.limit_width = 1.7
+    settings.limit_distance = 0.2
     settings.clear_housings = True
     bpy.context.scene.cursor.location = (1.0, 0.0, 1.0)
     assert bpy.ops.pe.add_no_go() == {"FINISHED"}

@@ -23,7 +23,9 @@ class Gpu:
     """Stands for the graphics card: notes what is uploaded and drawn."""
 
     def __init__(self):
-        self.uploaded, self.drawn, self.written = 0, [], []
+        self.uploaded = 0
+        self.drawn = []
+        self.written = []
         state = ("blend_get", "depth_test_get", "depth_mask_get")
         asked = {name: lambda: "NONE" for name in state}
         told = {name.replace("get", "set"): lambda _: None for name in state}
@@ -115,7 +117,8 @@ def test_simple_has_its_words_on_legends_too(window, rig):
     """The read-out says "Score" there, and no nats."""
     scenes.drawn(rig)
     for panels, words in (("ALL", "Entropy nats"), ("SIMPLE", "Score")):
-        rig.perception_entropy.panels, window.card.written = panels, []
+        rig.perception_entropy.panels = panels
+        window.card.written = []
         redraw()
         (title,) = (t for t in window.card.written if t.startswith(("Entropy,", "Score,")))
         in_nats = " nats" * any("nats" in text for text in window.card.written)

@@ -20,7 +20,16 @@ def seen(entropy=None, sensors=None, step=1.0, shape=(30, 20), coverage=None):
     sensors = np.ones(shape, int) if sensors is None else sensors
     x, y = ((np.arange(n) + 0.5 - n / 2) * step for n in (nx, ny))
     coverage = entropy if coverage is None else coverage
-    return GroundSight(x, y, step, None, entropy, coverage, sensors, sensors)
+    return GroundSight(
+        x=x,
+        y=y,
+        step=step,
+        height=None,
+        entropy=entropy,
+        coverage=coverage,
+        sensors=sensors,
+        kinds=sensors,
+    )
 
 
 def test_a_scale_rises_evenly_in_lightness():
@@ -51,7 +60,10 @@ def test_the_map_lies_where_it_was_looked_and_is_clear_in_the_vehicle():
 
 def test_colours_fit_what_is_shown_and_the_bright_end_is_good():
     entropy = np.linspace(-4.0, 2.0, 600).reshape(30, 20)
-    entropy[0, 0], entropy[-1, -1], entropy[5, 5] = -10.9, 16.6, np.nan  # a few do not count
+    # a few do not count
+    entropy[0, 0] = -10.9
+    entropy[-1, -1] = 16.6
+    entropy[5, 5] = np.nan
     assert ground.fitted_bounds(seen(entropy), ground.ENTROPY) == (2.0, -4.0)
     shape = ground.ground_map(seen(entropy), ground.ENTROPY, 1.0, faded=False, bounds=(2.0, -4.0))
     assert shape.legend.values == ("2.0 nats", "−1.0 nats", "−4.0 nats")
@@ -72,8 +84,10 @@ def test_colours_fit_what_is_shown_and_the_bright_end_is_good():
 def test_a_difference_is_blue_where_it_is_better_and_orange_where_worse(quantity):
     better = {"entropy": np.zeros((30, 20)), "coverage": np.full((30, 20), 0.5)}
     worse = {name: values.copy() for name, values in better.items()}
-    better["entropy"][:10], better["coverage"][:10] = -3.0, 0.9
-    better["entropy"][20:], better["coverage"][20:] = 3.0, 0.1
+    better["entropy"][:10] = -3.0
+    better["coverage"][:10] = 0.9
+    better["entropy"][20:] = 3.0
+    better["coverage"][20:] = 0.1
     shape = ground.difference_map(seen(**better), seen(**worse), quantity, 0.5, name="Idea")
     image = shape.sheet.image.transpose(1, 0, 2)
     low, same, high = colors.DIFFERENCE_ON_DARK
@@ -88,7 +102,8 @@ def test_a_difference_is_blue_where_it_is_better_and_orange_where_worse(quantity
 
 
 def square(low, high):
-    (x0, y0), (x1, y1) = low, high
+    x0, y0 = low
+    x1, y1 = high
     return np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)], float)
 
 
@@ -107,12 +122,21 @@ def found_blind(outlines, nearest=None, zone=None):
     nowhere = dict.fromkeys(("front", "rear", "left", "right"))
     spots = {side: BlindSpot(*spot) for side, spot in (nearest or {}).items()}
     zones = {**dict.fromkeys(nowhere, 0.0), **(zone or {})}
-    return BlindGround(outlines, 5.0, 0.5, 10.0, {**nowhere, **spots}, zones, nowhere)
+    return BlindGround(
+        outlines,
+        area=5.0,
+        height=0.5,
+        within=10.0,
+        nearest={**nowhere, **spots},
+        zone=zones,
+        seen_from=nowhere,
+    )
 
 
 def test_blind_ground_is_measured_by_side():
     """At the body: how far it goes. Away from it: where it begins. None: no word."""
-    at_body, away = square((2.0, -1.0), (5.0, 1.0)), square((-1.0, 4.0), (1.0, 6.0))
+    at_body = square((2.0, -1.0), (5.0, 1.0))
+    away = square((-1.0, 4.0), (1.0, 6.0))
     nearest = {"front": ((2.0, 0.0), 0.0), "left": ((0.0, 4.0), 3.0)}
     found = found_blind((at_body, away), nearest, {"front": 3.0})
     shape = ground_layers.blind_ground(found, car().bounds, 0.5)
@@ -128,7 +152,14 @@ def found_reach(distance, limit=80.0):
     bearings = np.radians(np.arange(0, 360, 5.0))
     full = np.broadcast_to(np.asarray(distance, float), bearings.shape)
     edge = np.broadcast_to(np.asarray(limit, float), bearings.shape)
-    return Reach("pedestrian", 0.5, bearings, full, {"roof": full / 2.0}, edge)
+    return Reach(
+        "pedestrian",
+        ap=0.5,
+        bearings=bearings,
+        distance=full,
+        per_sensor={"roof": full / 2.0},
+        limit=edge,
+    )
 
 
 def test_reach_is_a_closed_line_with_metres():

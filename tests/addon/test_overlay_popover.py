@@ -21,7 +21,8 @@ def test_every_layer_has_its_switch(car):
 def test_every_setting_of_the_view_is_offered(car):
     """In one state of the popover or another: none can be set by scripts alone."""
     view = car.perception_entropy.view
-    view.wipe, shown = True, set()
+    view.wipe = True
+    shown = set()
     for view.ground_quantity in ("ENTROPY", "COVERAGE"):
         shown |= set(offered(car))
     of_group = {p.identifier for p in view.bl_rna.properties} - {"rna_type", "name"}

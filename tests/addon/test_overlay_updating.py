@@ -135,7 +135,9 @@ def test_while_something_moves_it_is_rough_and_fine_at_rest(rig, worked):
 
 def test_settings_count(rig):
     view = rig.perception_entropy.view
-    view.channels, view.beam_limit, view.rings = "ALL", 100, False
+    view.channels = "ALL"
+    view.beam_limit = 100
+    view.rings = False
     assert len(scenes.drawn(rig)["beams"]["roof"].lines.points) <= 100 * 4
     rig.objects["roof"].perception_entropy.show = False
     drawn = scenes.drawn(rig)
@@ -152,7 +154,9 @@ def test_settings_count(rig):
 def test_the_map_is_that_of_the_engine(rig, quantity, height):
     view = rig.perception_entropy.view
     show_alone(view, "ground")
-    view.ground_quantity, view.ground_height, view.ground_opacity = quantity, height, 1.0
+    view.ground_quantity = quantity
+    view.ground_height = height
+    view.ground_opacity = 1.0
     sheet = scenes.drawn(rig)["ground"][""].sheet
     study = scenes.study()
     metres = None if height == "AVERAGE" else int(height[1:]) / 100.0
@@ -171,7 +175,8 @@ def test_after_a_score_its_own_map_is_shown_until_something_moves(rig):
     score = state.live_state(rig.name).finished.score
     expected = score.ground_map.coarser(5).entropy
     np.testing.assert_array_equal(shape.sheet.image[..., 3] == 0.0, np.isnan(expected).T)
-    lowest, highest = np.nanargmin(expected), np.nanargmax(expected)
+    lowest = np.nanargmin(expected)
+    highest = np.nanargmax(expected)
     rgb = shape.sheet.image[..., :3].transpose(1, 0, 2).reshape(-1, 3)
     quantity = graphics.QUANTITIES["ENTROPY"]
     for place in (lowest, highest):
@@ -242,7 +247,8 @@ def test_the_map_is_of_the_scene_s_own_space(rig):
     rig.perception_entropy.space_x = (-20.0, 30.0)
     sheet = scenes.drawn(rig)["ground"][""].sheet
     assert (sheet.low, sheet.high) == ((-20.0, -15.0), (30.0, 15.0))
-    rig.perception_entropy.space_x, rig.perception_entropy.space_y = (-2000.0, 2000.0), (-8.0, 8.0)
+    rig.perception_entropy.space_x = (-2000.0, 2000.0)
+    rig.perception_entropy.space_y = (-8.0, 8.0)
     assert scenes.drawn(rig)["ground"][""].sheet.image.size < 4 * 2 * ground_layers.MAX_CELLS
     rig.perception_entropy.space_x = (30.0, -20.0)  # a mistake: a score says which
     for name in ALL_LAYERS:

@@ -57,8 +57,9 @@ def spot_below(scene, x, y):
     """Where a ray from high above meets the vehicle."""
     depsgraph = scenes.depsgraph()
     parts = surface_pose.parts_of(scene.perception_entropy.vehicle, depsgraph)
-    start, down = Vector((x, y, 9.0)), Vector((0.0, 0.0, -1.0))
-    return surface_pose.spot_on_ray(scene, depsgraph, parts, start, down)
+    start = Vector((x, y, 9.0))
+    down = Vector((0.0, 0.0, -1.0))
+    return surface_pose.spot_on_ray(scene, depsgraph, parts, start, direction=down)
 
 
 def test_the_mouse_finds_the_vehicle_through_all_else(bare):
@@ -91,9 +92,9 @@ def test_the_magnet_holds_the_centre_line_and_quarter_turns(bare):
     mount = mount_for(pe.catalog.load("Camera 60 deg"))
     middle = surface_pose.vehicle_center(bare.perception_entropy.vehicle)
     parts = surface_pose.parts_of(bare.perception_entropy.vehicle, depsgraph)
-    near = surface_pose.spot_beside(bare, depsgraph, parts, spot, {1: 0.0})
+    near = surface_pose.spot_beside(bare, depsgraph, parts, spot, wanted={1: 0.0})
     assert tuple(near.point) == pytest.approx((1.9, 0.0, spot.point.z), abs=1e-5)
-    beyond = surface_pose.spot_beside(bare, depsgraph, parts, spot, {0: 30.0})
+    beyond = surface_pose.spot_beside(bare, depsgraph, parts, spot, wanted={0: 30.0})
     assert beyond.point.x == 30.0, "no body there"
     for x, y, magnet, yaw in ((1.9, 0.3, True, 0), (1.9, 0.3, False, 9), (1.0, 0.8, True, 39)):
         at = surface_pose.SurfaceSpot(Vector((x, y, 0.5)), Vector((0.0, 0.0, 1.0)), "")
@@ -107,7 +108,8 @@ def test_a_sensor_is_placed_on_both_sides_and_dragged_along_the_surface(bare):
     first = place("Camera 60 deg", location=(0.0, 0.9, 0.5), normal=(0.0, 1.0, 0.0), mirrored=True)
     other = bpy.data.objects[first.perception_entropy.mirror_of]
     assert other.location.y == pytest.approx(-first.location.y)
-    near, stance = spot_below(bare, 1.9, 0.04), surface_pose.Stance(0.1, magnet=True)
+    near = spot_below(bare, 1.9, 0.04)
+    stance = surface_pose.Stance(0.1, magnet=True)
     for moved, y in ((None, 0.0), (first, near.point.y)):  # a pair would meet on the centre line
         held = placement.HeldSensor(bpy.context, pe.catalog.load("Pandar64"), stance, moved)
         held.put(near)

@@ -71,11 +71,14 @@ def by_armature(scene, door):
     bpy.context.view_layer.objects.active = armature
     bpy.ops.object.mode_set(mode="EDIT")
     bone = data.edit_bones.new("hinge")
-    bone.head, bone.tail = (0.8, 0.9, 0.6), (0.8, 0.9, 1.6)
+    bone.head = (0.8, 0.9, 0.6)
+    bone.tail = (0.8, 0.9, 1.6)
     bpy.ops.object.mode_set(mode="OBJECT")
     bpy.context.view_layer.update()
     before = door.matrix_world.copy()
-    door.parent, door.parent_type, door.parent_bone = armature, "BONE", "hinge"
+    door.parent = armature
+    door.parent_type = "BONE"
+    door.parent_bone = "hinge"
     bpy.context.view_layer.update()
     door.matrix_world = before
     pose = armature.pose.bones["hinge"]

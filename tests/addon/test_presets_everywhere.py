@@ -13,7 +13,9 @@ from tests.addon import scenes
 from tests.addon.command_line import pe_here, run_here
 from tests.thorough import THOROUGH
 
-HALF_WIDTH, MIRROR_OUT, TYRES_X = 0.9, 1.12, (-1.3, 1.4)
+HALF_WIDTH = 0.9
+MIRROR_OUT = 1.12
+TYRES_X = (-1.3, 1.4)
 
 
 def foreign_glb(path) -> None:
@@ -67,7 +69,8 @@ def vehicle(request, addon, tmp_path):
 
 
 def test_all_presets_have_the_same_bits_everywhere(vehicle, tmp_path):
-    blend, study = tmp_path / "car.blend", tmp_path / "study.toml"
+    blend = tmp_path / "car.blend"
+    study = tmp_path / "study.toml"
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
     pt.export_study(scenes.study(), study)
     headless = run_here(blend, "check", "--preset", "all", "--json")

@@ -5,7 +5,8 @@ import pytest
 
 from tests.addon import scenes
 
-ARS, PARKING = "Continental ARS408-21", "Parking module 2.5 m"
+ARS = "Continental ARS408-21"
+PARKING = "Parking module 2.5 m"
 
 
 @pytest.fixture

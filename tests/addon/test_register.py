@@ -26,6 +26,54 @@ SIGNALS = (
     signals.live_score_changed,
 )
 TIMERS = (change_events.emit_moving, change_events.emit_idle, scheduler.update_now)
+TOY = """
+import os, sys
+from dataclasses import make_dataclass, replace
+from types import SimpleNamespace
+
+from pe_core import sensors
+from pe_core.base.setting import Panel, setting
+from pe_core.base.values import Number
+from pe_core.sensors import weather
+
+hail = setting(0.0, Number(0.0, 90.0, unit="m"), "Size of hailstones", Panel("hail", "Hail"))
+Toy = make_dataclass("Weather", [("hail", float, hail)], bases=(weather.Weather,), frozen=True)
+weather.Weather = sensors.Weather = Toy
+
+import bpy
+import blender_addon
+from blender_addon import bridge
+from blender_addon.panels.condition_panel import conditions
+from pe_core import study as studies
+from pe_core.study.study_file import study_bytes
+from tests.addon import layouts, scenes
+from tests.engine.test_settings import settings_page
+
+blender_addon.register()
+bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+scene = bpy.context.scene
+scene.perception_entropy.vehicle = scenes.add_car(scene)
+scenes.add_sensor("roof", location=(0.0, 0.0, 2.5))
+row = scene.perception_entropy.weathers.add()
+row.name = "storm"
+field = row.bl_rna.properties["hail"]
+assert (field.name, field.description) == ("Hail", "Size of hailstones")
+assert (field.hard_max, field.unit) == (90.0, "LENGTH")
+row.hail = 0.4
+study = bridge.study_as_drawn(scene)
+assert study.conditions.weathers == (Toy("storm", hail=0.4),)
+assert b"hail = 0.4" in study_bytes(study)
+again = studies.study_from_dict(studies.study_to_dict(replace(study, vehicle=None, mesh=None)))
+assert again.conditions == study.conditions
+row.hail = 7.0
+assert bridge.load_into(scene, study) == []
+assert bridge.study_as_drawn(scene).conditions == study.conditions
+assert ("prop", "hail") in layouts.drawn(conditions, **vars(layouts.Window(scene))).notes
+assert "- `hail` ([m], 0–90, `0.0`): Size of hailstones" in settings_page().page()
+print("seen everywhere")
+sys.stdout.flush()
+os._exit(0)
+"""
 
 
 def traces() -> dict[str, list[str]]:
@@ -76,7 +124,8 @@ def view3d(monkeypatch):
 
 
 def test_rounds_leave_nothing_behind(unregistered, view3d):
-    before, kept = traces(), None
+    before = traces()
+    kept = None
     assert not any(before.values())
     for _ in range(ROUNDS):
         blender_addon.register()
@@ -157,56 +206,6 @@ def test_a_job_ends_with_the_extension(car, monkeypatch):
     finally:
         blender_addon.register()
     assert bpy.ops.pe.score.poll() and bpy.ops.pe.optimize.poll()
-
-
-TOY = """
-import os, sys
-from dataclasses import make_dataclass, replace
-from types import SimpleNamespace
-
-from pe_core import sensors
-from pe_core.base.setting import Panel, setting
-from pe_core.base.values import Number
-from pe_core.sensors import weather
-
-hail = setting(0.0, Number(0.0, 90.0, unit="m"), "Size of hailstones", Panel("hail", "Hail"))
-Toy = make_dataclass("Weather", [("hail", float, hail)], bases=(weather.Weather,), frozen=True)
-weather.Weather = sensors.Weather = Toy
-
-import bpy
-import blender_addon
-from blender_addon import bridge
-from blender_addon.panels.condition_panel import conditions
-from pe_core import study as studies
-from pe_core.study.study_file import study_bytes
-from tests.addon import layouts, scenes
-from tests.engine.test_settings import settings_page
-
-blender_addon.register()
-bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-scene = bpy.context.scene
-scene.perception_entropy.vehicle = scenes.add_car(scene)
-scenes.add_sensor("roof", location=(0.0, 0.0, 2.5))
-row = scene.perception_entropy.weathers.add()
-row.name = "storm"
-field = row.bl_rna.properties["hail"]
-assert (field.name, field.description) == ("Hail", "Size of hailstones")
-assert (field.hard_max, field.unit) == (90.0, "LENGTH")
-row.hail = 0.4
-study = bridge.study_as_drawn(scene)
-assert study.conditions.weathers == (Toy("storm", hail=0.4),)
-assert b"hail = 0.4" in study_bytes(study)
-again = studies.study_from_dict(studies.study_to_dict(replace(study, vehicle=None, mesh=None)))
-assert again.conditions == study.conditions
-row.hail = 7.0
-assert bridge.load_into(scene, study) == []
-assert bridge.study_as_drawn(scene).conditions == study.conditions
-assert ("prop", "hail") in layouts.drawn(conditions, **vars(layouts.Window(scene))).notes
-assert "- `hail` ([m], 0–90, `0.0`): Size of hailstones" in settings_page().page()
-print("seen everywhere")
-sys.stdout.flush()
-os._exit(0)
-"""
 
 
 def test_a_new_setting_is_one_row_seen_in_file_property_bridge_panel_and_docs():

@@ -15,6 +15,28 @@ from pe_core.study import requirement_file
 from tests.addon import scenes
 
 AHEAD = 'x = ["front + 1", "front + 2"], y = ["right", "left"]'
+FIELDS = [
+    ("criterion.points", {"points": 3}, 3),
+    ("criterion.pixels", {"pixels": 12.5}, 12.5),
+    ("criterion.share", {"share": 0.5}, 0.5),
+    ("criterion.ap", {"ap": 0.4}, pytest.approx(0.4)),
+    ("criterion.zone_share", {"zone_share": 0.9}, pytest.approx(0.9)),
+    ("criterion.of", {"of": "lidar"}, ("lidar",)),
+    ("criterion.sensors", {"sensors": 2}, 2),
+    ("under.one_lost", {"one_lost": True}, True),
+    ("under.mounting", {"mounting": True}, True),
+    ("zone.step", {"step": 0.25}, 0.25),
+    ("zone.y", {"zone": 'x = [1.0, 2.0], y = [-1.5, "left + 1"]'}, (-1.5, "left + 1")),
+    ("zone.z", {"z": (0.0, 0.5)}, (0.0, 0.5)),
+    ("zone.below", {"below": 2.0}, 2.0),
+    ("zone.near_side", {"near_side": "left"}, "left"),
+    ("zone.eyes", {"eyes": 1.2}, pytest.approx(1.2)),
+    ("criterion.blind_m2", {"asks": "ground", "blind_m2": 1.5}, 1.5),
+    ("criterion.blind_height", {"asks": "ground", "blind_height": 0.5}, 0.5),
+    ("criterion.blind_out", {"asks": "ground", "blind_out": 2.0}, 2.0),
+    ("bodies", {"asks": "ground"}, ()),
+]
+"""Of a requirement: an attribute, the panel's fields that set it, and what it is then."""
 
 
 @pytest.fixture
@@ -76,7 +98,8 @@ def test_bodies_are_one_several_or_of_an_own_size(held):
     for wrong in ("child, horse", "size = [0.4", "size = 3"):
         row.bodies = wrong
         assert row.problem and row.bodies == "child, cyclist", wrong
-    row.bodies, row.headings = "size = [0.4, 0.6, 1.2], low = 0.3", "0, 45"
+    row.bodies = "size = [0.4, 0.6, 1.2], low = 0.3"
+    row.headings = "0, 45"
     (own,) = scenes.study().requirements[1].bodies
     assert own.size == pytest.approx((0.4, 0.6, 1.2)) and own.low == pytest.approx(0.3)
     assert np.rad2deg(own.headings) == pytest.approx([0.0, 45.0])
@@ -88,30 +111,6 @@ def test_bodies_are_one_several_or_of_an_own_size(held):
     assert len(scenes.study().requirements[1].bodies) == 2
     row.bodies = row.bodies
     assert row.problem == "" and len(scenes.study().requirements[1].bodies) == 2
-
-
-FIELDS = [
-    ("criterion.points", {"points": 3}, 3),
-    ("criterion.pixels", {"pixels": 12.5}, 12.5),
-    ("criterion.share", {"share": 0.5}, 0.5),
-    ("criterion.ap", {"ap": 0.4}, pytest.approx(0.4)),
-    ("criterion.zone_share", {"zone_share": 0.9}, pytest.approx(0.9)),
-    ("criterion.of", {"of": "lidar"}, ("lidar",)),
-    ("criterion.sensors", {"sensors": 2}, 2),
-    ("under.one_lost", {"one_lost": True}, True),
-    ("under.mounting", {"mounting": True}, True),
-    ("zone.step", {"step": 0.25}, 0.25),
-    ("zone.y", {"zone": 'x = [1.0, 2.0], y = [-1.5, "left + 1"]'}, (-1.5, "left + 1")),
-    ("zone.z", {"z": (0.0, 0.5)}, (0.0, 0.5)),
-    ("zone.below", {"below": 2.0}, 2.0),
-    ("zone.near_side", {"near_side": "left"}, "left"),
-    ("zone.eyes", {"eyes": 1.2}, pytest.approx(1.2)),
-    ("criterion.blind_m2", {"asks": "ground", "blind_m2": 1.5}, 1.5),
-    ("criterion.blind_height", {"asks": "ground", "blind_height": 0.5}, 0.5),
-    ("criterion.blind_out", {"asks": "ground", "blind_out": 2.0}, 2.0),
-    ("bodies", {"asks": "ground"}, ()),
-]
-"""Of a requirement: an attribute, the panel's fields that set it, and what it is then."""
 
 
 def copied(value):
@@ -160,7 +159,8 @@ def check_by_hand(scene, after_a_step):
 
 def test_verdicts_come_row_by_row_and_esc_keeps_those_that_are_found(held):
     bpy.ops.pe.check_requirements()
-    whole, counts = stored(held), []
+    whole = stored(held)
+    counts = []
 
     def note(job):
         counts.append(len(stored(held)) - stored(held).count(None))
@@ -176,7 +176,8 @@ def test_verdicts_come_row_by_row_and_esc_keeps_those_that_are_found(held):
 
 @pytest.mark.parametrize("first", ["view", "check"])
 def test_view_check_and_score_measure_nothing_twice(held, first, monkeypatch):
-    measured, again = [], ObjectMeasurementCache.measure_again
+    measured = []
+    again = ObjectMeasurementCache.measure_again
 
     def noted(self, sensor):
         measured.append(sensor.name)
@@ -210,7 +211,8 @@ class TestZones:
         return shape
 
     def test_it_shows_the_verdicts_of_the_engine(self, held):
-        shape, verdicts = self.shape(held), scenes.study().verdicts()
+        shape = self.shape(held)
+        verdicts = scenes.study().verdicts()
         assert [v.to_dict() for v in shape.verdicts] == [v.to_dict() for v in verdicts]
         met = sum(verdict.met for verdict in verdicts)
         assert shape.legend.title == f"{met} of 3 requirements met"
@@ -220,7 +222,8 @@ class TestZones:
         shape = self.shape(held)
         ahead, behind = shape.verdicts[1:]
         assert ahead.met and not behind.met and not behind.passed.any()
-        filled, hatched = shape.faces, shape.thin
+        filled = shape.faces
+        hatched = shape.thin
         assert (filled.colors[..., :3] == np.float32(MET[:3])).all()
         assert (hatched.colors[..., :3] == np.float32(NOT_MET[:3])).all()
         assert hatched.points[..., 0].max() < 0.0 < filled.points[..., 0].max()

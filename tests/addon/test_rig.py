@@ -42,7 +42,8 @@ def parents():
     for scale, location in ((1.0, (3.0, -2.0, 0.5)), (0.001, (0.0, 0.0, 0.3))):
         parent = bpy.data.objects.new("parent", None)
         bpy.context.scene.collection.objects.link(parent)
-        parent.location, parent.scale = location, (scale,) * 3
+        parent.location = location
+        parent.scale = (scale,) * 3
         parent.rotation_euler = (0.3, -0.2, 1.0)
         yield parent
 
@@ -60,7 +61,8 @@ def test_what_is_typed_is_read(car):
     """Also without the memory of what was placed: the rounding alone has to do."""
     sensor = car.objects["roof"]
     for pose in random_poses(pitch_limit=math.radians(75)):
-        sensor.location, sensor.rotation_euler = pose.position, pose.rpy
+        sensor.location = pose.position
+        sensor.rotation_euler = pose.rpy
         assert read(sensor) == pose
 
 

@@ -23,7 +23,8 @@ def test_what_is_pasted_is_what_was_copied_to_the_bit(car):
     scenes.add_sensor("eye", model="Camera 60 deg", location=(1.23456, -0.4, 1.7))
     car.objects["eye"].perception_entropy.fusion = "front"
     bpy.context.view_layer.update()
-    before, line = scenes.study().rig, copied(car)
+    before = scenes.study().rig
+    line = copied(car)
     assert "\n" not in line
     car.objects["eye"].location.x += 1.0
     bpy.context.view_layer.update()

@@ -14,28 +14,35 @@ from tests.addon import scenes
 from tests.addon.command_line import pe_here, run_here
 
 LABELS = "class,x,y,z,length,width,height,yaw\ncar,20,3,0.8,4,2,1.6,30\n"
+OF_A_FRONT_END = ("run", "inputs")
 
 
 def focus_on_boxes(settings, folder):
     (folder / "labels.csv").write_text(LABELS)
-    settings.prior, settings.boxes = "boxes", str(folder / "labels.csv")
+    settings.prior = "boxes"
+    settings.boxes = str(folder / "labels.csv")
     bpy.ops.pe.add_row(rows="focus", kind="far")
     bpy.ops.pe.add_row(rows="focus", kind="custom")
-    settings.focus[1].x_range, settings.focus[1].classes = (0.1, 33.3), {"car"}
+    settings.focus[1].x_range = (0.1, 33.3)
+    settings.focus[1].classes = {"car"}
 
 
 def objects_in_traffic(settings, _):
-    settings.targets, settings.traffic, settings.scenes = "objects", True, 8
+    settings.targets = "objects"
+    settings.traffic = True
+    settings.scenes = 8
 
 
 def returns_of_the_road(settings, folder):
     objects_in_traffic(settings, folder)
-    settings.ap_model, settings.returns = "scans", "road"
+    settings.ap_model = "scans"
+    settings.returns = "road"
 
 
 def curve_with_a_range_term_and_the_floor(settings, _):
     bpy.ops.pe.add_row(rows="curves")
-    settings.curves["lidar"].own, settings.curves["lidar"].c = True, 0.25
+    settings.curves["lidar"].own = True
+    settings.curves["lidar"].c = 0.25
 
 
 def radar_and_ultrasonic_sensor(*_):
@@ -44,19 +51,25 @@ def radar_and_ultrasonic_sensor(*_):
 
 
 def search_by_expected_ap(settings, _):
-    settings.objective, settings.scenes, settings.method = "expected_ap", 8, "portfolio"
-    settings.evaluations, settings.seed = 12, 4
+    settings.objective = "expected_ap"
+    settings.scenes = 8
+    settings.method = "portfolio"
+    settings.evaluations = 12
+    settings.seed = 4
     settings.search_samples = settings.score_samples = 1024
 
 
 SCENES = {
     each.__name__: each
     for each in (
-        *(focus_on_boxes, objects_in_traffic, returns_of_the_road, radar_and_ultrasonic_sensor),
-        *(curve_with_a_range_term_and_the_floor, search_by_expected_ap),
+        focus_on_boxes,
+        objects_in_traffic,
+        returns_of_the_road,
+        radar_and_ultrasonic_sensor,
+        curve_with_a_range_term_and_the_floor,
+        search_by_expected_ap,
     )
 }
-OF_A_FRONT_END = ("run", "inputs")
 
 
 def told(result: dict) -> dict:
@@ -70,13 +83,15 @@ def told(result: dict) -> dict:
 
 @pytest.mark.parametrize("name", SCENES)
 def test_panel_headless_and_pe_find_the_same_bits(car, tmp_path, name):
-    settings, verb = car.perception_entropy, "optimize" if "search" in name else "score"
+    settings = car.perception_entropy
+    verb = "optimize" if "search" in name else "score"
     before = result_staleness.fingerprint(car).text
     SCENES[name](settings, tmp_path)
     bpy.context.view_layer.update()
     assert result_staleness.fingerprint(car).text != before, "a stored score of before is stale"
     (tmp_path / "study").mkdir()
-    study, blend = tmp_path / "study" / "study.toml", tmp_path / "car.blend"
+    study = tmp_path / "study" / "study.toml"
+    blend = tmp_path / "car.blend"
     assert bpy.ops.pe.export_study(filepath=str(study)) == {"FINISHED"}
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
     assert getattr(bpy.ops.pe, verb)() == {"FINISHED"}

@@ -58,7 +58,8 @@ def fields_of(study):
 
 def differences(one, other):
     """Return the paths at which two studies differ."""
-    one, other = fields_of(one), fields_of(other)
+    one = fields_of(one)
+    other = fields_of(other)
     return sorted(path for path in {*one, *other} if one.get(path, ...) != other.get(path, ...))
 
 
@@ -82,31 +83,55 @@ def set_what_is_by_default(settings):
 def rich(car):
     """Return a scene in which everything is set that a study can have of one."""
     settings = car.perception_entropy
-    settings.limit_height, settings.limit_width, settings.limit_distance = 2.6, 2.4, 0.1
+    settings.limit_height = 2.6
+    settings.limit_width = 2.4
+    settings.limit_distance = 0.1
     settings.clear_housings = True
     assert bpy.ops.pe.add_no_go() == {"FINISHED"}
     bpy.context.object.location = (0.0, 0.0, 9.0)
-    settings.space_x, settings.space_interval, settings.clearance = (-40.0, 40.0), 0.2, 0.03
-    settings.space_y, settings.space_z = (-20.0, 20.0), (0.0, 3.0)
-    settings.prior, settings.returns = "highway", "road"
+    settings.space_x = (-40.0, 40.0)
+    settings.space_interval = 0.2
+    settings.clearance = 0.03
+    settings.space_y = (-20.0, 20.0)
+    settings.space_z = (0.0, 3.0)
+    settings.prior = "highway"
+    settings.returns = "road"
     assert bpy.ops.pe.add_row(rows="focus", kind="front") == {"FINISHED"}
-    settings.targets, settings.traffic, settings.scenes = "objects", True, 24
+    settings.targets = "objects"
+    settings.traffic = True
+    settings.scenes = 24
     settings.ap_model = "scans"
     curve = settings.curves.add()
-    curve.name, curve.own, curve.a, curve.b = "lidar", True, 0.2, 0.1
+    curve.name = "lidar"
+    curve.own = True
+    curve.a = 0.2
+    curve.b = 0.1
     curve.c = 0.1
-    settings.score_samples, settings.search_samples = 2048, 1024
-    settings.method, settings.candidates, settings.evaluations = "random", 3, 7
-    settings.seed, settings.mounting_errors, settings.failures = 5, True, True
+    settings.score_samples = 2048
+    settings.search_samples = 1024
+    settings.method = "random"
+    settings.candidates = 3
+    settings.evaluations = 7
+    settings.seed = 5
+    settings.mounting_errors = True
+    settings.failures = True
     settings.worst = True
-    settings.axles_known, settings.wheelbase = True, 2.7
-    settings.front_overhang, settings.rear_overhang = 0.9, 0.6
+    settings.axles_known = True
+    settings.wheelbase = 2.7
+    settings.front_overhang = 0.9
+    settings.rear_overhang = 0.6
     settings.time_text = '{"noises": {"car": 1.0}, "rates": {"camera": 30.0}}'
-    settings.time_frames, settings.time_q, settings.time_rate_hz = 5, 2.0, 20.0
-    settings.track_needed, settings.track_window, settings.track_correlation = 2, 4, 0.5
+    settings.time_frames = 5
+    settings.time_q = 2.0
+    settings.time_rate_hz = 20.0
+    settings.track_needed = 2
+    settings.track_window = 4
+    settings.track_correlation = 0.5
     bpy.ops.pe.add_row(rows="stories", kind="cut_in")
     settings.stories[0].speed_kmh = 50.0
-    settings.limit_price, settings.max_sensors, settings.currency = 9000.0, 9, "EUR"
+    settings.limit_price = 9000.0
+    settings.max_sensors = 9
+    settings.currency = "EUR"
     scenes.add_mount(car, "cabin", bpy.data.objects["cabin"], standoff=0.04, orientation="normal")
     scenes.paint(bpy.data.objects["cabin"], "top", lambda co: 1.0 if co.z > 0 else 0.0)
     scenes.add_mount(car, "painted", faces="GROUP", group="top")
@@ -121,25 +146,42 @@ def rich(car):
     assert bpy.ops.pe.mount_sensor(name="roof", mount="painted") == {"FINISHED"}
     assert bpy.ops.pe.mirror_sensor(name="roof", linked=True) == {"FINISHED"}
     one = scenes.add_sensor("slotted", CAN, location=(0.2, 0.0, 1.9)).perception_entropy
-    one.mount, one.fusion = "slots", "front"
+    one.mount = "slots"
+    one.fusion = "front"
     for name, y in (("arm", 0.4), ("arm end", 0.5)):
         scenes.add_sensor(name, CAN, location=(0.0, y, 2.2)).perception_entropy.rack = "r"
     for name, y in (("bar", -0.4), ("bar end", -0.5)):
         scenes.add_sensor(name, CAN, location=(0.5, y, 2.2)).perception_entropy.rack = "bar"
     eye = scenes.add_sensor("eye", "Camera 60 deg", location=(2.1, 0.0, 1.0))
     own = eye.perception_entropy
-    own.own_curve, own.curve_a, own.curve_b = True, 0.15, 0.05
+    own.own_curve = True
+    own.curve_a = 0.15
+    own.curve_b = 0.05
     own.free = (True,) * 6
-    own.bounded[2], own.bounds_low[2], own.bounds_high[2] = True, 0.5, 1.5
-    own.bounded[5], own.bounds_low[5], own.bounds_high[5] = True, -10.0, 10.0
+    own.bounded[2] = True
+    own.bounds_low[2] = 0.5
+    own.bounds_high[2] = 1.5
+    own.bounded[5] = True
+    own.bounds_low[5] = -10.0
+    own.bounds_high[5] = 10.0
     eye.lock_rotation[0] = True
-    own.bounded[0], own.bounds_low[0], own.bounds_high[0] = True, 1.5, 2.2
+    own.bounded[0] = True
+    own.bounds_low[0] = 1.5
+    own.bounds_high[0] = 2.2
     for model, price in (("Camera 60 deg", 100.0), ("Camera 90 deg", 120.0)):
         option = own.options.add()
-        option.model, option.price = model, price
-        option.mass, option.power, option.data_rate = 0.5, 4.0, 300.0
-    own.mass, own.power, own.data_rate, own.price = 0.4, 3.0, 250.0, 90.0
-    settings.limit_mass, settings.limit_power, settings.limit_data_rate = 90.0, 900.0, 9000.0
+        option.model = model
+        option.price = price
+        option.mass = 0.5
+        option.power = 4.0
+        option.data_rate = 300.0
+    own.mass = 0.4
+    own.power = 3.0
+    own.data_rate = 250.0
+    own.price = 90.0
+    settings.limit_mass = 90.0
+    settings.limit_power = 900.0
+    settings.limit_data_rate = 9000.0
     own.may_be_left_out = True
     own.stays = True
     settings.front_objectives = {"entropy", "height"}
@@ -147,7 +189,8 @@ def rich(car):
     bpy.ops.pe.add_row(rows="states")
     bpy.ops.pe.add_row(rows="weathers", kind="FOG")
     settings.search_conditions = "worst"
-    settings.keep_requirements, settings.objective = True, "expected_ap"
+    settings.keep_requirements = True
+    settings.objective = "expected_ap"
     assert bpy.ops.pe.add_row(rows="requirements", kind="r158_camera") == {"FINISHED"}
     set_what_is_by_default(settings)
     scenes.add_sensor("hidden", CAN, location=(0.0, 0.0, 3.0)).hide_set(True)
@@ -173,7 +216,8 @@ def test_the_rich_scene_sets_every_field_that_a_scene_has(rich):
     """A field that is added to the study, and to no scene here, is found by this test."""
     study = scenes.study()
     default = pe.Study(pe.Rig([pe.Sensor("any", study.rig["roof"].model)]), mesh=study.mesh)
-    set_here, default = values_by_field(study), values_by_field(default)
+    set_here = values_by_field(study)
+    default = values_by_field(default)
     assert default.pop("study.mesh") == set_here.pop("study.mesh")
     left = {path for path, values in default.items() if set_here.get(path) == values}
     left -= {path.rpartition(".")[0] for path in default}  # those that have fields of their own
@@ -193,7 +237,8 @@ def test_a_variant_of_the_four_corners_keeps_mounts_pairs_and_constraints(addon)
 def test_a_variant_s_study_is_that_of_the_scene_once_it_is_applied(rich):
     bpy.ops.pe.save_variant()
     eye, arm = (bpy.data.objects[name] for name in ("eye", "arm"))
-    eye.location.z, eye.perception_entropy.model = 1.2, "Camera 90 deg"
+    eye.location.z = 1.2
+    eye.perception_entropy.model = "Camera 90 deg"
     arm.perception_entropy.rack = ""
     eye.perception_entropy.bounds_low[2] = 0.6
     bpy.data.objects.remove(bpy.data.objects["bar"])
@@ -223,7 +268,8 @@ def test_an_imported_study_becomes_the_record_of_the_scene_that_holds_it(rich, t
     assert bridge.load_into(bpy.context.scene, study) == []
     assert [each.name for each in scenes.study().rig] == [each.name for each in study.rig]
     of_files = [  # names of files, and of an area's parts in them
-        *("study.mesh", "study.mesh.len"),
+        "study.mesh",
+        "study.mesh.len",
         *(f"study.search.mounting.mounts['painted'].area.{key}" for key in ("file", "parts")),
     ]
     different = [

@@ -86,7 +86,8 @@ def test_a_film_is_a_scene_of_its_own(car):
     assert made.render.stamp_note_text == graphics.digest(driven)
     assert "cabin" in made.objects, list(made.objects)
     moving = graphics.BodiesInTime.of(driven, study.vehicle, 24.0)
-    strip, left = graphics.time_strip(driven), made.objects["cells"].location.x
+    strip = graphics.time_strip(driven)
+    left = made.objects["cells"].location.x
     cursor = []
     layer = made.view_layers[0]
     for k in (0, 30, 48):

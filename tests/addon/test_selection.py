@@ -8,7 +8,8 @@ import pytest
 from blender_addon.engine import jobs, pe
 from tests.addon import scenes
 
-CAN, LARGE = "Velodyne VLP-16 Puck", "Pandar64"
+CAN = "Velodyne VLP-16 Puck"
+LARGE = "Pandar64"
 
 
 def offer(name, *options, left_out=False):
@@ -17,14 +18,17 @@ def offer(name, *options, left_out=False):
     own.may_be_left_out = left_out
     for model, price in options:
         row = own.options.add()
-        row.model, row.price = model, price
+        row.model = model
+        row.price = price
 
 
 @pytest.fixture
 def offered(car):
     """The car with two models for its roof, at prices that single precision does not hold."""
     settings = car.perception_entropy
-    settings.candidates, settings.search_samples, settings.currency = 1, 1024, "EUR"
+    settings.candidates = 1
+    settings.search_samples = 1024
+    settings.currency = "EUR"
     car.objects["roof"].perception_entropy.model = LARGE
     offer("roof", (LARGE, 99.1), (CAN, 7.3))
     car.objects["roof"].perception_entropy.free = (False,) * 6

@@ -25,7 +25,8 @@ def test_the_fields_are_the_transform_of_the_object(car, parented):
     if parented:
         parent = bpy.data.objects.new("parent", None)
         car.collection.objects.link(parent)
-        parent.location, parent.rotation_euler = (3.0, -2.0, 0.5), TURNED
+        parent.location = (3.0, -2.0, 0.5)
+        parent.rotation_euler = TURNED
         roof.parent = parent
         bpy.context.view_layer.update()
     fields = roof.perception_entropy
@@ -56,7 +57,8 @@ def test_a_sensor_has_one_colour_in_every_layer_the_list_and_the_study(car):
     stored = colors_of(car)
     assert len(set(stored.values())) == 4
     wanted = {name: np.float32(graphics.rgb_of(color)) for name, color in stored.items()}
-    drawn, study = scenes.drawn(car), scenes.study()
+    drawn = scenes.drawn(car)
+    study = scenes.study()
     assert {sensor.name: sensor.color for sensor in study.rig} == stored
     for name, color in graphics.sensor_colors(study.rig).items():
         (label,) = drawn["labels"][name].labels

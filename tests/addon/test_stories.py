@@ -19,6 +19,12 @@ from tests.engine.processes import finished
 
 PUCK = "Velodyne VLP-16 Puck"
 CAMERA = "Camera 60 deg"
+FORMATS = ("urdf", "carla", "autoware", "csv")
+ODD = {
+    "upside_down": lambda eye: setattr(eye, "rotation_euler", (math.pi, 0.0, 0.0)),
+    "refused": lambda eye: setattr(eye, "scale", (2.0, 2.0, 2.0)),
+    "units": lambda _: setattr(bpy.context.scene.unit_settings, "system", "IMPERIAL"),
+}
 
 
 def without_run(data: dict) -> dict:
@@ -76,7 +82,8 @@ def test_place_score_optimize_check_and_export(scene, tmp_path, small_pictures):
     assert stored(scene) == without_run(jobs.result_dict(expected))
     assert finished(jobs.ScoreJob(scenes.study())).after == expected.after
     bpy.ops.ed.undo()
-    scene, settings = bpy.context.scene, bpy.context.scene.perception_entropy
+    scene = bpy.context.scene
+    settings = bpy.context.scene.perception_entropy
     assert poses() == start and settings.result.entropy == first
     assert names(settings.variants) == ["Before optimize", "Optimized, seed 0"]
     bpy.ops.pe.switch_variant(key=settings.variants[1].key)
@@ -105,9 +112,6 @@ def test_place_score_optimize_check_and_export(scene, tmp_path, small_pictures):
     picture = tmp_path / "car.svg"
     assert bpy.ops.pe.render_review(filepath=str(picture)) == {"FINISHED"}
     assert picture.read_bytes() == page.picture_file(scenes.study(), outcome)
-
-
-FORMATS = ("urdf", "carla", "autoware", "csv")
 
 
 def test_import_rigs_and_compare_them(car, tmp_path):
@@ -145,7 +149,8 @@ def test_import_rigs_and_compare_them(car, tmp_path):
     # Compared: each is scored as if it stood there, and nothing in the scene moves.
     for name in [row.name for row in settings.variants if row.name not in ("Unsaved", "KITTI")]:
         bpy.ops.pe.remove_row(rows="variants", index=settings.variants.find(name))
-    start, study = poses(), scenes.study()
+    start = poses()
+    study = scenes.study()
     assert bpy.ops.pe.compare_variants() == {"FINISHED"} and poses() == start
     shown, table = compare_variants.comparison_of(car)
     assert shown == ["KITTI", "Unsaved"]
@@ -169,7 +174,8 @@ def test_mount_bound_tie_and_search(car, tmp_path):
     settings = car.perception_entropy
     settings.score_samples = settings.search_samples = 1024
     settings.candidates = 1
-    roof, cabin = car.objects["roof"], car.objects["cabin"]
+    roof = car.objects["roof"]
+    cabin = car.objects["cabin"]
 
     # A mount of painted faces: the sensor moves onto it.
     scenes.paint(cabin, "top", lambda co: 1.0 if co.z > 0 else 0.0)
@@ -262,14 +268,16 @@ def test_undo_save_and_reload(car, tmp_path):
     settings.own_sensors[0].channels = 5
     consistency.repair_scenes()  # as Blender's timer does: each sensor has a colour
     bpy.ops.pe.score()
-    before, entropy = poses(), settings.result.entropy
+    before = poses()
+    entropy = settings.result.entropy
     table = pe.study_to_dict(scenes.study())
     blend = str(tmp_path / "car.blend")
     bpy.ops.wm.save_as_mainfile(filepath=blend)
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     assert "My LiDAR" not in pe.catalog.entries()
     bpy.ops.wm.open_mainfile(filepath=blend)
-    scene, settings = bpy.context.scene, bpy.context.scene.perception_entropy
+    scene = bpy.context.scene
+    settings = bpy.context.scene.perception_entropy
     assert poses() == before and pe.study_to_dict(scenes.study()) == table
     assert settings.has_result and settings.result.entropy == entropy
     assert len(pe.catalog.load("My LiDAR").elevations) == 5
@@ -291,7 +299,8 @@ def turn():
 
 
 def test_rename_duplicate_and_remove_what_others_are_tied_to(car):
-    settings, roof = car.perception_entropy, car.objects["roof"]
+    settings = car.perception_entropy
+    roof = car.objects["roof"]
 
     # A pair keeps together under other names; its duplicate is nobody's image.
     left = scenes.add_sensor("front_left", CAMERA, location=(1.9, 0.5, 0.8))
@@ -365,13 +374,6 @@ def test_rename_duplicate_and_remove_what_others_are_tied_to(car):
     bpy.ops.pe.remove_row(rows="focus")
     assert (names(settings.focus), settings.focus_index) == (["Focus 1", "Focus 3"], 1)
     assert scenes.study()
-
-
-ODD = {
-    "upside_down": lambda eye: setattr(eye, "rotation_euler", (math.pi, 0.0, 0.0)),
-    "refused": lambda eye: setattr(eye, "scale", (2.0, 2.0, 2.0)),
-    "units": lambda _: setattr(bpy.context.scene.unit_settings, "system", "IMPERIAL"),
-}
 
 
 def test_what_is_odd_is_told_with_a_button_that_mends_it(car):

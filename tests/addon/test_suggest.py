@@ -37,7 +37,8 @@ def test_the_window_says_what_pe_says_of_a_blind_place(car, tmp_path):
 def test_taking_an_added_sensor_gives_the_promised_figures(car):
     offers = mended(car, point=SPOT)
     number = next(k for k, each in enumerate(offers.found) if each.added)
-    own, before = offers.found[number], set(car.objects)
+    own = offers.found[number]
+    before = set(car.objects)
     assert bpy.ops.pe.take_suggestion(number=number) == {"FINISHED"}
     (new,) = set(car.objects) - before
     study = scenes.study()

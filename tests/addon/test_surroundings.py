@@ -13,14 +13,16 @@ from tests.addon.layouts import Window, drawn
 
 def test_a_grabbed_body_is_counted_as_pe_does_and_nothing_else_notices(car, tmp_path):
     scenes.add_sensor("eye", "Camera 60 deg", location=(2.0, 0.0, 1.0))
-    before, objects = scenes.study(), set(bpy.data.objects)
+    before = scenes.study()
+    objects = set(bpy.data.objects)
     assert bpy.ops.pe.surroundings() == {"FINISHED"}
     car.perception_entropy.vehicle.children.link(bpy.data.collections["Surroundings"])
     assert len(scenes.study().vehicle.triangles) == len(before.vehicle.triangles)
     assert {"child", "adult", "cyclist", "car", "pole", "cone"} == set(body_query.seen(car))
 
     child = car.objects["child"]
-    child.location, child.rotation_euler.z = (9.1, 0.7, 0.0), 0.3
+    child.location = (9.1, 0.7, 0.0)
+    child.rotation_euler.z = 0.3
     bpy.context.view_layer.update()
     body_query.query(car, scenes.depsgraph())
     body = body_query.seen(car)["child"]
@@ -30,7 +32,8 @@ def test_a_grabbed_body_is_counted_as_pe_does_and_nothing_else_notices(car, tmp_
     told = drawn(surroundings, **vars(Window(car, child))).texts("label")
     assert {each.text for each in body.seeing} <= set(told)
 
-    path, standing = tmp_path / "car.blend", body.standing
+    path = tmp_path / "car.blend"
+    standing = body.standing
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
     asked = ("--at", *map(repr, standing.place), "--heading", repr(standing.heading), "--body")
     inside = run_here(path, "explain", *asked, "child", "--json")

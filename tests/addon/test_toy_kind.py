@@ -44,11 +44,15 @@ def test_it_is_offered_beside_the_others(ring_kind):
         ("Toy Ring", PRESET, [PRESET])
     ]
     assert (PRESET, "Toy Ring") in properties.model_suggestions(None, None, "")
-    layout, settings = Layout(), bpy.context.scene.perception_entropy
+    layout = Layout()
+    settings = bpy.context.scene.perception_entropy
     settings.kind_to_add = "toyring"
     panels.main.draw_add(layout, settings)
     assert layout.notes == [
-        *(("prop", "kind_to_add"), ("operator", "Add"), ("operator", "Place"), ("operator", "")),
+        ("prop", "kind_to_add"),
+        ("operator", "Add"),
+        ("operator", "Place"),
+        ("operator", ""),
         ("operator", "pe.where"),
     ]
 
@@ -67,7 +71,8 @@ def test_the_operator_scores_it_as_the_engine_does(ring_kind, ring):
 def test_the_panel_shows_what_was_stored(ring_kind, ring):
     bpy.ops.pe.score()
     ring_kind.perception_entropy.panels = "ALL"
-    layout, own = Layout(), bridge.figures_of_sensor(ring)
+    layout = Layout()
+    own = bridge.figures_of_sensor(ring)
     panels.sensor_lists.draw_sensors(layout, Window(ring_kind))
     assert list(filter(None, layout.texts("operator"))) == ["bumper", "roof"]
     shown = layout.texts("label")

@@ -28,7 +28,8 @@ def dropped(name, model, point, normal):
     obj.perception_entropy.is_sensor = obj.perception_entropy.stands_when_dropped = True
     up = Vector(normal)
     turn = up.to_track_quat("Z", "Y").to_matrix().to_4x4()
-    low, high = np.min(obj.bound_box, axis=0), np.max(obj.bound_box, axis=0)
+    low = np.min(obj.bound_box, axis=0)
+    high = np.max(obj.bound_box, axis=0)
     base = Vector(((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]))
     obj.matrix_world = Matrix.Translation(point) @ turn @ Matrix.Translation(-base)
     bpy.context.view_layer.update()

@@ -46,8 +46,7 @@ def variant(name):
 
 def test_a_variant_is_scored_and_exported_as_the_window_would(blend, tmp_path):
     before = blend.read_bytes()
-    wanted = ("--variant", "Low")
-    answer = run_here(blend, "score", *FEW, *wanted, "--json")
+    answer = run_here(blend, "score", *FEW, "--variant", "Low", "--json")
     assert answer.returncode == 0, answer.stderr
     kept = json.loads(variant("Low").score_json)
     del kept["figures"]  # beside it in result.json
@@ -56,7 +55,7 @@ def test_a_variant_is_scored_and_exported_as_the_window_would(blend, tmp_path):
         **kept,
         "per_sensor": json.loads(answer.stdout)["after"]["per_sensor"],
     }
-    assert run_here(blend, "export", *wanted, "-o", tmp_path / "out").returncode == 0
+    assert run_here(blend, "export", "--variant", "Low", "-o", tmp_path / "out").returncode == 0
     study = pe.load_study(tmp_path / "out" / "study.toml")
     bpy.ops.pe.switch_variant(key=variant("Low").key)
     assert [s.pose for s in study.rig] == [s.pose for s in scenes.study().rig]
@@ -74,10 +73,21 @@ def test_variants_are_compared(blend):
 
 
 def test_a_search_keeps_its_start_and_its_result_in_the_file_that_it_leaves(blend, tmp_path):
-    changes = ("--set", "optimize.samples=4096", "--set", "optimize.candidates=8")
-    fast = (*FEW, "--method", "random", *changes)
     out = tmp_path / "out"
-    answer = run_here(blend, "optimize", "--no-review", *fast, "-o", out)
+    answer = run_here(
+        blend,
+        "optimize",
+        "--no-review",
+        *FEW,
+        "--method",
+        "random",
+        "--set",
+        "optimize.samples=4096",
+        "--set",
+        "optimize.candidates=8",
+        "-o",
+        out,
+    )
     assert answer.returncode == 0, answer.stderr
     bpy.ops.wm.open_mainfile(filepath=str(out / "optimized.blend"))
     rows = bpy.context.scene.perception_entropy.variants

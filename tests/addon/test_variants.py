@@ -50,7 +50,8 @@ def remove(scene, name):
 
 
 def test_switching_brings_every_sensor_back_to_the_bit(ideas):
-    before, start = poses(), bridge.records_of_scene(ideas)
+    before = poses()
+    start = bridge.records_of_scene(ideas)
     bpy.ops.pe.save_variant()
     second = ideas.objects["roof"]
     second.location = (0.123456, 0.2, 1.9)
@@ -128,7 +129,8 @@ def test_a_score_goes_to_the_variant_that_stands(ideas):
     switch(ideas, "Variant")
     assert rows(ideas)["Unsaved"].has_result, "it was kept with the score that it had"
     bpy.ops.pe.score()
-    first, second = rows(ideas)["Variant"], rows(ideas)["Variant 2"]
+    first = rows(ideas)["Variant"]
+    second = rows(ideas)["Variant 2"]
     assert first.has_result and second.entropy == first.entropy
     result_staleness.update_variants()
     assert not first.stale
@@ -217,7 +219,7 @@ def test_a_story_that_is_never_confirmed_is_drawn_as_the_worst(addon):
     """An orange square without a number; where all are confirmed but the first, a star."""
     cells = {}
     for margins in ((0.2, NEVER), (NEVER, 0.2), (NEVER, NEVER)):
-        row = advice.ComparedRow("story", "child", "margin", margins, ((0.0, 0.0),) * 2)
+        row = advice.ComparedRow("story", "child", "margin", margins, errors=((0.0, 0.0),) * 2)
         cells[margins] = compare_variants.cell_of(row, 1)
     assert list(cells.values()) == [
         ("none", False, "", 1),
@@ -260,7 +262,8 @@ def test_bars_have_the_largest_difference_first_and_the_longest_is_full(ideas):
     for part, layout in layouts.items():
         shown = SimpleNamespace(layout=layout, part=part, **window)
         compare_variants.show_comparison.draw(shown, bpy.context)
-    bars, texts = layouts["RIG"].texts("bar"), layouts["RIG"].texts("label")
+    bars = layouts["RIG"].texts("bar")
+    texts = layouts["RIG"].texts("label")
     assert compare_variants.label_of(rows[0]) in texts[: 2 + len(names)]
     assert bars[: len(names)] == [pytest.approx(rows[0].share(k)) for k in (0, 1)]
     assert len(bars) == 2 * len(rows) and not layouts["PARTS"].texts("bar")

@@ -36,7 +36,8 @@ def test_negative_scale_keeps_faces_outwards(parts):
 def test_parent_moves_child_along(parts):
     parent = bpy.data.objects.new("parent", None)
     bpy.context.scene.collection.objects.link(parent)
-    parent.location, parent.scale = (5.0, 0.0, 0.0), (2.0, 2.0, 2.0)
+    parent.location = (5.0, 0.0, 0.0)
+    parent.scale = (2.0, 2.0, 2.0)
     scenes.add_box(parts, "box", parent=parent, location=(1.0, 0.0, 0.0))
     assert bounds(scenes.vehicle(parts)) == [5.0, -2.0, -2.0, 9.0, 2.0, 2.0]
 
@@ -44,7 +45,8 @@ def test_parent_moves_child_along(parts):
 def test_modifier_is_applied(parts):
     box = scenes.add_box(parts, "box")
     array = box.modifiers.new("array", "ARRAY")
-    array.count, array.relative_offset_displace = 3, (2.0, 0.0, 0.0)
+    array.count = 3
+    array.relative_offset_displace = (2.0, 0.0, 0.0)
     vehicle = scenes.vehicle(parts)
     assert scenes.volume(vehicle.triangles) == 3 * BOX_VOLUME
     assert bounds(vehicle) == [-1.0, -1.0, -1.0, 9.0, 1.0, 1.0]
@@ -52,7 +54,8 @@ def test_modifier_is_applied(parts):
 
 def instance_of(collection, name, **settings):
     instance = bpy.data.objects.new(name, None)
-    instance.instance_type, instance.instance_collection = "COLLECTION", collection
+    instance.instance_type = "COLLECTION"
+    instance.instance_collection = collection
     for key, value in settings.items():
         setattr(instance, key, value)
     return instance
@@ -107,7 +110,8 @@ def test_hidden_does_not_count(parts, how):
 def test_what_is_hidden_in_an_instance_does_not_count(parts, how):
     """As Blender's renders show an instance: without its children that are hidden in renders."""
     kit = bpy.data.collections.new("Kit")  # not in the scene but for its instance
-    child, rack = scenes.add_collection(kit, "Child"), bpy.data.collections.new("Rack")
+    child = scenes.add_collection(kit, "Child")
+    rack = bpy.data.collections.new("Rack")
     scenes.add_box(kit, "seen")
     hidden = scenes.add_box(child, "hidden")
     scenes.add_box(rack, "bars")
@@ -149,7 +153,8 @@ def test_hidden_children_and_sensors_of_instances_are_told(car):
 def test_curve_counts_once(parts):
     """Blender lists a curve twice, as itself and as its mesh."""
     curve = bpy.data.curves.new("bar", "CURVE")
-    curve.dimensions, curve.extrude = "3D", 1.0
+    curve.dimensions = "3D"
+    curve.extrude = 1.0
     spline = curve.splines.new("POLY")
     spline.points.add(1)
     spline.points[1].co = (4.0, 0.0, 0.0, 1.0)

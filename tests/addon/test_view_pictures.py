@@ -16,7 +16,8 @@ def test_points_fall_where_the_camera_has_them(car, model):
     for ahead, left, up in ((5.0, 0.0, 0.0), (5.0, 1.0, 0.4), (9.0, -2.0, -0.7)):
         seen = bridge.CAMERA_FROM_SENSOR.inverted() @ Vector((ahead, left, up, 1.0))
         x, y, _, w = clip @ seen
-        across, height = (x / w + 1.0) / 2.0 * camera.width, (1.0 - y / w) / 2.0 * camera.height
+        across = (x / w + 1.0) / 2.0 * camera.width
+        height = (1.0 - y / w) / 2.0 * camera.height
         assert across == pytest.approx(camera.width / 2 - camera.focal_px * left / ahead, abs=0.02)
         assert height == pytest.approx(camera.height / 2 - camera.focal_px * up / ahead, abs=0.02)
 

@@ -33,9 +33,10 @@ def test_blender_and_pe_say_the_same(car, tmp_path):
     path = tmp_path / "car.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
     assert run_here(path, "export", "-o", tmp_path / "study").returncode == 0
-    options = ("--model", MODEL, "--places", "30", "--json")
-    inside = run_here(path, "where", *options)
-    outside = pe_here("where", tmp_path / "study" / "study.toml", *options)
+    inside = run_here(path, "where", "--model", MODEL, "--places", "30", "--json")
+    outside = pe_here(
+        "where", tmp_path / "study" / "study.toml", "--model", MODEL, "--places", "30", "--json"
+    )
     assert inside.stdout == outside.stdout and inside.returncode == outside.returncode == 0
     assert len(json.loads(inside.stdout)["places"]) == 30
 

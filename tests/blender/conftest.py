@@ -15,6 +15,21 @@ from tests.needed import unavailable
 
 ROOT = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent
+PLAIN_DRAWING = """
+bpy.context.preferences.system.viewport_aa = "OFF"
+bpy.context.preferences.view.smooth_view = 0
+"""
+"""A view that stands still is drawn once, not eight times, and jumps to where it is sent."""
+QUICK_SCORE = """
+window.scene.perception_entropy.score_samples = 16_384
+space = area.spaces.active
+for each in ("floor", "axis_x", "axis_y", "outline_selected", "relationship_lines", "cursor"):
+    setattr(space.overlay, "show_" + each, False)
+space.shading.light, space.shading.show_object_outline = "FLAT", False
+bpy.ops.ed.undo_push(message="before the test")
+"""
+"""Few samples, and of the view's own decoration nothing: software draws it, pixel by pixel."""
+PASSED = pytest.StashKey[bool]()
 
 
 @pytest.fixture(scope="session")
@@ -41,7 +56,7 @@ def installed(blender, extension_zip, tmp_path_factory) -> Installed:
     """Return Blender with the extension installed into a user folder of its own."""
     own = blender.with_resources(tmp_path_factory.mktemp("blender_user"))
     answer = own.run(
-        *("--command", "extension", "install-file", "-r", "user_default", "--enable", extension_zip)
+        "--command", "extension", "install-file", "-r", "user_default", "--enable", extension_zip
     )
     # install-file gives status 0 also when it refused: only starting with it tells.
     installed = Installed(own, tmp_path_factory.mktemp("startup") / "startup.blend")
@@ -64,24 +79,6 @@ def screenshots() -> Path:
     return folder
 
 
-PLAIN_DRAWING = """
-bpy.context.preferences.system.viewport_aa = "OFF"
-bpy.context.preferences.view.smooth_view = 0
-"""
-"""A view that stands still is drawn once, not eight times, and jumps to where it is sent."""
-
-
-QUICK_SCORE = """
-window.scene.perception_entropy.score_samples = 16_384
-space = area.spaces.active
-for each in ("floor", "axis_x", "axis_y", "outline_selected", "relationship_lines", "cursor"):
-    setattr(space.overlay, "show_" + each, False)
-space.shading.light, space.shading.show_object_outline = "FLAT", False
-bpy.ops.ed.undo_push(message="before the test")
-"""
-"""Few samples, and of the view's own decoration nothing: software draws it, pixel by pixel."""
-
-
 class SharedWindow:
     """One window for all tests: each begins with the file loaded anew.
 
@@ -90,7 +87,9 @@ class SharedWindow:
     """
 
     def __init__(self, installed, blend, new_folder):
-        self._installed, self._blend, self._new_folder = installed, blend, new_folder
+        self._installed = installed
+        self._blend = blend
+        self._new_folder = new_folder
         self._stage = None
 
     def begin(self) -> Stage:
@@ -128,9 +127,6 @@ def pytest_runtest_makereport(item, call):
     if call.when == "call":
         item.stash[PASSED] = report.passed
     return report
-
-
-PASSED = pytest.StashKey[bool]()
 
 
 @pytest.fixture

@@ -55,7 +55,8 @@ def score() -> float:
 
 
 scene = bpy.context.scene.perception_entropy
-scene.space_interval, scene.score_samples = 0.5, 4096
+scene.space_interval = 0.5
+scene.score_samples = 4096
 bpy.context.preferences.addons[PACKAGE].preferences.show_library = False
 report = {"score before": score(), "before": state()}
 for path in NEWER.iterdir():

@@ -23,15 +23,19 @@ from mathutils import Euler
 
 FOLDER = Path(sys.argv[-1])
 CATEGORY = "Perception"
-VIEW_CENTER_M, VIEW_DISTANCE_M = (0.0, -0.6, 0.7), 9.0
+VIEW_CENTER_M = (0.0, -0.6, 0.7)
+VIEW_DISTANCE_M = 9.0
 VIEW_ROTATION = (math.radians(66.0), 0.0, math.radians(128.0))
 STEP_S = 0.1
 REPORT_S = 0.1
-TURN_S, IDLE_S = 0.01, 0.05
+TURN_S = 0.01
+IDLE_S = 0.05
 ROW_STEP = 18
 """A button is 20 pixels high at this scale: smaller steps cannot miss one."""
 COLUMNS = (0.7, 0.25, 0.45)
 """Where to look in a row: its middle may be the gap between two buttons."""
+KEPT = {}
+"""What one piece of code keeps for the next, and for those who asked."""
 
 
 def write(name, document):
@@ -53,7 +57,8 @@ def fill_the_window():
     window, area, _ = view3d()
     window.scene.perception_entropy.result_json = ""  # the file may come with one
     look = area.spaces.active.region_3d
-    look.view_location, look.view_distance = VIEW_CENTER_M, VIEW_DISTANCE_M
+    look.view_location = VIEW_CENTER_M
+    look.view_distance = VIEW_DISTANCE_M
     look.view_rotation = Euler(VIEW_ROTATION).to_quaternion()
     with bpy.context.temp_override(window=window, area=area):
         bpy.ops.screen.screen_full_area()
@@ -248,7 +253,8 @@ def copied_call():
         return ""
     bpy.ops.ui.copy_python_command_button()
     manager = bpy.context.window_manager
-    said, manager.clipboard = manager.clipboard, ""
+    said = manager.clipboard
+    manager.clipboard = ""
     return said
 
 
@@ -275,10 +281,6 @@ def report_copied():
     if copied := manager.clipboard:
         manager.clipboard = ""
         write("copied.txt", copied)
-
-
-KEPT = {}
-"""What one piece of code keeps for the next, and for those who asked."""
 
 
 def obey():

@@ -20,7 +20,8 @@ from tests.blender.runner import Installed
 from tests.limits import patience
 
 TOOLS = ("Xvfb", "xdotool", "import")
-WIDTH, HEIGHT = 1120, 900
+WIDTH = 1120
+HEIGHT = 900
 """Of a test's window: software draws it, pixel by pixel."""
 STARTUP = Path(__file__).resolve().parent / "inside_window.py"
 
@@ -34,7 +35,9 @@ SETTLE_TIMEOUT_S = 30
 TURNS = 4  # of Blender's loop between moving and pressing: it finds the button by the move
 
 SCROLLS = 30  # of the wheel: more than the sidebar is long
-CLICKS, CLICK_LOST_S = 3, 60  # of a button that acts at once; it was lost if nothing came of it
+# of a button that acts at once; it was lost if nothing came of it
+CLICKS = 3
+CLICK_LOST_S = 60
 SEARCHES = 4  # for a button: panels may move while one is looked for
 ANSWER_TIMEOUT_S = 120
 COPY_TIMEOUT_S = 5
@@ -51,7 +54,8 @@ class Stage:
     """One screen with one Blender on it; call `close` whatever happened."""
 
     def __init__(self, folder: Path, width: int = 1600):
-        self.folder, self.width = folder, width
+        self.folder = folder
+        self.width = width
         self.log = folder / "window.log"
         self._processes: list[subprocess.Popen] = []
         self._env: dict[str, str] = {}
@@ -180,7 +184,8 @@ class Stage:
 
     def _ask(self, what: str, request: dict) -> dict:
         """Ask Blender something through a file, and wait for its answer."""
-        asked, answer = self.folder / f"{what}.json", self.folder / f"{what}_answer.json"
+        asked = self.folder / f"{what}.json"
+        answer = self.folder / f"{what}_answer.json"
         answer.unlink(missing_ok=True)
         partial = asked.with_suffix(".partial")
         partial.write_text(json.dumps(request))
@@ -190,7 +195,8 @@ class Stage:
 
     def settle(self) -> None:
         """Wait until Blender draws nothing more."""
-        begun, drawn = time.monotonic(), self.folder / "drawn.json"
+        begun = time.monotonic()
+        drawn = self.folder / "drawn.json"
 
         def quiet() -> bool:
             if not drawn.exists():
@@ -224,7 +230,8 @@ class Stage:
 
         Blender draws what Python has changed only when it is told to.
         """
-        done, asked = self.folder / "done.json", self.folder / "do.py"
+        done = self.folder / "done.json"
+        asked = self.folder / "do.py"
         done.unlink(missing_ok=True)
         partial = asked.with_suffix(".partial")
         partial.write_text(f"redraw = {redraw}\n{textwrap.dedent(code)}")
@@ -261,7 +268,8 @@ class Stage:
 
     def drag(self, start: tuple[int, int], end: tuple[int, int], held_s: float = 0.6) -> None:
         """Drag with the left button from one place to another."""
-        (x, y), (u, v) = start, end
+        x, y = start
+        u, v = end
         self._move(x, y)
         self.mouse("mousedown", 1)
         self.rest(0.3)

@@ -27,6 +27,14 @@ assert bpy.ops.pe.add_row(rows="weathers", kind="FOG") == {"FINISHED"}
 bpy.ops.wm.save_as_mainfile(filepath=saved)  # with the hood open
 assert bpy.ops.pe.export_study(filepath=folder + "/study.toml") == {"FINISHED"}
 """
+SHORT_STORY = """
+[[story]]
+name = "crossing_child"
+speed_kmh = 30.0
+[[story.body]]
+body = "child"
+path = [[-0.3, 0.0, -0.5], [0.0, 0.0, 0.0]]
+"""
 
 
 def document_in(stdout: str) -> dict:
@@ -68,7 +76,8 @@ def test_blender_and_engine_agree_to_the_last_bit(installed, sedan, tmp_path):
 
 def both_scores(installed, code, sedan, folder) -> tuple[dict, dict]:
     """What Blender and the engine alone say of a scene that a script saves and exports."""
-    script, saved = folder / "make.py", folder / "made.blend"
+    script = folder / "make.py"
+    saved = folder / "made.blend"
     script.write_text(code, "utf-8")
     answer = installed.script(script, sedan, saved, folder)
     assert answer.returncode == 0, output_of(answer)
@@ -93,18 +102,9 @@ def alone(*arguments) -> dict:
     return document_in(answer.stdout)
 
 
-SHORT_STORY = """
-[[story]]
-name = "crossing_child"
-speed_kmh = 30.0
-[[story.body]]
-body = "child"
-path = [[-0.3, 0.0, -0.5], [0.0, 0.0, 0.0]]
-"""
-
-
 def test_a_film_without_a_window_is_that_of_its_drive_by(installed, sedan, tmp_path):
-    story, film = tmp_path / "story.toml", tmp_path / "film.webm"
+    story = tmp_path / "story.toml"
+    film = tmp_path / "film.webm"
     story.write_text(SHORT_STORY)
     answer = installed.pe(sedan, "check", "--stories", story, "-o", film, "--json")
     assert answer.returncode in (0, 3), output_of(answer)

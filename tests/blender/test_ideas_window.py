@@ -64,7 +64,8 @@ def test_save_move_come_back_ask_the_ground_and_mend_what_is_blind_by_clicks(win
     window.screenshot(screenshots / "window_suggest.png")
     assert window.state["answer"] == second != first
 
-    before, told = window.state["sensors"], window.do(PROMISED)
+    before = window.state["sensors"]
+    told = window.do(PROMISED)
     words = f"number={told['number']}" if told["number"] else ""  # else the first button
     window.press("pe.take_suggestion", words)
     window.wait_for(

@@ -92,7 +92,8 @@ def test_a_drag_is_followed_and_ends_exact_to_the_bit(live, screenshots, install
     assert (let_go["before"], let_go["entropy"]) == (start, held["entropy"])
     live.photograph(screenshots / "window_live_rest.png")
 
-    copy, end = tmp_path / "moved.blend", let_go["entropy"]
+    copy = tmp_path / "moved.blend"
+    end = let_go["entropy"]
     live.do(f"bpy.ops.wm.save_as_mainfile(filepath={str(copy)!r}, copy=True)")
     answer = installed.pe(copy, "score", "--samples", SAMPLES, "--json", "--output", tmp_path)
     assert answer.returncode == 0, output_of(answer)
@@ -128,7 +129,8 @@ def test_disabled_in_the_middle_of_anything_it_leaves_nothing_and_works_again(
     live.wait_until("window.scene.perception_entropy.live.on is not None")
     assert "Traceback" not in live.log.read_text()
 
-    stage, said = spent_stage, len(live.log.read_text())
+    stage = spent_stage
+    said = len(live.log.read_text())
     names = "[each.name for each in bpy.context.preferences.filepaths.asset_libraries]"
     stage.do("window.scene.perception_entropy.live.on = False")
     stage.wait_until(f"'Perception Entropy' in {names}")

@@ -72,7 +72,8 @@ def named(lines, news):
 def dragged(stage, moves):
     """Work the mouse in a thread of its own; return the titles that are shown meanwhile."""
     steps = ("mousemove_relative", "--", 3, -2, "sleep", 0.05)
-    thread, titles = threading.Thread(target=stage.mouse, args=steps * moves), []
+    thread = threading.Thread(target=stage.mouse, args=steps * moves)
+    titles = []
     thread.start()
     while thread.is_alive():
         titles.append(legend(stage)[0])

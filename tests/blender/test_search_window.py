@@ -2,10 +2,14 @@
 
 import math
 
-START_TIMEOUT_S, BETTER_TIMEOUT_S = 60, 180
+START_TIMEOUT_S = 60
+BETTER_TIMEOUT_S = 180
 ADDON = "bl_ext.user_default.perception_entropy"
 ON_THE_ROOF_M = 1.45 + 0.04 + 0.12
 """No sensor on a base plate of 40 mm is higher than this."""
+VIEW = f"__import__('{ADDON}.best_so_far', fromlist=['searches']).searches"
+RUNNING = f"__import__('{ADDON}.operators.running_job', fromlist=['current']).current"
+PLACE = "bpy.data.objects['roof_lidar'].matrix_world.translation"
 
 
 def test_a_search_beside_the_window_esc_keeps_the_best_undo_brings_back_and_a_page_is_left(
@@ -91,11 +95,6 @@ def ask_for(stage, page):
     stage.wait_until("any(area.type == 'FILE_BROWSER' for area in window.screen.areas)")
     stage.settle()
     stage.key("Return")
-
-
-VIEW = f"__import__('{ADDON}.best_so_far', fromlist=['searches']).searches"
-RUNNING = f"__import__('{ADDON}.operators.running_job', fromlist=['current']).current"
-PLACE = "bpy.data.objects['roof_lidar'].matrix_world.translation"
 
 
 def place(stage) -> list[float]:

@@ -73,14 +73,23 @@ def report(blender, repositories, served, sedan, tmp_path_factory):
     folder = tmp_path_factory.mktemp("update")
     own = blender.with_resources(folder / "user")
     add = ("repo-add", "--name", "PE", "--url", served, "pe_site", "--clear-all")
-    extension = ("--online-mode", "-b", "--command", "extension")
     for verb in (add, ("install", "--sync", "--enable", "perception_entropy")):
-        answer = own.run(*extension, *verb)
+        answer = own.run("--online-mode", "-b", "--command", "extension", *verb)
         assert answer.returncode == 0, output_of(answer)
     scene = shutil.copy(sedan, folder / "scene.blend")
-    inside = ("--python", HERE / "inside_update.py", "--", folder / "report.json")
-    more = (repositories / "newer", repositories / "served")
-    answer = own.run("--online-mode", "-b", scene, "--python-exit-code", 3, *inside, *more)
+    answer = own.run(
+        "--online-mode",
+        "-b",
+        scene,
+        "--python-exit-code",
+        3,
+        "--python",
+        HERE / "inside_update.py",
+        "--",
+        folder / "report.json",
+        repositories / "newer",
+        repositories / "served",
+    )
     assert answer.returncode == 0, output_of(answer)
     assert "Traceback" not in answer.stderr, answer.stderr
     return json.loads((folder / "report.json").read_text())
@@ -88,7 +97,8 @@ def report(blender, repositories, served, sedan, tmp_path_factory):
 
 @pytest.mark.thorough
 def test_an_update_brings_this_version_and_keeps_scene_preferences_and_score(report, extension_zip):
-    before, after = report["before"], report["after"]
+    before = report["before"]
+    after = report["after"]
     version = release.agreed_version()
     assert (before["version"], before["engine"]) == (OLDER, OLDER)
     assert (after["version"], after["engine"]) == (version, version)

@@ -1,6 +1,7 @@
 """Variants as pictures, in a real window: a wipe between two of them, and Compare."""
 
-EFFECT_TIMEOUT_S, COMPARED_TIMEOUT_S = 60, 180
+EFFECT_TIMEOUT_S = 60
+COMPARED_TIMEOUT_S = 180
 SHOWN = (
     "__import__('bl_ext.user_default.perception_entropy.overlay.layer_cache', "
     "fromlist=['shown']).shown.get((bpy.context.window_manager.windows[0].scene.name, 'blind'), {})"

@@ -5,8 +5,11 @@ import math
 import pytest
 
 EFFECT_TIMEOUT_S = 120
-ROOF, HOOD, GROUND = (-0.4, 0.0, 1.45), (1.5, 0.0, 0.9), (0.0, -6.0, 0.0)
+ROOF = (-0.4, 0.0, 1.45)
+HOOD = (1.5, 0.0, 0.9)
+GROUND = (0.0, -6.0, 0.0)
 """Places of the sedan, nearly, and one beside it [m]."""
+YAW = "kept['angles'] = list(bpy.data.objects['roof_lidar'].rotation_euler)"
 
 
 def sensors(window):
@@ -115,9 +118,6 @@ def test_both_sides_a_typed_height_and_a_drag_along_the_surface(window, screensh
     window.screenshot(screenshots / "window_handles.png")
     assert len(sensors(window)) == len(before) + 2
     assert "Traceback" not in window.log.read_text()
-
-
-YAW = "kept['angles'] = list(bpy.data.objects['roof_lidar'].rotation_euler)"
 
 
 def test_a_handle_turns_the_yaw_of_the_active_sensor_and_is_undone(window):

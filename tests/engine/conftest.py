@@ -18,6 +18,8 @@ from tests.engine import shapes
 from tests.few_errors import few_errors
 
 __all__ = ["few_errors"]
+CHECKOUT = Path(__file__).parents[2]
+EXAMPLE_PLUGIN = CHECKOUT / "examples" / "plugin"
 
 
 @pytest.fixture
@@ -28,7 +30,8 @@ def failing_call(monkeypatch):
     """
 
     def fail(name, number, first=1, once=False):
-        real, count = getattr(os, name), SimpleNamespace(calls=0, fired=0)
+        real = getattr(os, name)
+        count = SimpleNamespace(calls=0, fired=0)
 
         def call(*args, **options):
             count.calls += 1
@@ -58,7 +61,12 @@ def study(tmp_path):
     """A study file of a LiDAR on a box car, whose place and pitch a short search may change."""
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
     search = pe.Search(
-        {"roof": ("x", "z", "pitch")}, {}, 3, 2048, pe.Schedule(candidates=4), method="random"
+        {"roof": ("x", "z", "pitch")},
+        limits={},
+        seed=3,
+        samples=2048,
+        schedule=pe.Schedule(candidates=4),
+        method="random",
     )
     path = tmp_path / "car.toml"
     pt.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search), path)
@@ -69,10 +77,6 @@ def study(tmp_path):
 def out(tmp_path):
     """A folder for results that is not there yet."""
     return tmp_path / "out"
-
-
-CHECKOUT = Path(__file__).parents[2]
-EXAMPLE_PLUGIN = CHECKOUT / "examples" / "plugin"
 
 
 @pytest.fixture(scope="module")

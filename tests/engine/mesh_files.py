@@ -25,8 +25,10 @@ FACES = np.array([face for a, b, c, d in QUADS.tolist() for face in ((a, b, c), 
 BOX = POINTS[FACES]
 SQUARE = np.array([[(0, 0, 0), (1, 0, 0), (1, 1, 0)], [(0, 0, 0), (1, 1, 0), (0, 1, 0)]], float)
 ZEROS = np.zeros(12, np.int32)  # the part of each triangle
-NAN, INF = POINTS.copy(), POINTS.copy()
-NAN[0, 1], INF[0, 1] = np.nan, np.inf
+NAN = POINTS.copy()
+INF = POINTS.copy()
+NAN[0, 1] = np.nan
+INF[0, 1] = np.inf
 HUGE = "9" * 5000
 
 

@@ -10,16 +10,16 @@ TOP = 1.4
 BASE = 0.04
 CAN = "Velodyne VLP-16 Puck"
 """A cylinder of 0.1033 m across and 0.0717 m high, its origin 0.0377 m above its base."""
-RADIUS, HEIGHT, CENTER = 0.1033 / 2.0, 0.0717, 0.0377
+RADIUS = 0.1033 / 2.0
+HEIGHT = 0.0717
+CENTER = 0.0377
 ON_ROOF = (-0.43, 0.0, TOP + BASE + CENTER)
 
 
 def car():
     """The box car; its roof, front and sides are parts of their own."""
-    body, cabin = (
-        shapes.box((-2.3, -0.9, 0.2), (2.3, 0.9, 0.9)),
-        shapes.box((-1.5, -0.7, 0.8), (0.8, 0.7, TOP)),
-    )
+    body = shapes.box((-2.3, -0.9, 0.2), (2.3, 0.9, 0.9))
+    cabin = shapes.box((-1.5, -0.7, 0.8), (0.8, 0.7, TOP))
     triangles = np.concatenate([body, cabin])
     level = (triangles[:, :, 2] == TOP).all(axis=1)
     front = (triangles[:, :, 0] == 2.3).all(axis=1)

@@ -46,10 +46,11 @@ def taken(origin, directions, objects, vehicle, traffic):
 
 def beams(sensor, azimuths, objects, vehicle, traffic):
     """(N,) beams that end on each object within the range."""
-    lidar, origin = sensor.model, np.array(sensor.pose.position)
+    lidar = sensor.model
+    origin = np.array(sensor.pose.position)
     directions = oracle.beam_directions(lidar.elevations, azimuths, sensor.pose.rpy)
     counts = np.zeros(len(objects))
-    for item, distance in taken(origin, directions, objects, vehicle, traffic):
+    for item, distance in taken(origin, directions, objects, vehicle, traffic=traffic):
         counts[item] = ((distance >= lidar.min_range) & (distance <= lidar.max_range)).sum()
     return counts
 
@@ -67,7 +68,9 @@ def pixels(sensor, ray_of, finer, objects, vehicle, traffic):
     rays = ray_of(right, below)
     rays = rays[~np.isnan(rays[:, 0])] @ oracle.rotation(*sensor.pose.rpy).T
     counts = np.zeros(len(objects))
-    for item, distance in taken(np.array(sensor.pose.position), rays, objects, vehicle, traffic):
+    for item, distance in taken(
+        np.array(sensor.pose.position), rays, objects, vehicle, traffic=traffic
+    ):
         counts[item] = len(distance) / finer**2
     return counts
 
@@ -79,8 +82,10 @@ def visible_shares(sensor, ray_of, objects, vehicle, want=10_000):
     too. Rays through every pixel find the object's part of the picture; about `want` rays to the
     object, evenly spread over that part, decide.
     """
-    origin, turn = np.array(sensor.pose.position), oracle.rotation(*sensor.pose.rpy)
-    camera, shares = sensor.model, np.full((2, len(objects)), np.nan)
+    origin = np.array(sensor.pose.position)
+    turn = oracle.rotation(*sensor.pose.rpy)
+    camera = sensor.model
+    shares = np.full((2, len(objects)), np.nan)
 
     def through(across, down):
         places = [w.ravel() for w in np.meshgrid(across, down)]
@@ -99,13 +104,15 @@ def visible_shares(sensor, ray_of, objects, vehicle, want=10_000):
         met = np.isfinite(first_hits(origin, every, own))
         if met.sum() < 48:
             continue
-        finer, rows = math.sqrt(want / met.sum()), []
+        finer = math.sqrt(want / met.sum())
+        rows = []
         for w, size in ((across[met], camera.width), (down[met], camera.height)):
             finely = np.arange(w.min() - 2.0 + 0.5 / finer, w.max() + 2.0, 1.0 / finer)
             rows.append(finely[(finely > 0.0) & (finely < size)])
         rays = through(*rows)[1]
         distance = first_hits(origin, rays, own)
-        rays, distance = rays[np.isfinite(distance)], distance[np.isfinite(distance)]
+        rays = rays[np.isfinite(distance)]
+        distance = distance[np.isfinite(distance)]
         before = hidden(rays, distance, vehicle.triangles)
         shares[0, item] = 1.0 - before.mean()
         for other in np.flatnonzero(objects.scenes == objects.scenes[item]):
@@ -120,7 +127,8 @@ def first_hits(origin, rays, triangles):
     nearest = np.full(len(rays), np.inf)
     for triangle in np.asarray(triangles) - origin:
         middle = triangle.mean(axis=0)
-        away, ball = np.linalg.norm(middle), np.linalg.norm(triangle - middle, axis=1).max()
+        away = np.linalg.norm(middle)
+        ball = np.linalg.norm(triangle - middle, axis=1).max()
         some = np.arange(len(rays))
         if ball < away:
             some = np.flatnonzero(rays @ middle >= math.sqrt(away**2 - ball**2) - 1e-9)
@@ -132,7 +140,8 @@ def first_hits(origin, rays, triangles):
 
 def hull_area(sensor, objects, item):
     """Area of the clipped convex hull of a box's image, None where a corner is not in front."""
-    camera, points = sensor.model, []
+    camera = sensor.model
+    points = []
     focal = camera.width / (2.0 * math.tan(camera.hfov / 2.0))
     seen = (corners(objects, item) - sensor.pose.position) @ oracle.rotation(*sensor.pose.rpy)
     for x, y, z in seen:
@@ -147,7 +156,8 @@ def pinhole_rays(camera):
     focal = camera.width / (2.0 * math.tan(camera.hfov / 2.0))
 
     def ray_of(right, below):
-        y, z = (camera.width / 2.0 - right) / focal, (camera.height / 2.0 - below) / focal
+        y = (camera.width / 2.0 - right) / focal
+        z = (camera.height / 2.0 - below) / focal
         ray = np.stack([np.ones_like(y), y, z], axis=1)
         return ray / np.linalg.norm(ray, axis=1)[:, None]
 
@@ -158,7 +168,8 @@ def equidistant_rays(lens, edge):
     """Rays of a fisheye whose radius is the angle times the focal length, up to an edge [rad]."""
 
     def ray_of(right, below):
-        x, y = (right - lens.cx) / lens.fx, (below - lens.cy) / lens.fy
+        x = (right - lens.cx) / lens.fx
+        y = (below - lens.cy) / lens.fy
         theta = np.hypot(x, y)
         scale = np.sin(theta) / np.where(theta > 0.0, theta, 1.0)
         ray = np.stack([np.cos(theta), -x * scale, -y * scale], axis=1)

@@ -9,6 +9,9 @@ import math
 
 import numpy as np
 
+IN_FRONT = 1e-6
+"""In sides; a corner nearer to a camera's plane is behind it."""
+
 
 def rotation(roll, pitch, yaw):
     cr, sr, cp, sp, cy, sy = (f(a) for a in (roll, pitch, yaw) for f in (math.cos, math.sin))
@@ -29,9 +32,11 @@ def beam_directions(elevations, azimuths, rpy):
 
 def first_hits(origin, directions, triangles):
     """(B,) distance to the nearest triangle, inf for a miss; and (B,) its index, -1."""
-    best, which = np.full(len(directions), np.inf), np.full(len(directions), -1)
+    best = np.full(len(directions), np.inf)
+    which = np.full(len(directions), -1)
     for index, (a, b, c) in enumerate(triangles):
-        e1, e2 = b - a, c - a
+        e1 = b - a
+        e2 = c - a
         h = np.cross(directions, e2)
         det = h @ e1
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -42,28 +47,28 @@ def first_hits(origin, directions, triangles):
             t = (e2 @ q) / det
             hit = (det != 0) & (u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0)
         hit &= t < best
-        best[hit], which[hit] = t[hit], index
+        best[hit] = t[hit]
+        which[hit] = index
     return best, which
 
 
 def count_beams(origin, directions, ends, center, side):
     """Beams whose segment [0, end] meets the cube."""
-    low, high = center - side / 2 - origin, center + side / 2 - origin
-    t0, t1 = np.zeros(len(directions)), np.full(len(directions), np.inf)
+    low = center - side / 2 - origin
+    high = center + side / 2 - origin
+    t0 = np.zeros(len(directions))
+    t1 = np.full(len(directions), np.inf)
     alive = np.ones(len(directions), bool)
     for k in range(3):
         d = directions[:, k]
         parallel = np.abs(d) < 1e-300
         alive &= ~parallel | ((low[k] <= 0) & (high[k] >= 0))
         d = np.where(parallel, 1.0, d)
-        near, far = np.minimum(low[k] / d, high[k] / d), np.maximum(low[k] / d, high[k] / d)
+        near = np.minimum(low[k] / d, high[k] / d)
+        far = np.maximum(low[k] / d, high[k] / d)
         t0 = np.where(parallel, t0, np.maximum(t0, near))
         t1 = np.where(parallel, t1, np.minimum(t1, far))
     return int((alive & (t0 <= t1) & (t0 <= ends)).sum())
-
-
-IN_FRONT = 1e-6
-"""In sides; a corner nearer to a camera's plane is behind it."""
 
 
 def pixel_area(camera_size, hfov, origin, rpy, center, side):
@@ -122,7 +127,8 @@ def _clip(polygon, width, height):
         clipped = []
         for i, p in enumerate(polygon):
             q = polygon[(i + 1) % len(polygon)]
-            dp, dq = sign * (coordinate(p) - limit), sign * (coordinate(q) - limit)
+            dp = sign * (coordinate(p) - limit)
+            dq = sign * (coordinate(q) - limit)
             if dp >= 0:
                 clipped.append(p)
             if dp * dq < 0:

@@ -51,7 +51,8 @@ RUN = "from pe_tools.__main__ import main; main()"
 
 def pe(*arguments):
     """Run the command in this process: what it would print, warnings too, and its status."""
-    out, err = io.StringIO(), io.StringIO()
+    out = io.StringIO()
+    err = io.StringIO()
     streams = contextlib.redirect_stdout(out), contextlib.redirect_stderr(err)
     with streams[0], streams[1], warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("default")

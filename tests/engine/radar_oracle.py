@@ -32,11 +32,12 @@ def _of_mode(mode, rotation, eye, center, size, yaw, name, triangles):
     if not len(rays):
         return 0.0
     far = float(np.linalg.norm(center - eye))
-    cells = _cells(mode, center - eye, size, yaw, far)
+    cells = _cells(mode, center - eye, size, yaw, far=far)
     local = rays @ rotation
     azimuth = np.degrees(np.arctan2(local[:, 1], local[:, 0]))
     elevation = np.degrees(np.arcsin(local[:, 2]))
-    angles, ups = np.array(mode["azimuth_deg"], float), np.array(mode["elevation_deg"], float)
+    angles = np.array(mode["azimuth_deg"], float)
+    ups = np.array(mode["elevation_deg"], float)
     ranges = np.broadcast_to(np.array(mode["range_m"], float), angles.shape)
     scales = np.broadcast_to(np.array(mode.get("elevation_scale", 1.0), float), ups.shape)
     reach = np.interp(azimuth, angles, ranges) * np.interp(elevation, ups, scales)
@@ -55,7 +56,8 @@ def _of_mode(mode, rotation, eye, center, size, yaw, name, triangles):
 
 def _rays_on(offset, size, yaw):
     """Rays of a raster that meet the box, their solid angles, and where they enter it."""
-    c, s = math.cos(yaw), math.sin(yaw)
+    c = math.cos(yaw)
+    s = math.sin(yaw)
     axes = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1.0]])
     corners = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)]) / 2 * size
     corners = corners @ axes + offset
@@ -66,14 +68,17 @@ def _rays_on(offset, size, yaw):
     pad = 0.1 * (up.max() - up.min())
     step = (np.arange(RASTER) + 0.5) / RASTER
     azimuth = middle + turn.min() + (turn.max() - turn.min()) * step
-    low, high = up.min() - pad, up.max() + pad
+    low = up.min() - pad
+    high = up.max() + pad
     elevation = low + (high - low) * step
     a, e = (w.ravel() for w in np.meshgrid(azimuth, elevation))
     rays = np.column_stack([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
-    speed, start = rays @ axes.T, axes @ offset
+    speed = rays @ axes.T
+    start = axes @ offset
     with np.errstate(divide="ignore"):
         sides = np.stack([(start - size / 2) / speed, (start + size / 2) / speed])
-    enter, leave = sides.min(axis=0).max(axis=1), sides.max(axis=0).min(axis=1)
+    enter = sides.min(axis=0).max(axis=1)
+    leave = sides.max(axis=0).min(axis=1)
     met = (enter < leave) & (enter > 0)
     return rays[met], np.cos(e)[met], enter[met]
 
@@ -81,10 +86,8 @@ def _rays_on(offset, size, yaw):
 def _cells(mode, offset, size, yaw, far):
     """Cells from the box's mean chord and width, found by lines across it seen from above."""
     bearing = math.atan2(offset[1], offset[0]) - yaw
-    ahead, aside = (
-        np.array([math.cos(bearing), math.sin(bearing)]),
-        np.array([-math.sin(bearing), math.cos(bearing)]),
-    )
+    ahead = np.array([math.cos(bearing), math.sin(bearing)])
+    aside = np.array([-math.sin(bearing), math.cos(bearing)])
     corners = np.array([[i, j] for i in (-1, 1) for j in (-1, 1)]) / 2 * size[:2]
     across = corners @ aside
     lines = across.min() + (np.arange(4001) + 0.5) / 4001 * np.ptp(across)
@@ -101,7 +104,9 @@ def _blocked(eye, rays, enter, triangles):
     """Whether a triangle is before the box, by determinants, triangle by triangle."""
     blocked = np.zeros(len(rays), bool)
     for a, b, c in triangles:
-        one, two, start = b - a, c - a, eye - a
+        one = b - a
+        two = c - a
+        start = eye - a
         cross = np.cross(rays, two)
         det = cross @ one
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -78,7 +78,8 @@ class Scene:
             pe.Pose.from_degrees(left @ s.pose.position, s.pose.rotation_deg + np.array([0, 0, 90]))
             for s in self.rig
         ]
-        (low, high), x = self.space.y, self.space.x
+        low, high = self.space.y
+        x = self.space.x
         space = replace(self.space, x=(-high, -low), y=x)
         return Scene(space, vehicle, self.rig.with_poses(poses))
 
@@ -121,7 +122,8 @@ def _lidar(rng):
     if rng.random() < 0.4:
         elevations = np.radians(rng.permutation(ROUND_CHANNELS_DEG)[: rng.integers(1, 5)])
         return pe.Lidar(ROUND, np.sort(elevations), int(rng.choice([12, 24, 72])), 60.0)
-    channels, azimuths = int(rng.choice([1, 5, 16])), int(rng.choice([60, 90, 120]))
+    channels = int(rng.choice([1, 5, 16]))
+    azimuths = int(rng.choice([60, 90, 120]))
     return shapes.small_lidar(channels, azimuths, max_range=float(rng.choice([2.0, 60.0])))
 
 

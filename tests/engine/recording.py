@@ -13,8 +13,11 @@ class Recorder:
     """
 
     def __init__(self, landscape, bounds=False):
-        self.landscape, self.bounds = landscape, bounds
-        self.rigs, self.values, self.cutoff = [], [], []
+        self.landscape = landscape
+        self.bounds = bounds
+        self.rigs = []
+        self.values = []
+        self.cutoff = []
 
     def entropy(self, rig):
         return self.below(rig, math.inf)

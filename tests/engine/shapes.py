@@ -21,8 +21,12 @@ def box(low, high):
 def refined(triangles, times):
     """The same surface with each triangle cut in four, `times` times."""
     for _ in range(times):
-        a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
-        ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
+        a = triangles[:, 0]
+        b = triangles[:, 1]
+        c = triangles[:, 2]
+        ab = (a + b) / 2
+        bc = (b + c) / 2
+        ca = (c + a) / 2
         corners = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
         triangles = np.concatenate([np.stack(t, axis=1) for t in corners])
     return triangles
@@ -30,7 +34,8 @@ def refined(triangles, times):
 
 def box_car(times=0):
     """A 4.6 x 1.8 x 1.4 m car of two boxes: body and cabin."""
-    body, cabin = box((-2.3, -0.9, 0.2), (2.3, 0.9, 0.9)), box((-1.5, -0.7, 0.8), (0.8, 0.7, 1.4))
+    body = box((-2.3, -0.9, 0.2), (2.3, 0.9, 0.9))
+    cabin = box((-1.5, -0.7, 0.8), (0.8, 0.7, 1.4))
     triangles = [refined(body, times), refined(cabin, times)]
     parts = np.repeat([0, 1], [len(t) for t in triangles]).astype(np.int32)
     return pe.Vehicle(np.concatenate(triangles), parts, ("body", "cabin"))

@@ -10,8 +10,10 @@ def is_watertight(corners):
     """
     points = np.ascontiguousarray(corners.reshape(-1, 3), np.float32) + np.float32(0.0)  # no -0
     _, index = np.unique(points.view("V12").ravel(), return_inverse=True)
-    a, b = index.reshape(-1, 3), np.roll(index.reshape(-1, 3), -1, axis=1)
-    there, back = np.sort((a * len(index) + b).ravel()), np.sort((b * len(index) + a).ravel())
+    a = index.reshape(-1, 3)
+    b = np.roll(index.reshape(-1, 3), -1, axis=1)
+    there = np.sort((a * len(index) + b).ravel())
+    back = np.sort((b * len(index) + a).ravel())
     return bool((np.diff(there) > 0).all() and (there == back).all())
 
 

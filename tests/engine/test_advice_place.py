@@ -22,7 +22,7 @@ def one_beam(position=(0.0, 0.0, 1.25), elevations=(0.0,), max_range=15.0, **opt
 
 
 def ask(sensors, point, vehicle=None, space=SPACE):
-    return advice.ask_place(pe.Rig(sensors), space, pe.Prior.uniform(), vehicle, point)
+    return advice.ask_place(pe.Rig(sensors), space, pe.Prior.uniform(), vehicle, point=point)
 
 
 def test_a_point_is_in_the_voxel_that_holds_it():
@@ -96,7 +96,9 @@ def test_density_is_relative_to_the_mean():
     """Twice as much ahead of x = 0: 4/3 there, 2/3 behind."""
     prior = pe.Prior.uniform([pe.Focus(2.0, x=(0.0, math.inf))])
     rig = pe.Rig([one_beam()])
-    ahead, behind = (advice.ask_place(rig, SPACE, prior, None, (x, 0)) for x in (5, -5))
+    ahead, behind = (
+        advice.ask_place(rig, SPACE, prior, vehicle=None, point=(x, 0)) for x in (5, -5)
+    )
     assert ahead.density == pytest.approx(4 / 3) and behind.density == pytest.approx(2 / 3)
 
 
@@ -116,11 +118,14 @@ def random_rig(rng):
 
 @pytest.mark.parametrize("seed", range(tries(3, 6)))
 def test_m_is_the_definition_s_and_ap_and_h_are_the_equations(seed):
-    rng, car, model = np.random.default_rng(seed), shapes.box_car(), pe.PerceptionModel()
+    rng = np.random.default_rng(seed)
+    car = shapes.box_car()
+    model = pe.PerceptionModel()
     rig = random_rig(rng)
     for point in rng.uniform((-19, -9, 0), (19, 9, 4), (12, 3)):
-        place = advice.ask_place(rig, SPACE, pe.Prior.road(), car, point)
-        center, precisions = np.array([place.center]), {}
+        place = advice.ask_place(rig, SPACE, pe.Prior.road(), car, point=point)
+        center = np.array([place.center])
+        precisions = {}
         assert np.abs(center - point).max() <= SPACE.interval / 2 + 1e-9
         for sensor, own in zip(rig, place.sensors, strict=True):
             assert own.m == pe.measure(sensor, center, SPACE.interval, car)[0]
@@ -137,9 +142,12 @@ def test_m_is_the_definition_s_and_ap_and_h_are_the_equations(seed):
 
 
 def test_what_hides_from_a_camera_is_what_brute_force_meets():
-    car, rng, tried = shapes.box_car(), np.random.default_rng(1), 0
+    car = shapes.box_car()
+    rng = np.random.default_rng(1)
+    tried = 0
     for _ in range(80):
-        point, position = rng.uniform((-9, -9, 0), (9, 9, 1)), rng.uniform((-2, -1, 1.5), (2, 1, 2))
+        point = rng.uniform((-9, -9, 0), (9, 9, 1))
+        position = rng.uniform((-2, -1, 1.5), (2, 1, 2))
         yaw = math.degrees(math.atan2(point[1] - position[1], point[0] - position[0]))
         place = ask([shapes.camera(90.0, position, (0, 20, yaw))], point, car)
         if place.sensors[0].reason == "occluded":
@@ -152,9 +160,12 @@ def test_what_hides_from_a_camera_is_what_brute_force_meets():
 
 
 def test_what_hides_from_a_lidar_is_what_most_of_its_beams_meet():
-    car, rng, tried = shapes.box_car(), np.random.default_rng(2), 0
+    car = shapes.box_car()
+    rng = np.random.default_rng(2)
+    tried = 0
     for _ in range(40):
-        point, position = rng.uniform((-6, -6, 0), (6, 6, 1)), rng.uniform((-2, -1, 1.5), (2, 1, 2))
+        point = rng.uniform((-6, -6, 0), (6, 6, 1))
+        position = rng.uniform((-2, -1, 1.5), (2, 1, 2))
         sensor = shapes.lidar_on_roof(shapes.small_lidar(16, 180), position)
         place = ask([sensor], point, car)
         if place.sensors[0].reason == "occluded":
@@ -170,7 +181,8 @@ def test_what_hides_from_a_lidar_is_what_most_of_its_beams_meet():
 
 def beams_near(sensor, center):
     """Beams that pass the voxel's centre within its circumscribed sphere: no other may meet it."""
-    offset, beams = np.array(center) - sensor.pose.position, sensor.model.directions
+    offset = np.array(center) - sensor.pose.position
+    beams = sensor.model.directions
     aside = np.linalg.norm(np.cross(beams, offset), axis=1)
     return beams[(aside <= SPACE.interval * math.sqrt(3.0) / 2.0 + 1e-9) & (beams @ offset > -0.5)]
 

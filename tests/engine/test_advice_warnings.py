@@ -11,11 +11,24 @@ from pe_tools import advice
 from pe_tools.wording import warning_text
 from tests.engine import shapes
 
-SPACE, PRIOR = pe.PerceptionSpace(), pe.Prior.uniform()
+SPACE = pe.PerceptionSpace()
+PRIOR = pe.Prior.uniform()
 STUDIES = sorted((Path(pe.__file__).parent.parent / "blend_assets/experiments").glob("*.toml"))
 CAR = shapes.box_car()
 """Its body ends at x = 2.3; its cabin, from x = -1.5 to 0.8, at z = 1.4."""
 ROOF = shapes.lidar_on_roof(shapes.small_lidar(), (-0.4, 0.0, 1.7))
+LEFT = [(0, -1, 0), (1, 0, 0), (0, 0, 1)]
+"""Turned by 90 degrees: what was ahead is on the left."""
+RIGHT = [(0, 1, 0), (-1, 0, 0), (0, 0, 1)]
+BACK = [(-1, 0, 0), (0, -1, 0), (0, 0, 1)]
+TAIL = [(0, 0, -1), (0, 1, 0), (1, 0, 0)]
+SIDE = [(1, 0, 0), (0, 0, -1), (0, 1, 0)]
+GLAZED = pe.Vehicle(CAR.triangles, CAR.parts, CAR.part_names, glass=("cabin",))
+WALL = pe.Vehicle(shapes.box((1, -1, 0), (1.1, 1, 2)))
+LYING = {"on_tail", "on_side", "on_roof"}
+FLOOR = ("floor", (-10, -10, -0.01), (10, 10, 0.0))
+STUDIO = ("studio", (-20, -20, -0.1), (20, 20, 15))
+BACKDROP = ("backdrop", (-10, 9, 0), (10, 9.1, 6))
 
 
 def told(vehicle, *sensors):
@@ -54,7 +67,8 @@ def with_parts(*boxes, vehicle=None):
     triangles = [shapes.box(low, high) for _, low, high in boxes]
     parts = np.repeat(np.arange(len(boxes)), 12)
     if vehicle is not None:
-        names, triangles = [*vehicle.part_names, *names], [vehicle.triangles, *triangles]
+        names = [*vehicle.part_names, *names]
+        triangles = [vehicle.triangles, *triangles]
         parts = np.concatenate([vehicle.parts, parts + len(vehicle.part_names)])
     return pe.Vehicle(np.concatenate(triangles), parts.astype(np.int32), names)
 
@@ -84,14 +98,6 @@ def sedan(vehicles):
     return vehicles[0]
 
 
-LEFT = [(0, -1, 0), (1, 0, 0), (0, 0, 1)]
-"""Turned by 90 degrees: what was ahead is on the left."""
-RIGHT = [(0, 1, 0), (-1, 0, 0), (0, 0, 1)]
-BACK = [(-1, 0, 0), (0, -1, 0), (0, 0, 1)]
-TAIL = [(0, 0, -1), (0, 1, 0), (1, 0, 0)]
-SIDE = [(1, 0, 0), (0, 0, -1), (0, 1, 0)]
-
-
 def test_the_paper_s_placements_and_a_lidar_on_the_roof_give_no_warning():
     studies = [pe.load_study(path) for path in STUDIES]
     assert studies and not [s for s in studies if advice.warnings(s.rig, s.vehicle, s.space, PRIOR)]
@@ -101,8 +107,6 @@ def test_the_paper_s_placements_and_a_lidar_on_the_roof_give_no_warning():
 OPEN = open_below(CAR)
 INNER = moved(CAR, scale=0.98, shift=(0, 0, 0.01))
 DOUBLE = pe.Vehicle(np.concatenate([CAR.triangles, INNER.triangles]))
-GLAZED = pe.Vehicle(CAR.triangles, CAR.parts, CAR.part_names, glass=("cabin",))
-WALL = pe.Vehicle(shapes.box((1, -1, 0), (1.1, 1, 2)))
 MOUNTED = [
     ("inside", CAR, [lidar_at(1.5, 0.0, 0.5)], True),
     ("inside", OPEN, [lidar_at(1.5, 0.0, 0.5)], True),
@@ -125,7 +129,8 @@ MOUNTED = [
     ("housing", CAR, [preset_at(0.0, 1.41, "HDL-64E")], False),  # of no known size
     ("upside_down", CAR, [camera_at(0, 0, 1.6, rotation=(180, 0, 0))], True),
     (
-        *("upside_down", CAR),
+        "upside_down",
+        CAR,
         [camera_at(0, 0, 1.6, rotation=r) for r in ((90, 0, 0), (0, 60, 0), (0, -80, 20))],
         False,
     ),
@@ -175,7 +180,8 @@ def test_warnings_of_sensors_have_the_figures_and_the_part():
 
 
 def turn_by(degrees):
-    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    c = math.cos(math.radians(degrees))
+    s = math.sin(math.radians(degrees))
     return [(c, -s, 0), (s, c, 0), (0, 0, 1)]
 
 
@@ -204,12 +210,10 @@ def test_names_are_taken_by_their_words():
     assert (None, "faces") not in told(detail)
 
 
-LYING = {"on_tail", "on_side", "on_roof"}
-
-
 def turned_by(vehicle, amount):
     """Return a vehicle turned about x, then about y [deg], and put on the ground."""
-    (sx, sy), (cx, cy) = np.sin(np.radians(amount[:2])), np.cos(np.radians(amount[:2]))
+    sx, sy = np.sin(np.radians(amount[:2]))
+    cx, cy = np.cos(np.radians(amount[:2]))
     about_x = np.array([(1, 0, 0), (0, cx, -sx), (0, sx, cx)])
     about_y = np.array([(cy, 0, sy), (0, 1, 0), (-sy, 0, cy)])
     turned = moved(vehicle, about_y @ about_x)
@@ -218,7 +222,8 @@ def turned_by(vehicle, amount):
 
 def test_the_fix_of_a_lying_vehicle_puts_its_wheels_down(vehicles):
     """However it lies: on tail or nose, on either side, on its roof, and along y as well."""
-    nose, other = -np.array(TAIL) * [[1], [-1], [1]], np.array(SIDE) * [[1], [-1], [-1]]
+    nose = -np.array(TAIL) * [[1], [-1], [1]]
+    other = np.array(SIDE) * [[1], [-1], [-1]]
     ways = [(TAIL, "on_tail"), (nose, "on_tail"), (SIDE, "on_side"), (other, "on_side")]
     still_lying = []
     for vehicle in vehicles:
@@ -293,11 +298,6 @@ def test_sizes_that_are_no_vehicle():
     assert (None, "size") in told(pe.Vehicle(np.zeros((1, 3, 3))))
     for fine in ((0.9, 0.5, 0.8), (18.75, 2.5, 3.2), (15.1, 9.5, 7.7)):
         assert (None, "size") not in told(of_size(*fine)), fine
-
-
-FLOOR = ("floor", (-10, -10, -0.01), (10, 10, 0.0))
-STUDIO = ("studio", (-20, -20, -0.1), (20, 20, 15))
-BACKDROP = ("backdrop", (-10, 9, 0), (10, 9.1, 6))
 
 
 def test_a_part_as_large_as_a_room(sedan):

@@ -19,20 +19,32 @@ from pe_tools.advice.summary import outlook_words
 from pe_tools.cli.terminal import figure_lines
 from tests.engine import shapes
 
+INSIDE = "camera in the boot"
+RIG = pe.Rig([shapes.lidar_on_roof(), dataclasses.replace(shapes.camera(60.0), name=INSIDE)])
+
 
 def part(entropy, coverage, share=0.5):
     return pe.PartScore(entropy, coverage, share)
 
 
 def score(entropy=3.0, coverage=0.854, zones=None, classes=None, sensors=None):
-    return pe.Score(entropy, coverage, 0.0, classes or {}, zones or {}, sensors or {}, 1000)
+    return pe.Score(
+        entropy,
+        coverage,
+        stderr=0.0,
+        per_class=classes or {},
+        per_zone=zones or {},
+        per_sensor=sensors or {},
+        voxels=1000,
+    )
 
 
 def test_a_loss_is_reported_where_it_costs_most():
     """Two LiDARs see all round, a camera looks ahead: without it, ahead is what gets worse."""
     roof = shapes.lidar_on_roof(shapes.small_lidar(32, 360))
     camera = shapes.camera(60.0, (1.9, 0.0, 0.9))
-    rig, space = pe.Rig([roof, camera]), shapes.small_space()
+    rig = pe.Rig([roof, camera])
+    space = shapes.small_space()
     study = pe.Study(rig, shapes.box_car(), space)
     seen = advice.outlook(study.sight(), rig)
     found = study.evaluator(4096).score(rig)
@@ -47,7 +59,9 @@ def test_a_loss_is_reported_where_it_costs_most():
 def test_pixels_are_looked_for_where_no_score_counts_them():
     """A level camera over the bonnet loses what is below its edge, which is 1.45 m ahead."""
     sensor = shapes.camera(40.0, (0.85, 0.0, 0.95))
-    uncounted = pe.SensorScore(4.0, 0.8, 0.1, 0, 0, {})
+    uncounted = pe.SensorScore(
+        entropy=4.0, coverage=0.8, lost=0.1, beams=0, occluded=0, occluded_by={}
+    )
     shares = advice.occluded_shares(sensor, uncounted, shapes.box_car())
     edge = sensor.model.focal_px * 0.05 / 1.45  # pixels below the middle where the bonnet ends
     assert shares == {"body": pytest.approx((540 - edge) / 1080, abs=0.02)}
@@ -62,10 +76,14 @@ def test_side_by_side():
     )
     rows = {(r.group, r.name, r.measure): r for r in advice.compare({"a": first, "b": second})}
     assert list(rows) == [
-        *(("rig", "", "entropy"), ("rig", "", "coverage")),
-        *(("zone", "front", "entropy"), ("zone", "front", "coverage")),
-        *(("zone", "far", "entropy"), ("zone", "far", "coverage")),
-        *(("class", "car", "entropy"), ("class", "car", "coverage")),
+        ("rig", "", "entropy"),
+        ("rig", "", "coverage"),
+        ("zone", "front", "entropy"),
+        ("zone", "front", "coverage"),
+        ("zone", "far", "entropy"),
+        ("zone", "far", "coverage"),
+        ("class", "car", "entropy"),
+        ("class", "car", "coverage"),
     ]
     entropy = rows["rig", "", "entropy"]
     assert (entropy.values, entropy.differences) == ((3.0, 2.5), (0.0, -0.5))
@@ -93,14 +111,15 @@ def test_warnings_are_in_the_result_and_below_the_summary():
     assert last == "warning: roof: it is inside the body and sees next to nothing"
 
 
-INSIDE = "camera in the boot"
-
-
 def sensor_score(coverage, stopped=0, beams=1000):
-    return pe.SensorScore(4.0, coverage, 0.1, beams, stopped, {"body": stopped} if stopped else {})
-
-
-RIG = pe.Rig([shapes.lidar_on_roof(), dataclasses.replace(shapes.camera(60.0), name=INSIDE)])
+    return pe.SensorScore(
+        entropy=4.0,
+        coverage=coverage,
+        lost=0.1,
+        beams=beams,
+        occluded=stopped,
+        occluded_by={"body": stopped} if stopped else {},
+    )
 
 
 @pytest.mark.parametrize(
@@ -109,11 +128,17 @@ RIG = pe.Rig([shapes.lidar_on_roof(), dataclasses.replace(shapes.camera(60.0), n
         (500, 0.5, (), 0.0, ()),  # half is the limit
         (860, 0.02, (), 0.0, (f"{INSIDE} (86% of its picture occluded) is mostly occluded",)),
         (
-            *(1000, 0.0, ("inside",), 0.0),
+            1000,
+            0.0,
+            ("inside",),
+            0.0,
             (f"{INSIDE} (inside the body, 100% of its picture occluded) sees nothing",),
         ),
         (
-            *(1000, 0.0, (), 0.02),
+            1000,
+            0.0,
+            (),
+            0.02,
             (f"{INSIDE} (100% of its picture occluded) sees nothing, or next to it",),
         ),
         (0, 0.0, (), 0.0, (f"{INSIDE} (no object is expected where it looks) sees nothing",)),
@@ -122,7 +147,15 @@ RIG = pe.Rig([shapes.lidar_on_roof(), dataclasses.replace(shapes.camera(60.0), n
 )
 def test_what_is_reported_of_it(stopped, coverage, warned, stderr, lines):
     own = {"roof": sensor_score(0.6), INSIDE: sensor_score(coverage, stopped)}
-    score = pe.Score(2.0, 0.6, stderr, {}, {}, own, 9)
+    score = pe.Score(
+        entropy=2.0,
+        coverage=0.6,
+        stderr=stderr,
+        per_class={},
+        per_zone={},
+        per_sensor=own,
+        voxels=9,
+    )
     warnings = [pt.Advice(INSIDE, code) for code in warned]
     assert advice.hidden_words(advice.hidden_sensors(RIG, score, warnings)) == lines
     assert advice.rig_words(score, None, RIG, warnings)[: len(lines)] == lines
@@ -154,7 +187,8 @@ def study():
 def test_they_are_those_of_sight(study):
     look = study.sight()
     found = advice.KeyFigures.of_rig(look, study.rig)
-    reach, blind = look.reach(study.rig, "car"), look.blind(study.rig, 0.5)
+    reach = look.reach(study.rig, "car")
+    blind = look.blind(study.rig, 0.5)
     assert 0.0 < found.values["blind_ground"] == pytest.approx(blind.area, abs=1e-9) and (
         found.height,
         found.within,
@@ -170,19 +204,22 @@ def in_traffic(near):
     """Key figures of a rig with this AP near the vehicle."""
     rings = {"near": near, "far": (0.33, 0.002)}
     values = {"ap_near": near[0], "ap_far": 0.33, "traffic_ap": 0.4, "blind_ground": 1.0}
-    return advice.KeyFigures(TrafficAp(0.4, 0.01, 8, rings), (), 0.5, 10.0, values)
+    return advice.KeyFigures(
+        TrafficAp(0.4, 0.01, 8, rings), sectors=(), height=0.5, within=10.0, values=values
+    )
 
 
 def test_a_move_is_told_with_its_gain_and_its_error(study):
     """The largest step and turn of each sensor that moved; AP by distance of start and result."""
     x, y, z = study.rig["roof"].pose.position
     up = study.rig.with_poses([pe.Pose.from_degrees((x - 0.03, y, z + 0.08), (0.0, 0.0, 12.0))])
-    told = in_traffic((0.41, 0.01)), in_traffic((0.474, 0.0101))
-    assert advice.gain_sentence(study.rig, up, *told) == (
+    start = in_traffic((0.41, 0.01))
+    result = in_traffic((0.474, 0.0101))
+    assert advice.gain_sentence(study.rig, up, start, result) == (
         "roof 8 cm up and turned 12 deg: expected AP in traffic near 0.41 to 0.47, "
         "far 0.33 to 0.33 (+- 0.02)"
     )
-    assert advice.gain_sentence(study.rig, study.rig, *told) == ""
+    assert advice.gain_sentence(study.rig, study.rig, start, result) == ""
 
 
 def test_key_figures_are_told_where_they_exist_and_to_where_the_space_ends():
@@ -208,7 +245,14 @@ def reach(by_degrees, name="pedestrian", limit=80.0):
     """A reach along eight bearings: what is not named is 0."""
     degrees = [0, 45, 90, 135, 180, 225, 270, 315]
     distance = np.array([float(by_degrees.get(d, 0.0)) for d in degrees])
-    return Reach(name, 0.5, np.radians(degrees), distance, {}, np.full(8, limit))
+    return Reach(
+        name,
+        ap=0.5,
+        bearings=np.radians(degrees),
+        distance=distance,
+        per_sensor={},
+        limit=np.full(8, limit),
+    )
 
 
 def blind(**zone):
@@ -243,7 +287,8 @@ def test_an_outlook_is_sight_s():
         shapes.small_space(),
     )
     sight = study.sight()
-    found, car = advice.outlook(sight, study.rig), advice.outlook(sight, study.rig, "car")
+    found = advice.outlook(sight, study.rig)
+    car = advice.outlook(sight, study.rig, "car")
     assert found.reach.class_name == "pedestrian" and car.reach.class_name == "car"
     assert found.expected_ap == sight.expected_ap(study.rig)
     assert np.array_equal(car.reach.distance, sight.reach(study.rig, "car").distance)
@@ -255,7 +300,8 @@ def test_an_outlook_is_sight_s():
 
 def test_shares_by_number_and_by_sensor_by_hand():
     """One camera looks ahead, one behind, one as the first: none is seen by all three."""
-    space, prior = shapes.small_space(), pe.Prior.uniform()
+    space = shapes.small_space()
+    prior = pe.Prior.uniform()
     ahead, again, behind = (
         shapes.camera(90.0, (0.0, 0.0, 1.5), (0, 0, yaw), name)
         for yaw, name in ((0, "ahead"), (0, "again"), (180, "behind"))
@@ -292,9 +338,9 @@ def test_figures_that_prefer_different_rigs_are_told():
 
     def told(widths):
         rows = [
-            advice.ComparedRow("rig", "", "entropy", (1.0, 2.0), none, 2.0),
-            advice.ComparedRow(advice.TRAFFIC, "", "ap", (0.6, 0.5), none, 2.0),
-            advice.ComparedRow("rig", "0.5 m tall, at 20 m", "blind_sector", widths, none),
+            advice.ComparedRow("rig", "", "entropy", (1.0, 2.0), errors=none, factor=2.0),
+            advice.ComparedRow(advice.TRAFFIC, "", "ap", (0.6, 0.5), errors=none, factor=2.0),
+            advice.ComparedRow("rig", "0.5 m tall, at 20 m", "blind_sector", widths, errors=none),
         ]
         return advice.disagreement(["one", "other"], rows)
 

@@ -21,25 +21,7 @@ MODEL = {"kind": "lidar", "azimuth_step_deg": 90, "max_range_m": 100}
 
 HESAI = "Laser id,Elevation,Azimuth\n1,14.985,0.186\n2,13.283,0.185\n3,-1.5,-3.13\n"
 HESAI_DEG = [(14.985, -0.186), (13.283, -0.185), (-1.5, 3.13)]
-
-
-@pytest.fixture
-def write(tmp_path):
-    def to_file(text, name="angles.txt"):
-        path = tmp_path / name
-        path.write_bytes(text if isinstance(text, bytes) else text.encode())
-        return path
-
-    return to_file
-
-
-def degrees(path):
-    return [(c.elevation_deg, c.azimuth_offset_deg) for c in read_angles(path)]
-
-
 PLAIN = [(-15.0, 1.5), (0.0, 0.0), (2.25, -3.0)]
-
-
 COLUMNS = [
     "elevation,azimuth_offset\n-15,1.5\n0,0\n2.25,-3\n",
     "Vertical (deg)\tHorizontal [deg]\n-15\t1.5\n0\t0\n2.25\t-3\n",
@@ -50,12 +32,6 @@ COLUMNS = [
     "ring elevation azimuth_deg\n1 -15 1.5\n3 2.25 -3\n2 0 0\n",
     "sep=;\nelevation;azimuth_offset\n-15;1.5\n0;0\n2.25;-3\n".encode("utf-16"),
 ]
-
-
-def test_columns_are_elevation_and_counter_clockwise_offset(write):
-    assert [text for text in COLUMNS if degrees(write(text)) != PLAIN] == []
-
-
 HESAI_FILES = [
     HESAI.replace("\n", "\r\n"),
     "EEFF,1,1\n" + HESAI,
@@ -63,20 +39,6 @@ HESAI_FILES = [
     HESAI + "0" * 64,
     "Channel,Elevation,Azimuth,Distance\n3,-1.5,-3.13,0\n1,14.985,0.186,0\n2,13.283,0.185,0",
 ]
-
-
-def test_hesai_offsets_are_clockwise_and_are_turned(write):
-    assert [text for text in (HESAI, *HESAI_FILES) if degrees(write(text)) != HESAI_DEG] == []
-
-
-def test_hesai_and_the_catalogue_agree_on_the_sign(write):
-    """The OT128's first two lines in its maker's file are those of HESAI."""
-    ours = catalog.load("Hesai OT128 (Pandar128E4X)")
-    read = degrees(write(HESAI))[:2]
-    assert np.degrees(ours.elevations[:2]) == pytest.approx([e for e, _ in read])
-    assert np.degrees(ours.azimuth_offsets[:2]) == pytest.approx([a for _, a in read])
-
-
 MAKERS = {
     "Hesai Pandar64": (14.882, 1.042),
     "Ouster OS0-128 nominal": (46.2, -11.15),
@@ -88,21 +50,6 @@ Hesai, pandarGeneral_internal.cc: offset -1.042, x = d sin(azimuth), y = d cos(a
 Ouster, xyzlut.cpp: beam_azimuth_angles 11.15, encoder (counter-clockwise) - beam azimuth.
 RoboSense, rawdata.cc: horizontal angle -6.9439 is added, y = -d sin(azimuth), clockwise.
 Velodyne, rawdata.cc: rot_correction 0.0349066 rad is subtracted from a clockwise azimuth."""
-
-
-def test_each_maker_s_azimuths_have_the_sign_of_its_driver():
-    for name, (elevation, offset) in MAKERS.items():
-        lidar = catalog.load(name)
-        row = np.argmin(np.abs(np.degrees(lidar.elevations) - elevation))
-        assert np.degrees(lidar.elevations[row]) == pytest.approx(elevation, abs=1e-6), name
-        assert np.degrees(lidar.azimuth_offsets[row]) == pytest.approx(offset, abs=1e-6), name
-    makers = {catalog.entries()[name].maker for name in MAKERS}
-    with_offsets = {
-        entry.maker for entry in catalog.entries().values() if "azimuth_offsets_deg" in entry.table
-    }
-    assert with_offsets == makers
-
-
 ANGLES = {
     "beam_altitude_angles": [46.2, 45.12, 44.36],
     "beam_azimuth_angles": [11.15, 3.677, -3.639],
@@ -118,41 +65,6 @@ lasers:
   vert_correction: 0.0352698266506195
 num_lasers: 2
 """
-
-
-def test_ouster_s_metadata_has_the_beams_of_the_preset(write):
-    ours = catalog.load("Ouster OS0-128 nominal")
-    for text in (OUSTER, OUSTER_2):
-        read = degrees(write(text))
-        assert np.degrees(ours.elevations[:3]) == pytest.approx([e for e, _ in read])
-        assert np.degrees(ours.azimuth_offsets[:3]) == pytest.approx([a for _, a in read])
-
-
-def test_velodyne_s_calibration_has_the_beams_of_the_preset(write):
-    """Laser 0 is laser 29 of the driver's 64e_utexas.yaml, the first of the preset."""
-    ours, read = catalog.load("Velodyne HDL-64E (UTexas unit)"), degrees(write(VELODYNE))
-    first = np.degrees([ours.elevations[0], ours.azimuth_offsets[0]])
-    assert read[0] == pytest.approx(first, abs=1e-3)
-    assert read[1] == pytest.approx((math.degrees(-0.1249), -4.0), abs=1e-5)
-
-
-def study(angles, **more):
-    model = MODEL | {"azimuth_step_deg": 0.2, "angles": angles} | more
-    return {"sensor": [{"name": "own", "model": model, "position": [0, 0, 1.8]}]}
-
-
-def test_a_saved_study_stands_alone_with_the_same_beams_to_the_bit(write, tmp_path):
-    folder = write("-15 1.5\n0.1234567890123 7e-11\n", "unit.dat").parent
-    first = study_from_dict(study("unit.dat"), folder=folder)
-    (tmp_path / "elsewhere").mkdir()
-    pt.export_study(first, tmp_path / "elsewhere" / "copy.toml")
-    (folder / "unit.dat").unlink()
-    copy = pe.load_study(tmp_path / "elsewhere" / "copy.toml")
-    assert np.array_equal(copy.rig["own"].model.directions, first.rig["own"].model.directions)
-    assert study_to_dict(copy) == study_to_dict(first)
-    assert "angles" not in study_to_dict(first)["sensor"][0]["model"]
-
-
 BAD = [
     ("file", ""),
     ("file", "elevation,azimuth\n"),
@@ -191,6 +103,83 @@ BAD = [
     ("lasers[1]", VELODYNE.replace("laser_id: 0", "laser_id: 1")),
     ("channel 0", VELODYNE.replace("laser_id: 0", "laser_id: 2")),
 ]
+
+
+@pytest.fixture
+def write(tmp_path):
+    def to_file(text, name="angles.txt"):
+        path = tmp_path / name
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return path
+
+    return to_file
+
+
+def degrees(path):
+    return [(c.elevation_deg, c.azimuth_offset_deg) for c in read_angles(path)]
+
+
+def test_columns_are_elevation_and_counter_clockwise_offset(write):
+    assert [text for text in COLUMNS if degrees(write(text)) != PLAIN] == []
+
+
+def test_hesai_offsets_are_clockwise_and_are_turned(write):
+    assert [text for text in (HESAI, *HESAI_FILES) if degrees(write(text)) != HESAI_DEG] == []
+
+
+def test_hesai_and_the_catalogue_agree_on_the_sign(write):
+    """The OT128's first two lines in its maker's file are those of HESAI."""
+    ours = catalog.load("Hesai OT128 (Pandar128E4X)")
+    read = degrees(write(HESAI))[:2]
+    assert np.degrees(ours.elevations[:2]) == pytest.approx([e for e, _ in read])
+    assert np.degrees(ours.azimuth_offsets[:2]) == pytest.approx([a for _, a in read])
+
+
+def test_each_maker_s_azimuths_have_the_sign_of_its_driver():
+    for name, (elevation, offset) in MAKERS.items():
+        lidar = catalog.load(name)
+        row = np.argmin(np.abs(np.degrees(lidar.elevations) - elevation))
+        assert np.degrees(lidar.elevations[row]) == pytest.approx(elevation, abs=1e-6), name
+        assert np.degrees(lidar.azimuth_offsets[row]) == pytest.approx(offset, abs=1e-6), name
+    makers = {catalog.entries()[name].maker for name in MAKERS}
+    with_offsets = {
+        entry.maker for entry in catalog.entries().values() if "azimuth_offsets_deg" in entry.table
+    }
+    assert with_offsets == makers
+
+
+def test_ouster_s_metadata_has_the_beams_of_the_preset(write):
+    ours = catalog.load("Ouster OS0-128 nominal")
+    for text in (OUSTER, OUSTER_2):
+        read = degrees(write(text))
+        assert np.degrees(ours.elevations[:3]) == pytest.approx([e for e, _ in read])
+        assert np.degrees(ours.azimuth_offsets[:3]) == pytest.approx([a for _, a in read])
+
+
+def test_velodyne_s_calibration_has_the_beams_of_the_preset(write):
+    """Laser 0 is laser 29 of the driver's 64e_utexas.yaml, the first of the preset."""
+    ours = catalog.load("Velodyne HDL-64E (UTexas unit)")
+    read = degrees(write(VELODYNE))
+    first = np.degrees([ours.elevations[0], ours.azimuth_offsets[0]])
+    assert read[0] == pytest.approx(first, abs=1e-3)
+    assert read[1] == pytest.approx((math.degrees(-0.1249), -4.0), abs=1e-5)
+
+
+def study(angles, **more):
+    model = MODEL | {"azimuth_step_deg": 0.2, "angles": angles} | more
+    return {"sensor": [{"name": "own", "model": model, "position": [0, 0, 1.8]}]}
+
+
+def test_a_saved_study_stands_alone_with_the_same_beams_to_the_bit(write, tmp_path):
+    folder = write("-15 1.5\n0.1234567890123 7e-11\n", "unit.dat").parent
+    first = study_from_dict(study("unit.dat"), folder=folder)
+    (tmp_path / "elsewhere").mkdir()
+    pt.export_study(first, tmp_path / "elsewhere" / "copy.toml")
+    (folder / "unit.dat").unlink()
+    copy = pe.load_study(tmp_path / "elsewhere" / "copy.toml")
+    assert np.array_equal(copy.rig["own"].model.directions, first.rig["own"].model.directions)
+    assert study_to_dict(copy) == study_to_dict(first)
+    assert "angles" not in study_to_dict(first)["sensor"][0]["model"]
 
 
 def test_bad_files_are_refused_by_their_line(write):

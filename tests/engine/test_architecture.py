@@ -30,12 +30,28 @@ ROOMS = {
         "motion": {"base", "metric", "scene", "sensors", "scoring"},
         "search": {"base", "geometry", "scene", "sensors", "scoring"},
         "study": {
-            *("base", "metric", "geometry", "scene", "prior", "sensors", "catalog"),
-            *("scoring", "motion", "search"),
+            "base",
+            "metric",
+            "geometry",
+            "scene",
+            "prior",
+            "sensors",
+            "catalog",
+            "scoring",
+            "motion",
+            "search",
         },
         "public": {
-            *("version", "base", "metric", "scene", "prior", "sensors", "catalog", "scoring"),
-            *("search", "study"),
+            "version",
+            "base",
+            "metric",
+            "scene",
+            "prior",
+            "sensors",
+            "catalog",
+            "scoring",
+            "search",
+            "study",
         },
         "__main__": set(),
     },
@@ -49,10 +65,7 @@ ROOMS = {
         "jobs": {"wording", "formats", "advice"},
         "outputs": {"exchange", "graphics"},
         "sweep": {"wording", "jobs"},
-        "cli": {
-            *("wording", "formats", "graphics", "exchange", "advice", "jobs", "outputs"),
-            "sweep",
-        },
+        "cli": {"wording", "formats", "graphics", "exchange", "advice", "jobs", "outputs", "sweep"},
         "page": {"wording", "formats", "graphics", "advice", "jobs", "cli"},
         "plot": {"graphics"},
         "public": {"formats", "exchange", "advice", "jobs", "plot"},
@@ -238,7 +251,8 @@ def test_a_sensor_s_kind_is_asked_of_the_table_alone():
     own = (*(f"pe_core/sensors/{kind.lower()}/" for kind in kinds), "pe_core/sensors/__init__.py")
     tables = (
         "pe_tools/graphics/",
-        *("pe_tools/page/pictures/sensor_views.py", "pe_tools/exchange/portable_kinds.py"),
+        "pe_tools/page/pictures/sensor_views.py",
+        "pe_tools/exchange/portable_kinds.py",
     )
     offenders = []
     for name, path in files(*ROOMS).items():

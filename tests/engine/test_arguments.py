@@ -10,7 +10,9 @@ from tests.engine import shapes
 SPACE = pe.PerceptionSpace((-10, 10), (-6, 6), (0, 2), 0.5)
 EYE = pe.Sensor("eye", pe.catalog.load("Camera 60 deg"), pe.Pose((1.0, 0.0, 1.5)))
 TOP = pe.Sensor("top", pe.catalog.load("Velodyne VLP-16 Puck"), pe.Pose((0.0, 0.0, 1.9)))
-RIG, CAR, PRIOR = pe.Rig([TOP, EYE]), shapes.box_car(), pe.Prior.road()
+RIG = pe.Rig([TOP, EYE])
+CAR = shapes.box_car()
+PRIOR = pe.Prior.road()
 STUDY = pe.Study(RIG, CAR, SPACE, PRIOR, samples=1024)
 BOXES = pe.Boxes.of([("car", 5.0, 0.0, 0.75, 4.5, 1.8, 1.5, 0.0)])
 CALLS = (
@@ -35,6 +37,8 @@ CALLS = (
     (pt.plot.beams, {"study": STUDY, "sensor": TOP}),
 )
 WRONG = ("x", 3, ["x"], object(), EYE)
+COLUMNS = ("class", "x", "y", "z", "length", "width", "height", "yaw")
+ROWS = [("car", 5.0, 1.0, 0.75, 4.5, 1.8, 1.5, 0.3), ("cone", -4.0, 2.0, 0.3, 0.4, 0.4, 0.6, 0.0)]
 
 
 @pytest.mark.parametrize(("call", "given"), CALLS, ids=lambda each: getattr(each, "__name__", ""))
@@ -62,10 +66,6 @@ def test_the_name_of_a_prior_alone_is_refused_and_says_what_makes_one(model):
 def test_beams_are_those_of_a_lidar():
     with pytest.raises(pe.InputError, match="camera"):
         pt.plot.beams(STUDY, "eye")
-
-
-COLUMNS = ("class", "x", "y", "z", "length", "width", "height", "yaw")
-ROWS = [("car", 5.0, 1.0, 0.75, 4.5, 1.8, 1.5, 0.3), ("cone", -4.0, 2.0, 0.3, 0.4, 0.4, 0.6, 0.0)]
 
 
 def test_boxes_are_the_same_from_every_table():

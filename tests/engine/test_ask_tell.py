@@ -45,7 +45,7 @@ def test_a_run_is_the_search_of_optimize(method):
                 one.rig,
                 one.search_space(),
                 one.search.seed,
-                schedule,
+                schedule=schedule,
                 method=method,
                 evaluations=one.search.evaluations,
                 executor=pool,

@@ -9,6 +9,8 @@ import pe_core as pe
 from pe_core.geometry.poses import rpy_from_matrix
 from tests.engine import shapes
 
+MATRIX = np.eye(4)
+
 
 def test_positive_pitch_is_nose_down_and_positive_yaw_turns_left():
     forward = pe.Pose.from_degrees((0, 0, 0), (0, 10, 0)).ground_from_sensor[:, 0]
@@ -50,7 +52,6 @@ def test_a_pose_is_the_same_from_a_matrix_and_from_a_quaternion():
             assert np.allclose(back.matrix, pose.matrix, atol=1e-5 if given is single else 1e-12)
 
 
-MATRIX = np.eye(4)
 MATRIX[:3, 3] = (1.0, 2.0, 3.0)
 
 

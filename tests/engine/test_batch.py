@@ -26,6 +26,26 @@ from tests.limits import HANG_S
 
 CANDIDATES = 7
 ROOM = pe.PerceptionSpace((-8.0, 8.0), (-8.0, 8.0), (0.0, 2.0), 0.5)
+PACKED = """
+import os, shutil, sys
+from pathlib import Path
+here = Path(sys.argv[1])
+shutil.copytree(sys.argv[2], here / "outer" / "addon" / "pe_core", copy_function=os.symlink)
+(here / "outer" / "__init__.py").touch()
+(here / "outer" / "addon" / "__init__.py").write_text("import sys; sys.in_blender")
+sys.in_blender = True
+sys.path.insert(0, str(here))
+from outer.addon.pe_core.search import start_processes
+with start_processes(2) as pool:
+    from outer.addon.pe_core import Pose
+    assert pool.submit(Pose, (1.0, 2.0, 3.0)).result() == Pose((1.0, 2.0, 3.0))
+print("done")
+"""
+"""The engine inside an add-on, which runs in Blender alone; a script that is run by workers never
+ends."""
+POSIX = pytest.mark.skipif(
+    not hasattr(signal, "pthread_sigmask"), reason="signals of POSIX systems"
+)
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +65,8 @@ def evaluator():
 @pytest.fixture(scope="module")
 def rigs():
     """A LiDAR pushed along the roof, and a camera that stays."""
-    lidar, camera = shapes.small_lidar(8, 40), pe.Camera("c", 200, 100, 1.0)
+    lidar = shapes.small_lidar(8, 40)
+    camera = pe.Camera("c", 200, 100, 1.0)
     still = pe.Sensor("ahead", camera, pe.Pose((0.9, 0.0, 1.1)))
     places = [pe.Pose((x / 5.0 - 0.6, 0.0, 1.1)) for x in range(CANDIDATES)]
     return [pe.Rig([pe.Sensor("roof", lidar, pose), still]) for pose in places]
@@ -55,7 +76,9 @@ class Landscape:
     """An objective: how far forward the first sensor is. It notes wherever it is unpacked."""
 
     def __init__(self, folder, deaths=0, error=None):
-        self.folder, self.deaths, self.error = Path(folder), deaths, error
+        self.folder = Path(folder)
+        self.deaths = deaths
+        self.error = error
 
     def __setstate__(self, state):
         vars(self).update(state)
@@ -118,7 +141,9 @@ def test_workers_of_a_cluster_have_an_objective_by_a_plugin(tmp_path, evaluator,
     distributed = pytest.importorskip("distributed")
     local = {"processes": False, "dashboard_address": None, "threads_per_worker": 1}
     with distributed.Client(n_workers=2, **local) as client:
-        executor, calls, objective = client.get_executor(pure=False), [], Landscape(tmp_path)
+        executor = client.get_executor(pure=False)
+        calls = []
+        objective = Landscape(tmp_path)
         submit = executor.submit
         executor.submit = lambda *call: calls.append(call) or submit(*call)
         expected = [objective.entropy(rig) for rig in rigs]
@@ -197,25 +222,6 @@ def test_without_semaphores_there_are_no_processes_and_one_line_says_so(monkeypa
     assert capsys.readouterr().err.count("\n") == 1
 
 
-PACKED = """
-import os, shutil, sys
-from pathlib import Path
-here = Path(sys.argv[1])
-shutil.copytree(sys.argv[2], here / "outer" / "addon" / "pe_core", copy_function=os.symlink)
-(here / "outer" / "__init__.py").touch()
-(here / "outer" / "addon" / "__init__.py").write_text("import sys; sys.in_blender")
-sys.in_blender = True
-sys.path.insert(0, str(here))
-from outer.addon.pe_core.search import start_processes
-with start_processes(2) as pool:
-    from outer.addon.pe_core import Pose
-    assert pool.submit(Pose, (1.0, 2.0, 3.0)).result() == Pose((1.0, 2.0, 3.0))
-print("done")
-"""
-"""The engine inside an add-on, which runs in Blender alone; a script that is run by workers never
-ends."""
-
-
 def test_workers_of_an_engine_packed_into_an_add_on_run_no_add_on(tmp_path):
     script = tmp_path / "script.py"
     script.write_text(PACKED)
@@ -223,11 +229,6 @@ def test_workers_of_an_engine_packed_into_an_add_on_run_no_add_on(tmp_path):
     command = [sys.executable, str(script), *arguments]
     done = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S)
     assert done.stdout == "done\n", done.stderr
-
-
-POSIX = pytest.mark.skipif(
-    not hasattr(signal, "pthread_sigmask"), reason="signals of POSIX systems"
-)
 
 
 class Ended(Exception):
@@ -278,7 +279,8 @@ def kill() -> Iterator[Callable[[], None]]:
 def test_a_handler_raises_after_the_submission_and_the_pool_still_ends(monkeypatch, kill):
     with Processes(1) as processes:
         assert processes.submit(int, "7").result() == 7
-        put, whole = queue.Queue.put, []
+        put = queue.Queue.put
+        whole = []
 
         def put_meanwhile(numbers: queue.Queue, number: int) -> None:
             kill()

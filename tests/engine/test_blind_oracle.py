@@ -27,23 +27,6 @@ PLACES = 80
 SURE_RADIUS = 0.07
 """What is blind lies within `FAR_M` of a hole in which nothing is seen, at least so large."""
 FAR_M = 0.15 + SURE_RADIUS * math.sqrt(2.0)
-
-
-def van():
-    """A box 5 m long, 2 m wide and 2.4 m tall, with a bonnet before it."""
-    body, bonnet = ((-2.5, -1.0, 0.25), (1.6, 1.0, 2.4)), ((1.6, -1.0, 0.25), (2.5, 1.0, 1.1))
-    return pe.Vehicle(np.concatenate([shapes.box(*body), shapes.box(*bonnet)]), clearance=0.0)
-
-
-def from_assets(name):
-    """An example vehicle of few triangles: rays are tested against each of them."""
-    with np.load(ASSETS / f"{name}.npz") as file:
-        few, _ = simplified(pe.Vehicle(file["triangles"]), 1000)
-    a, b, c = few.triangles.transpose(1, 0, 2)
-    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    return pe.Vehicle(few.triangles[area > 1e-9], clearance=0.0)
-
-
 VAN_RIG = [
     shapes.lidar_on_roof(shapes.small_lidar(24, 360), (0.37, 0.21, 2.63), (0.0, 3.0, 11.0), "roof"),
     shapes.camera(100.0, (2.53, 0.0, 0.93), (0.0, 18.0, 0.0), "front"),
@@ -57,6 +40,46 @@ BUS_RIG = [
     shapes.lidar_on_roof(shapes.small_lidar(16, 240), (3.03, 1.01, 0.91), (0.0, 1.2, 0.0), "a"),
     shapes.lidar_on_roof(shapes.small_lidar(16, 240), (-3.03, -1.01, 1.7), (2.0, 0.0, 30.0), "b"),
 ]
+DISC = np.array(
+    [(r * math.cos(a), r * math.sin(a)) for r in (0.0, 0.08, 0.155) for a in np.arange(0, 6.2, 0.5)]
+)
+"""Points of a body from above, a hair wider than it is."""
+DISC_FINE = np.array(
+    [
+        (r * math.cos(a), r * math.sin(a))
+        for r in np.linspace(0, 1, 6)
+        for a in np.arange(0, 6.2, 0.5)
+    ]
+)
+"""Places in a disc of radius 1."""
+BEARINGS = np.arange(0.0, 360.0, 0.5)
+FINE = pe.Lidar("fine", np.radians([-6.0, -4.5, -3.5, -2.5, -1.5, 0.0]), 2400, 60.0)
+"""Its beams are 5 cm apart, 20 m away, so that no gap between them is blind."""
+END_M = FAR_M + 0.01  # The circle is looked up at points 1 cm apart
+SLANTED = {"picture's lower side"}
+"""Cases with an edge that crosses the circle at a slant."""
+
+
+def van():
+    """A box 5 m long, 2 m wide and 2.4 m tall, with a bonnet before it."""
+    return pe.Vehicle(
+        np.concatenate(
+            [
+                shapes.box((-2.5, -1.0, 0.25), (1.6, 1.0, 2.4)),
+                shapes.box((1.6, -1.0, 0.25), (2.5, 1.0, 1.1)),
+            ]
+        ),
+        clearance=0.0,
+    )
+
+
+def from_assets(name):
+    """An example vehicle of few triangles: rays are tested against each of them."""
+    with np.load(ASSETS / f"{name}.npz") as file:
+        few, _ = simplified(pe.Vehicle(file["triangles"]), 1000)
+    a, b, c = few.triangles.transpose(1, 0, 2)
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    return pe.Vehicle(few.triangles[area > 1e-9], clearance=0.0)
 
 
 class LowBeams:
@@ -64,13 +87,18 @@ class LowBeams:
 
     def __init__(self, sensor, height, vehicle, reach=20.0):
         way = sensor.model.directions @ oracle.rotation(*sensor.pose.rpy).T
-        self.start, (x, y, z) = np.array(sensor.pose.position), way.T
+        self.start = np.array(sensor.pose.position)
+        x, y, z = way.T
         with np.errstate(divide="ignore"):
             ends = np.sort([-self.start[2] / z, (height - self.start[2]) / z], axis=0)
-        self.first, self.last = np.maximum(ends[0], 0.0), np.minimum(ends[1], 60.0)
+        self.first = np.maximum(ends[0], 0.0)
+        self.last = np.minimum(ends[1], 60.0)
         low = np.flatnonzero((self.first <= self.last) & (self.first * np.hypot(x, y) < reach))
-        self.way, self.first, self.last = way[low], self.first[low], self.last[low]
-        self.triangles, self.hits = vehicle.triangles, np.full(len(low), np.nan)
+        self.way = way[low]
+        self.first = self.first[low]
+        self.last = self.last[low]
+        self.triangles = vehicle.triangles
+        self.hits = np.full(len(low), np.nan)
 
     def away(self, points):
         """How far each point (N, 2) is from the nearest; beams are cast where it matters."""
@@ -92,12 +120,14 @@ class SeenPoints:
     """What a pinhole camera sees of bodies, point by point."""
 
     def __init__(self, sensor, height, vehicle):
-        self.sensor, self.vehicle = sensor, vehicle
+        self.sensor = sensor
+        self.vehicle = vehicle
         self.heights = np.linspace(0.0, height, 1 + math.ceil(height / 0.1))
 
     def sees(self, points):
         """Whether any point over (N, 2) up to the height is seen."""
-        camera, start = self.sensor.model, np.array(self.sensor.pose.position)
+        camera = self.sensor.model
+        start = np.array(self.sensor.pose.position)
         z = np.broadcast_to(self.heights[:, None, None], (len(self.heights), len(points), 1))
         there = np.concatenate([np.broadcast_to(points, (*z.shape[:2], 2)), z], axis=-1)
         rays = there.reshape(-1, 3) - start
@@ -111,22 +141,6 @@ class SeenPoints:
         seen = np.zeros(len(rays), bool)
         seen[asked] = hits >= distance
         return seen.reshape(len(self.heights), -1).any(axis=0)
-
-
-DISC = np.array(
-    [(r * math.cos(a), r * math.sin(a)) for r in (0.0, 0.08, 0.155) for a in np.arange(0, 6.2, 0.5)]
-)
-"""Points of a body from above, a hair wider than it is."""
-
-
-DISC_FINE = np.array(
-    [
-        (r * math.cos(a), r * math.sin(a))
-        for r in np.linspace(0, 1, 6)
-        for a in np.arange(0, 6.2, 0.5)
-    ]
-)
-"""Places in a disc of radius 1."""
 
 
 class Oracle:
@@ -161,7 +175,8 @@ class BlindMap:
         self.blind = look.blind(rig)
         own = look.own[look.margin : -look.margin, look.margin : -look.margin]
         self.near_own = dilated(own, squares_touching(blind_ground.PARTLY_VISIBLE))
-        self.own, self.cells = own, cells
+        self.own = own
+        self.cells = cells
         assert self.told.area == pytest.approx(self.blind.sum() * blind_ground.STEP_M**2)
 
     def some_places(self, rng, count):
@@ -204,8 +219,10 @@ CASES = {
 @pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case[0]} {case[1]:g} m")
 def test_no_unseen_body_stands_where_nothing_is_reported_and_no_edge_is_far_out(case, monkeypatch):
     monkeypatch.setattr(blind_ground, "MIN_AREA_M2", 0.0)
-    vehicle, rig = CASES[case][0](), pe.Rig(CASES[case][1])
-    height, rng = case[1], np.random.default_rng(7)
+    vehicle = CASES[case][0]()
+    rig = pe.Rig(CASES[case][1])
+    height = case[1]
+    rng = np.random.default_rng(7)
     told = BlindMap(vehicle, rig, height)
     truth = Oracle(rig, height, vehicle)
     centers = told.some_places(rng, PLACES)
@@ -219,12 +236,6 @@ def test_no_unseen_body_stands_where_nothing_is_reported_and_no_edge_is_far_out(
     assert holes.reshape(16, -1).any(axis=1).all()
 
 
-BEARINGS = np.arange(0.0, 360.0, 0.5)
-FINE = pe.Lidar("fine", np.radians([-6.0, -4.5, -3.5, -2.5, -1.5, 0.0]), 2400, 60.0)
-"""Its beams are 5 cm apart, 20 m away, so that no gap between them is blind."""
-END_M = FAR_M + 0.01  # The circle is looked up at points 1 cm apart
-SLANTED = {"picture's lower side"}
-"""Cases with an edge that crosses the circle at a slant."""
 SECTORS = {
     "picture's lower side": (
         van,
@@ -249,7 +260,8 @@ def test_the_widest_blind_sector_is_that_of_bodies_on_the_circle(case):
     """It is no smaller than the run of bearings at which a body is unseen; an unseen body can stand
     near both of its ends."""
     make, rig, height = SECTORS[case]
-    vehicle, rig = make(), pe.Rig(rig)
+    vehicle = make()
+    rig = pe.Rig(rig)
     found = {s.height: s for s in Sight(SPACE, pe.Prior.road(), vehicle).blind_sectors(rig)}
     truth = Oracle(rig, height, vehicle, blind_ground.SECTOR_RADIUS_M + 1.0)
     around = np.radians(BEARINGS)
@@ -258,7 +270,8 @@ def test_the_widest_blind_sector_is_that_of_bodies_on_the_circle(case):
     assert unseen.any() and not unseen.all()
     first = int(np.argmin(unseen))  # a body that is seen: runs do not go over the end
     runs = "".join("x" if each else " " for each in np.roll(unseen, -first)).split()
-    step, width = BEARINGS[1], found[height].width
+    step = BEARINGS[1]
+    width = found[height].width
     longest = max(map(len, runs))
     assert (longest - 1) * step <= width
     assert width <= (longest + 1) * step + 2.0 or case in SLANTED

@@ -27,6 +27,39 @@ Tram 0 0 0 0 0 1 1 3.5 2.5 15 0 1.65 40 0
 Misc 0 0 0 0 0 1 1 1.5 1.5 3 0 1.65 40 0
 Tram 0 0 0 0 0 1 1 3.5 2.5 15 5 1.65 40 0
 """
+AS_MET = [
+    CSV.replace("\n", "\r\n", 1).replace("90\n", "90\r"),
+    "\ufeff" + CSV,
+    CSV.replace(",", ";"),
+    CSV.replace(",", " , "),
+    "\n# made by hand\n" + CSV + "\n\n",
+    CSV.replace("class,x,y,z,length", "Class,X (m),y_m,Z [m],LENGTH").replace("yaw", "yaw_deg"),
+    "score,yaw,z,y,x,height,width,length,class\n"
+    "0.9,90,0.75,2,10,1.5,1.8,4.5,car\n,-45,1.8,-3,-20.5,3.6,2.5,15,tram\n",
+]
+STUDY = f"""
+[space]
+x = [-25, 25]
+y = [-10, 10]
+z = [0, 4]
+interval = 0.5
+[prior]
+boxes = "labels"
+[[prior.focus]]
+factor = 2.0
+classes = ["pedestrian"]
+{MINIMAL}"""
+BAD_PRIORS = [
+    ("{}/none.csv", ('"labels"', '"none.csv"')),
+    ("prior.boxes", ('"labels"', "3")),
+    ("prior.model", ('"labels"', '"labels"\nmodel = "road"')),
+    ("prior.classes", ('"labels"', '"labels"\nclasses = []')),
+    ("prior.origin", ('"labels"', '"labels"\norigin = [1, 2]')),
+    ("prior.origin", ('"labels"', '"labels"\norigin = [1, 2, inf]')),
+    ("focus: classes", ("pedestrian", "truck")),
+    ("prior.origin", ('boxes = "labels"', "origin = [1, 2, 3]")),
+    ("{}/wrong: line 2", ('"labels"', '"wrong"')),
+]
 
 
 def nuscenes_box(name="vehicle.car", **change):
@@ -57,18 +90,6 @@ def row(table, index):
     columns = ("x", "y", "z", "length", "width", "height")
     values = [float(getattr(table, c)[index]) for c in columns]
     return [*values, math.degrees(table.yaw[index])]
-
-
-AS_MET = [
-    CSV.replace("\n", "\r\n", 1).replace("90\n", "90\r"),
-    "\ufeff" + CSV,
-    CSV.replace(",", ";"),
-    CSV.replace(",", " , "),
-    "\n# made by hand\n" + CSV + "\n\n",
-    CSV.replace("class,x,y,z,length", "Class,X (m),y_m,Z [m],LENGTH").replace("yaw", "yaw_deg"),
-    "score,yaw,z,y,x,height,width,length,class\n"
-    "0.9,90,0.75,2,10,1.5,1.8,4.5,car\n,-45,1.8,-3,-20.5,3.6,2.5,15,tram\n",
-]
 
 
 def test_csv_as_it_is_met(write):
@@ -209,9 +230,13 @@ def test_bad_files_are_refused_by_their_line(write, tmp_path):
 def test_many_boxes_are_what_each_of_them_is(write):
     """Files in all three layouts hold the same boxes."""
     rng = np.random.default_rng(1)
-    kitti, plain, annotations = [], ["class,x,y,z,length,width,height,yaw"], []
+    kitti = []
+    plain = ["class,x,y,z,length,width,height,yaw"]
+    annotations = []
     for _ in range(50):
-        x, y, turn = rng.uniform(-20, 20), rng.uniform(-9, 9), rng.uniform(-3, 3)
+        x = rng.uniform(-20, 20)
+        y = rng.uniform(-9, 9)
+        turn = rng.uniform(-3, 3)
         place = f"{-y!r} 1.65 {x - CAMERA[0]!r} {turn!r}"
         kitti.append(f"Cyclist 0 0 0 0 0 1 1 1.5 0.5 1.75 {place}")
         yaw = -turn - math.pi / 2
@@ -239,20 +264,6 @@ def test_a_column_of_tracks_is_no_column_of_classes(tmp_path):
     assert (error.value.field, error.value.found) == ("class", "300")
     path.write_text("\n".join([CSV.splitlines()[0], *rows[:64]]))
     assert len(pt.read_boxes(path).classes) == 64
-
-
-STUDY = f"""
-[space]
-x = [-25, 25]
-y = [-10, 10]
-z = [0, 4]
-interval = 0.5
-[prior]
-boxes = "labels"
-[[prior.focus]]
-factor = 2.0
-classes = ["pedestrian"]
-{MINIMAL}"""
 
 
 def test_a_study_names_its_boxes(write):
@@ -283,7 +294,8 @@ def test_a_study_says_where_the_labels_origin_is(write):
 def test_an_exported_study_scores_the_same_bits_elsewhere(write, tmp_path, name, table):
     write(KITTI)
     placed = changed(STUDY, '"labels"', '"labels"\norigin = [1.5, 0.25, 1.61]')
-    study, name = pe.load_study(write(placed, "s.toml")), f"{name}.toml"
+    study = pe.load_study(write(placed, "s.toml"))
+    name = f"{name}.toml"
     (tmp_path / "out").mkdir()
     pt.export_study(study, tmp_path / "out" / name)
     expected = sorted([".perception-entropy.json", name, table])
@@ -305,19 +317,6 @@ def test_boxes_in_memory_are_exported_too(write, tmp_path):
     again = pe.load_study(tmp_path / "out" / "study.toml")
     assert again.prior.boxes == loose.prior.boxes
     assert again.evaluator().score(again.rig).to_dict() == data["after"]
-
-
-BAD_PRIORS = [
-    ("{}/none.csv", ('"labels"', '"none.csv"')),
-    ("prior.boxes", ('"labels"', "3")),
-    ("prior.model", ('"labels"', '"labels"\nmodel = "road"')),
-    ("prior.classes", ('"labels"', '"labels"\nclasses = []')),
-    ("prior.origin", ('"labels"', '"labels"\norigin = [1, 2]')),
-    ("prior.origin", ('"labels"', '"labels"\norigin = [1, 2, inf]')),
-    ("focus: classes", ("pedestrian", "truck")),
-    ("prior.origin", ('boxes = "labels"', "origin = [1, 2, 3]")),
-    ("{}/wrong: line 2", ('"labels"', '"wrong"')),
-]
 
 
 def test_bad_priors_of_boxes_are_refused(write, tmp_path):

@@ -13,6 +13,24 @@ from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused
 
 SPACE = shapes.small_space(0.25)
+ROTATED = [
+    ("car", 3.01, -2.02, 0.81, 4.6, 1.9, 1.7, 33.0),
+    ("car", -7.3, 4.1, 0.9, 4.1, 1.75, 1.63, -121.0),
+    ("car", 0.07, 0.03, 0.9, 4.13, 1.91, 1.63, 0.0),
+    ("car", 1.07, 5.03, 0.9, 4.13, 1.91, 1.63, 90.0),
+    ("car", 1.07, 5.03, 0.9, 4.13, 1.91, 1.63, -180.0),
+    ("car", 19.2, 9.3, 0.2, 6.1, 2.3, 3.1, 71.0),  # clipped by three faces
+]
+BY_HAND_SPACE = pe.PerceptionSpace((0.0, 3.0), (0.0, 2.0), (0.0, 2.0), 1.0)
+ROW = ("car", 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 0.5)
+IMPOSSIBLE = [
+    ("model", {"model": "city"}),
+    ("classes", {"model": "road"}),
+    ("classes", {"model": "uniform", "classes": pe.Prior.road().classes}),
+    ("boxes", {"model": "boxes"}),
+    ("boxes", {"model": "road", "classes": pe.Prior.road().classes, "boxes": pe.Boxes.of([ROW])}),
+    ("classes", {"model": "road", "classes": pe.Prior.road().classes[:1] * 2}),
+]
 
 
 def boxes(*rows):
@@ -31,19 +49,11 @@ def inside(row, space):
             strict=True,
         )
     )
-    c, s = math.cos(math.radians(yaw)), math.sin(math.radians(yaw))
-    u, v = c * dx + s * dy, c * dy - s * dx
+    c = math.cos(math.radians(yaw))
+    s = math.sin(math.radians(yaw))
+    u = c * dx + s * dy
+    v = c * dy - s * dx
     return (abs(u) <= length / 2) & (abs(v) <= width / 2) & (abs(dz) <= height / 2)
-
-
-ROTATED = [
-    ("car", 3.01, -2.02, 0.81, 4.6, 1.9, 1.7, 33.0),
-    ("car", -7.3, 4.1, 0.9, 4.1, 1.75, 1.63, -121.0),
-    ("car", 0.07, 0.03, 0.9, 4.13, 1.91, 1.63, 0.0),
-    ("car", 1.07, 5.03, 0.9, 4.13, 1.91, 1.63, 90.0),
-    ("car", 1.07, 5.03, 0.9, 4.13, 1.91, 1.63, -180.0),
-    ("car", 19.2, 9.3, 0.2, 6.1, 2.3, 3.1, 71.0),  # clipped by three faces
-]
 
 
 @pytest.mark.parametrize("row", ROTATED, ids=lambda row: f"{row[7]:g} deg at {row[1]:g}")
@@ -101,19 +111,27 @@ def test_tables_in_memory_are_taken():
 
 def test_yaws_wrap_and_are_what_a_file_gives_back(tmp_path):
     rng = np.random.default_rng(3)
-    count, length = 500, rng.uniform(0.1, 9.0, 500)
-    place, yaw = rng.normal(0, 30, count), rng.uniform(-20, 20, count)
+    count = 500
+    length = rng.uniform(0.1, 9.0, 500)
+    place = rng.normal(0, 30, count)
+    yaw = rng.uniform(-20, 20, count)
     names = rng.choice(["car", "a,b", 'say "x"', "#1", "Lkw-Anhänger", "two words"], count)
-    table = pe.Boxes(names, place, -place, abs(place), length, length, length, yaw)
+    table = pe.Boxes(
+        names=names,
+        x=place,
+        y=-place,
+        z=abs(place),
+        length=length,
+        width=length,
+        height=length,
+        yaw=yaw,
+    )
     assert abs(table.yaw).max() <= math.pi
     np.testing.assert_allclose(np.cos(table.yaw), np.cos(yaw), atol=1e-10)
     pt.write_boxes(tmp_path / "boxes.csv", table)
     again = pt.read_boxes(tmp_path / "boxes.csv")
     assert again == table and np.array_equal(again.yaw, table.yaw)
     assert list(again.names) == list(names)
-
-
-BY_HAND_SPACE = pe.PerceptionSpace((0.0, 3.0), (0.0, 2.0), (0.0, 2.0), 1.0)
 
 
 def counted(*boxes, space=BY_HAND_SPACE):
@@ -155,9 +173,6 @@ def test_a_box_outside_is_left_out_and_counted():
         assert -1 in [voxel_of(np.array(box[a]), BY_HAND_SPACE, a) for a in range(3)], box
         assert report == "boxes: 1 box taken, 1 left out (1 outside the space)"
     assert wrongly_refused(counted, [("boxes", box) for box in OUTSIDE], "boxes") == []
-
-
-ROW = ("car", 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 0.5)
 
 
 def changed(*changes):
@@ -209,7 +224,8 @@ def test_the_labels_origin_is_three_lengths_of_a_thousand_kilometres_at_most():
 
 
 def test_boxes_are_equal_when_they_hold_the_same():
-    one, same = pe.Boxes.of([ROW]), pe.Boxes.of([ROW])
+    one = pe.Boxes.of([ROW])
+    same = pe.Boxes.of([ROW])
     assert one == same and hash(one) == hash(same) and one != "boxes"
     for column in range(1, 8):
         row = [v + 1.0 if k == column else v for k, v in enumerate(ROW)]
@@ -222,16 +238,6 @@ def test_classes_stand_in_the_paper_s_order_and_others_by_the_alphabet():
     names = ("tram", "cone", "bus", "truck", "cyclist", "pedestrian", "car", "cone")
     boxes = pe.Boxes.of([(name, *ROW[1:]) for name in names])
     assert boxes.classes == ("car", "pedestrian", "cyclist", "truck", "cone", "bus", "tram")
-
-
-IMPOSSIBLE = [
-    ("model", {"model": "city"}),
-    ("classes", {"model": "road"}),
-    ("classes", {"model": "uniform", "classes": pe.Prior.road().classes}),
-    ("boxes", {"model": "boxes"}),
-    ("boxes", {"model": "road", "classes": pe.Prior.road().classes, "boxes": pe.Boxes.of([ROW])}),
-    ("classes", {"model": "road", "classes": pe.Prior.road().classes[:1] * 2}),
-]
 
 
 def test_impossible_priors_are_refused():

@@ -41,7 +41,8 @@ def test_lengths_are_those_of_the_housings_and_origins():
     """The box car is 4.6 m long, 1.8 m wide."""
     two = cans((-0.4, 0.3, 1.8), (2.33, -0.95, 0.6))
     housing = pe.catalog.housing(CAN)
-    half, above = housing.size[0] / 2, housing.size[2] - housing.optical_center[2]
+    half = housing.size[0] / 2
+    above = housing.size[2] - housing.optical_center[2]
     assert value("height", two) == pytest.approx(1.8 + above)
     assert value("width", two) == pytest.approx(2 * (0.95 + half), rel=0.02)  # a prism of 16 sides
     assert value("distance", two) == pytest.approx(math.dist((-0.4, 0.3, 1.8), (2.33, -0.95, 0.6)))
@@ -58,11 +59,13 @@ def test_frontal_area_is_what_housings_add_to_the_silhouette():
         places = rng.uniform((-2, -1.0, 0.8), (2, 1.0, 1.6), (3, 3)).round(3).tolist()
         sensors = cans(*places)
         y, z = np.meshgrid(np.arange(-2.9, 2.9, CELL_M), np.arange(0, 3.4, CELL_M), indexing="ij")
-        y, z = y + CELL_M / 2, z + CELL_M / 2
+        y = y + CELL_M / 2
+        z = z + CELL_M / 2
         seen = np.zeros(y.shape, bool)
         for sensor in sensors:  # upright cylinders: rectangles
             at = corners([sensor])
-            (_, y0, z0), (_, y1, z1) = at.min(axis=0), at.max(axis=0)
+            _, y0, z0 = at.min(axis=0)
+            _, y1, z1 = at.max(axis=0)
             seen |= (y >= y0) & (y <= y1) & (z >= z0) & (z <= z1)
         body = (abs(y) < 0.9) & (z > 0.2) & (z < 0.9) | (abs(y) < 0.7) & (z > 0.8) & (z < 1.4)
         expected = (seen & ~body).sum() * CELL_M**2
@@ -180,7 +183,10 @@ def choice_study(**more):
     """A study that chooses each of two cans' models by price, mass and power."""
     small, large = (shapes.small_lidar(n, 90) for n in (4, 16))
     object.__setattr__(large, "name", "large")
-    options = [pe.Option(small, 100.0, 0.5, 5.0, 8.0), pe.Option(large, 300.0, 2.0, 9.0, 30.0)]
+    options = [
+        pe.Option(small, price=100.0, mass=0.5, power=5.0, data_rate=8.0),
+        pe.Option(large, price=300.0, mass=2.0, power=9.0, data_rate=30.0),
+    ]
     sensors = [
         shapes.lidar_on_roof(small, (x, 0, 1.8), name=n) for n, x in (("a", -0.5), ("b", 0.5))
     ]
@@ -198,7 +204,10 @@ def choice_study(**more):
 def test_designs_within_limits_of_sums_are_those_of_an_exhaustive_search(limits):
     designs = choice_study(**limits).designs()
     found = {picks: [designs.sum(key, picks) for key in SUMS] for picks in designs}
-    mass, power, rate, price = (0.5, 2.0), (5.0, 9.0), (8.0, 30.0), (100.0, 300.0)
+    mass = (0.5, 2.0)
+    power = (5.0, 9.0)
+    rate = (8.0, 30.0)
+    price = (100.0, 300.0)
     plain = {}
     for a, b in itertools.product(range(2), range(3)):
         sums = [own[a] + (own[b] if b < 2 else 0.0) for own in (mass, power, rate, price)]

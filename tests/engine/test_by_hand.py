@@ -54,16 +54,73 @@ ROOF = {(0, 1, 0): 2, (0, 2, 0): 1, (1, 1, 0): 1, (2, 1, 0): 1}
 # picture, 100 px. The nearest edge of the next row is never nearer to the middle than 7 / 70 of 50,
 # 5 px: outside. It looks through the window; the board hides (3, 1, 0).
 EYE = {(0, 1, 0): 100.0, (1, 1, 0): 100.0, (2, 1, 0): 100.0}
+UP = math.degrees(math.atan(2.0))
+# The prior: labelled boxes of one voxel each, cars on the ground, trucks two voxels high, and the
+# trucks counted twice: cars are 1/3 of it, 1/48 a box; trucks 2/3, 1/24 for each of a box's voxels.
+CARS = {
+    (0, 0): 1, (0, 1): 2, (0, 2): 1, (1, 0): 1, (1, 1): 4, (1, 2): 1,
+    (2, 0): 2, (2, 1): 1, (3, 0): 1, (3, 1): 1, (3, 2): 1,
+}  # fmt: skip
+TRUCKS = {(0, 2): 1, (1, 0): 2, (2, 0): 3, (3, 1): 2}
+CLASSES = {
+    # 15 of 47: (0,1) 2, (0,2) 1, (1,0) 1, (1,1) 4, (2,1) 1 are seen, 6 are not
+    "car": ((2 * H2_C + H1 + H3 + 4 * H1_1_C + H1_C + 6 * H0) / 15, 9 / 15, 15 / 47),
+    # 32 of 47, 2 a voxel: seen are (0,2,0), 2 of (1,0,0), 2 of (1,0,1), 3 of (2,0,1)
+    "truck": ((2 * H1 + 4 * H3 + 4 * H1 + 6 * H1 + 16 * H0) / 32, 16 / 32, 32 / 47),
+}
+ZONES = {
+    # x > 0: (1,0) 5 + 4, (1,1) 4, (1,2) 1, (2,0) 8 + 6, (2,1) 1, (3,0) 1, (3,1) 5 + 4, (3,2) 1
+    "front": ((5 * H3 + 4 * H1 + 4 * H1_1_C + 6 * H1 + H1_C + 20 * H0) / 40, 20 / 40, 40 / 47),
+    # x < 0: (0,1) 2, (0,2) 3 + 2
+    "rear": ((2 * H2_C + 3 * H1 + 2 * H0) / 7, 5 / 7, 7 / 47),
+    # y > 0: (0,1) 2, (0,2) 3 + 2, (1,1) 4, (1,2) 1, (2,1) 1, (3,1) 5 + 4, (3,2) 1
+    "left": ((2 * H2_C + 3 * H1 + 4 * H1_1_C + H1_C + 13 * H0) / 23, 10 / 23, 23 / 47),
+    # y < 0: (1,0) 5 + 4, (2,0) 8 + 6, (3,0) 1
+    "right": ((5 * H3 + 4 * H1 + 6 * H1 + 9 * H0) / 24, 15 / 24, 24 / 47),
+    # nearer than 10 m: four columns 9.90 m away: (0,1) 2, (1,0) 5 + 4, (1,1) 4
+    "near": ((2 * H2_C + 5 * H3 + 4 * H1 + 4 * H1_1_C) / 15, 15 / 15, 15 / 47),
+    # between: all others but (3,2): (0,2) 3 + 2, (1,2) 1, (2,0) 8 + 6, (2,1) 1, (3,0) 1, (3,1) 9
+    "mid": ((3 * H1 + 6 * H1 + H1_C + 21 * H0) / 31, 10 / 31, 31 / 47),
+    # farther than 40 m: (35, 21) is 40.8 m away
+    "far": (H0, 0.0, 1 / 47),
+}
+SENSORS = {
+    # alone: 5 H3, 4 + 4 + 6 H1. Failed: (1,0,0), (1,0,1), (2,0,1) are not seen, (1,1,0) is by two.
+    "hood": (
+        (5 * H3 + 14 * H1 + 28 * H0) / 47,
+        19 / 47,
+        (5 * (H0 - H3) + 10 * (H0 - H1) + 4 * (H1_C - H1_1_C)) / 47,
+    ),
+    # alone: 2 H2, 3 + 4 + 1 H1. Failed: (0,2,0) is not seen, three more by what is left.
+    "roof": (
+        (2 * H2 + 8 * H1 + 37 * H0) / 47,
+        10 / 47,
+        (3 * (H0 - H1) + 2 * (HC - H2_C) + 4 * (H1_C - H1_1_C) + (HC - H1_C)) / 47,
+    ),
+    # alone: 2 + 4 + 1 HC. Failed: all it sees is seen by others.
+    "eye": (
+        (7 * HC + 40 * H0) / 47,
+        7 / 47,
+        (2 * (H2 - H2_C) + 4 * (H1_1 - H1_1_C) + (H1 - H1_C)) / 47,
+    ),
+}
+BEAMS = {
+    "hood": (3, 1, {"mast": 1}),
+    "roof": (2, 1, {"window": 1}),
+    "eye": (100, 100, {"board": 100}),
+}
+"""The eye's picture is 10 x 10 pixels, 10.6 m wide where the board of 14 m stands: all of it."""
 
 
 def beams(name, position, angles_deg, max_range):
     """A LiDAR with a beam for each (azimuth, elevation)."""
     azimuths, elevations = np.radians(angles_deg).T
-    model = pe.Lidar(name, elevations, 1, max_range, azimuths)
+    model = pe.Lidar(
+        name, elevations, azimuth_count=1, max_range=max_range, azimuth_offsets=azimuths
+    )
     return pe.Sensor(name, model, pe.Pose(position), fusion=name)
 
 
-UP = math.degrees(math.atan(2.0))
 RIG = pe.Rig(
     [
         beams("hood", (7.0, -7.0, 7.0), [(0.0, 0.0), (90.0, 0.0), (0.0, UP)], 20.0),
@@ -77,9 +134,11 @@ RIG = pe.Rig(
 
 def plate(low, high):
     """Two triangles of a rectangle that is flat along one axis."""
-    (a, b), flat = [k for k in range(3) if low[k] != high[k]], np.array(low, float)
+    a, b = [k for k in range(3) if low[k] != high[k]]
+    flat = np.array(low, float)
     corners = np.array([flat] * 4)
-    corners[[1, 2], a], corners[[2, 3], b] = high[a], high[b]
+    corners[[1, 2], a] = high[a]
+    corners[[2, 3], b] = high[b]
     return corners[[0, 1, 2, 0, 2, 3]].reshape(2, 3, 3)
 
 
@@ -96,13 +155,6 @@ VEHICLE = pe.Vehicle(
     glass=("window",),
 )
 
-# The prior: labelled boxes of one voxel each, cars on the ground, trucks two voxels high, and the
-# trucks counted twice: cars are 1/3 of it, 1/48 a box; trucks 2/3, 1/24 for each of a box's voxels.
-CARS = {
-    (0, 0): 1, (0, 1): 2, (0, 2): 1, (1, 0): 1, (1, 1): 4, (1, 2): 1,
-    (2, 0): 2, (2, 1): 1, (3, 0): 1, (3, 1): 1, (3, 2): 1,
-}  # fmt: skip
-TRUCKS = {(0, 2): 1, (1, 0): 2, (2, 0): 3, (3, 1): 2}
 # In 48ths, then, and without (0, 0, 0), which lies in the vehicle's own volume: 47 in all.
 #   ground: (0,1) 2   (0,2) 1 + 2   (1,0) 1 + 4   (1,1) 4   (1,2) 1   (2,0) 2 + 6   (2,1) 1
 #           (3,0) 1   (3,1) 1 + 4   (3,2) 1
@@ -157,56 +209,6 @@ def test_the_whole(grid):
     assert (grid.stderr, grid.voxels) == (0.0, 24)
 
 
-CLASSES = {
-    # 15 of 47: (0,1) 2, (0,2) 1, (1,0) 1, (1,1) 4, (2,1) 1 are seen, 6 are not
-    "car": ((2 * H2_C + H1 + H3 + 4 * H1_1_C + H1_C + 6 * H0) / 15, 9 / 15, 15 / 47),
-    # 32 of 47, 2 a voxel: seen are (0,2,0), 2 of (1,0,0), 2 of (1,0,1), 3 of (2,0,1)
-    "truck": ((2 * H1 + 4 * H3 + 4 * H1 + 6 * H1 + 16 * H0) / 32, 16 / 32, 32 / 47),
-}
-ZONES = {
-    # x > 0: (1,0) 5 + 4, (1,1) 4, (1,2) 1, (2,0) 8 + 6, (2,1) 1, (3,0) 1, (3,1) 5 + 4, (3,2) 1
-    "front": ((5 * H3 + 4 * H1 + 4 * H1_1_C + 6 * H1 + H1_C + 20 * H0) / 40, 20 / 40, 40 / 47),
-    # x < 0: (0,1) 2, (0,2) 3 + 2
-    "rear": ((2 * H2_C + 3 * H1 + 2 * H0) / 7, 5 / 7, 7 / 47),
-    # y > 0: (0,1) 2, (0,2) 3 + 2, (1,1) 4, (1,2) 1, (2,1) 1, (3,1) 5 + 4, (3,2) 1
-    "left": ((2 * H2_C + 3 * H1 + 4 * H1_1_C + H1_C + 13 * H0) / 23, 10 / 23, 23 / 47),
-    # y < 0: (1,0) 5 + 4, (2,0) 8 + 6, (3,0) 1
-    "right": ((5 * H3 + 4 * H1 + 6 * H1 + 9 * H0) / 24, 15 / 24, 24 / 47),
-    # nearer than 10 m: four columns 9.90 m away: (0,1) 2, (1,0) 5 + 4, (1,1) 4
-    "near": ((2 * H2_C + 5 * H3 + 4 * H1 + 4 * H1_1_C) / 15, 15 / 15, 15 / 47),
-    # between: all others but (3,2): (0,2) 3 + 2, (1,2) 1, (2,0) 8 + 6, (2,1) 1, (3,0) 1, (3,1) 9
-    "mid": ((3 * H1 + 6 * H1 + H1_C + 21 * H0) / 31, 10 / 31, 31 / 47),
-    # farther than 40 m: (35, 21) is 40.8 m away
-    "far": (H0, 0.0, 1 / 47),
-}
-SENSORS = {
-    # alone: 5 H3, 4 + 4 + 6 H1. Failed: (1,0,0), (1,0,1), (2,0,1) are not seen, (1,1,0) is by two.
-    "hood": (
-        (5 * H3 + 14 * H1 + 28 * H0) / 47,
-        19 / 47,
-        (5 * (H0 - H3) + 10 * (H0 - H1) + 4 * (H1_C - H1_1_C)) / 47,
-    ),
-    # alone: 2 H2, 3 + 4 + 1 H1. Failed: (0,2,0) is not seen, three more by what is left.
-    "roof": (
-        (2 * H2 + 8 * H1 + 37 * H0) / 47,
-        10 / 47,
-        (3 * (H0 - H1) + 2 * (HC - H2_C) + 4 * (H1_C - H1_1_C) + (HC - H1_C)) / 47,
-    ),
-    # alone: 2 + 4 + 1 HC. Failed: all it sees is seen by others.
-    "eye": (
-        (7 * HC + 40 * H0) / 47,
-        7 / 47,
-        (2 * (H2 - H2_C) + 4 * (H1_1 - H1_1_C) + (H1 - H1_C)) / 47,
-    ),
-}
-BEAMS = {
-    "hood": (3, 1, {"mast": 1}),
-    "roof": (2, 1, {"window": 1}),
-    "eye": (100, 100, {"board": 100}),
-}
-"""The eye's picture is 10 x 10 pixels, 10.6 m wide where the board of 14 m stands: all of it."""
-
-
 def check_parts(found, expected, within):
     assert list(found) == list(expected)
     for name, values in expected.items():
@@ -234,7 +236,8 @@ def test_sensors_alone_and_lost(grid):
 
 def test_the_ground_map(grid):
     """Columns, their entropies and coverage averaged over height, and their 48ths of the prior."""
-    nan, mixed = math.nan, (5 * H3 + 4 * H1) / 9
+    nan = math.nan
+    mixed = (5 * H3 + 4 * H1) / 9
     entropy = [
         [nan, H2_C, (3 * H1 + 2 * H0) / 5],
         [mixed, H1_1_C, H0],

@@ -17,6 +17,10 @@ from tests.engine.kernels import on_grid
 
 ASSETS = Path(pe.__file__).parents[1] / "blend_assets"
 SPACE = pe.PerceptionSpace((-16, 16), (-8, 8), (0, 4), 0.2)
+ALWAYS = -1
+NEVER = np.inf
+"""Rays from which on the cover is asked."""
+ALL_ROUND = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]])
 
 
 def shipped(name):
@@ -68,10 +72,6 @@ def hidden_by_rays(triangles, offsets):
     return hits.distance < distance
 
 
-ALWAYS, NEVER = -1, np.inf
-"""Rays from which on the cover is asked."""
-
-
 @pytest.mark.parametrize("case", CASES)
 def test_hidden_voxels_are_those_whose_ray_is_stopped(case, monkeypatch):
     """Without the cover and with it, whose areas are the same to the bit."""
@@ -79,7 +79,8 @@ def test_hidden_voxels_are_those_whose_ray_is_stopped(case, monkeypatch):
     vehicle = pe.Vehicle(mesh())
     sensor = shapes.camera(float(hfov), position, rotation)
     free = on_grid(sensor, SPACE, None, 20).reshape(-1)
-    count, areas = counted(monkeypatch), []
+    count = counted(monkeypatch)
+    areas = []
     for many in (NEVER, ALWAYS):
         monkeypatch.setattr(grid_areas, "MANY_RAYS", many)
         count["evaluated"] = 0
@@ -100,7 +101,8 @@ def test_hidden_voxels_are_those_whose_ray_is_stopped(case, monkeypatch):
 def counted(monkeypatch):
     """Count how often the cover is asked, and how many rays are cast."""
     count = {"evaluated": 0, "cast": 0}
-    evaluator, hidden = VoxelOcclusion.classify, grid_areas.hidden
+    evaluator = VoxelOcclusion.classify
+    hidden = grid_areas.hidden
 
     def count_evaluated(*args):
         count["evaluated"] += 1
@@ -124,9 +126,6 @@ def shade_of(triangles, position, corners):
     return flags, grid
 
 
-ALL_ROUND = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]])
-
-
 @pytest.mark.parametrize("mesh", [roof, lattice, turned, lambda: shipped("bus")])
 @pytest.mark.parametrize("position", [(0.05, 0.15, 3.05), (0.1, 0.1, 1.5), (-3.3, 1.4, 2.0)])
 def test_what_is_sure_is_so_all_round(mesh, position):
@@ -134,7 +133,8 @@ def test_what_is_sure_is_so_all_round(mesh, position):
     triangles = mesh()
     flags, grid = shade_of(triangles, position, ALL_ROUND)
     hidden = hidden_by_rays(triangles - np.array(position), grid)
-    sure, unsure = flags.hidden.reshape(-1), flags.unsure.reshape(-1)
+    sure = flags.hidden.reshape(-1)
+    unsure = flags.unsure.reshape(-1)
     assert hidden[sure].all()
     assert not hidden[~sure & ~unsure].any()
     assert not (sure & unsure).any()
@@ -150,7 +150,8 @@ def test_a_picture_between_two_parts_of_a_mesh_hides_nothing():
 
 def test_a_hole_of_one_triangle_is_seen_through():
     """In a roof with nothing below it."""
-    whole, position = shapes.refined(roof(), 3), np.array([0.05, 0.05, 3.4])
+    whole = shapes.refined(roof(), 3)
+    position = np.array([0.05, 0.05, 3.4])
     centers = whole.mean(axis=1)
     holed = np.delete(whole, np.argmin(np.abs(centers - [2.0, 0.3, 3.0]).sum(axis=1)), axis=0)
     sure = [shade_of(t, tuple(position), ALL_ROUND)[0].hidden.reshape(-1) for t in (whole, holed)]

@@ -14,6 +14,8 @@ from tests.thorough import pairs
 SPACE = pe.PerceptionSpace((-3, 3), (-2, 2), (0, 2), 0.2)
 VOXELS = every_voxel(SPACE)
 CENTERS = VOXELS.centers
+SHEET = np.array([[-2.0, -1.0, 0.5], [2.0, -1.0, 0.5], [2.0, 1.0, 0.5], [-2.0, 1.0, 0.5]])
+BOX = pe.Vehicle(shapes.box((-0.8, -0.6, 0.0), (0.6, 0.6, 0.7)), clearance=0.0)
 
 
 def in_every_way(sensor, vehicle=None):
@@ -30,7 +32,8 @@ def test_a_voxel_with_a_corner_in_the_camera_s_plane_is_not_seen(pitch, yaw):
     for turns in (-1, 0, 1):
         sensor = shapes.camera(120.0, (0.2, -0.4, 1.0), (0, pitch, yaw + 360 * turns))
         c, s = (f(math.radians(yaw)) for f in (math.cos, math.sin))
-        p, q = math.cos(math.radians(pitch)), math.sin(math.radians(pitch))
+        p = math.cos(math.radians(pitch))
+        q = math.sin(math.radians(pitch))
         forward = np.array([c * p, s * p, -q])
         lowest = (CENTERS - sensor.pose.position) @ forward - 0.1 * np.abs(forward).sum()
         on_plane = np.abs(lowest) < 1e-9
@@ -49,17 +52,21 @@ def test_voxels_round_a_camera_on_a_corner():
     seen = 0
     for turn in product((0, 45, 90, 150, 180, 270), repeat=3):
         sensor = shapes.camera(100.0, corner, turn)
-        areas, pose = pe.measure(sensor, centers, 0.2), sensor.pose
-        camera = ((1920, 1080), math.radians(100.0), corner, pose.rpy)
-        expected = [oracle.pixel_area(*camera, center, 0.2) for center in centers]
+        areas = pe.measure(sensor, centers, 0.2)
+        pose = sensor.pose
+        camera_size = (1920, 1080)
+        hfov = math.radians(100.0)
+        origin = corner
+        rpy = pose.rpy
+        expected = [
+            oracle.pixel_area(camera_size, hfov, origin, rpy, center=center, side=0.2)
+            for center in centers
+        ]
         np.testing.assert_allclose(areas, expected, rtol=1e-9, atol=1e-6)
         assert not areas[touching].any()
         assert ((areas > 0.0) == (np.array(expected) > 1e-6)).all()
         seen += np.count_nonzero(areas)
     assert seen > 300
-
-
-SHEET = np.array([[-2.0, -1.0, 0.5], [2.0, -1.0, 0.5], [2.0, 1.0, 0.5], [-2.0, 1.0, 0.5]])
 
 
 @pytest.mark.parametrize("height", [1.3, 0.0], ids=["from above", "from below"])
@@ -78,9 +85,6 @@ def test_a_centre_on_a_surface_is_seen_and_one_behind_it_is_not(height, move):
         assert (free[on_it] > 0.0).sum() > 20 and (free[behind] > 0.0).sum() > 20
         assert areas[on_it].tolist() == free[on_it].tolist()
         assert not areas[behind].any()
-
-
-BOX = pe.Vehicle(shapes.box((-0.8, -0.6, 0.0), (0.6, 0.6, 0.7)), clearance=0.0)
 
 
 @pytest.mark.parametrize(
@@ -103,7 +107,8 @@ def test_voxels_on_the_border_are_hidden_where_the_vehicle_is_below_the_picture(
     sensor = shapes.camera(60.0, (-1.5, 0.1, 1.0))
     edge = 1.0 - 0.6 * math.tan(sensor.model.vfov / 2.0) * 1.06
     wall = pe.Vehicle(shapes.box((-0.9, -2.0, 0.0), (-0.899, 2.0, edge)))
-    free, areas = in_every_way(sensor), in_every_way(sensor, wall)
+    free = in_every_way(sensor)
+    areas = in_every_way(sensor, wall)
     gone = (free[0] > 0.0) & (areas[0] == 0.0)
     assert gone.sum() > 3
     for found in areas[1:]:

@@ -73,7 +73,8 @@ def test_the_exit_status_says_whether_all_are_met(study, capsys):
 @pytest.mark.usefixtures("heeded_signals")
 def test_ctrl_c_keeps_the_verdicts_that_were_found(study, tmp_path, monkeypatch, capsys):
     study.write_text(STUDY + SMALL)
-    steps, ended = pe.Study.check_steps, threading.Event()
+    steps = pe.Study.check_steps
+    ended = threading.Event()
 
     def interrupted(self, checker):
         for step in steps(self, checker):

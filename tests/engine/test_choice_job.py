@@ -21,6 +21,9 @@ from tests.engine.refusals import wrongly_refused
 pytestmark = pytest.mark.usefixtures("few_errors", "no_key_figures")
 SPACE = pe.PerceptionSpace((-12, 12), (-8, 8), (0, 3), 0.5)
 PRICES = {"Pandar64": 9.0, "Pandar40": 7.0, "Velodyne VLP-16 Puck": 2.0}
+CHOICES = Path(__file__).parents[2] / "blend_assets" / "choices"
+LIDARS = [{"model": "Pandar64", "price": 9}, {"model": "HDL-64E", "price": 5}]
+ROOF = {"sensors": ["roof"], "option": LIDARS}
 
 
 def options(names=PRICES):
@@ -144,7 +147,9 @@ def test_designs_that_keep_requirements_come_first(tmp_path):
         limits = pe.Limits(requirements=True if keep else None)
         return front_of(replace(plain, requirements=requirements, limits=limits))
 
-    told, kept, none = front(many, keep=False), front(many, keep=True), front(many, most, keep=True)
+    told = front(many, keep=False)
+    kept = front(many, keep=True)
+    none = front(many, most, keep=True)
     assert {d.name: d.broken for d in told.designs}[mounting.CAN] == ("many",)
     assert mounting.CAN in [d.name for d in told.front]
     assert kept.front and all(not d.broken for d in kept.front)
@@ -234,7 +239,8 @@ def test_an_interrupted_front_goes_on_to_the_same_bits(tmp_path, capsys):
     """Journals of half of the searches are lost, and half of the entries of another."""
     given = study([pe.Choice(options(), ["roof"])], free=("pitch",))
     pt.export_study(given, tmp_path / "car.toml")
-    file, out = str(tmp_path / "car.toml"), tmp_path / "out"
+    file = str(tmp_path / "car.toml")
+    out = tmp_path / "out"
     assert verbs.main(["optimize", file, "--json", "-o", str(out)]) == 0
     whole = json.loads(capsys.readouterr().out)
     kept = json.loads((out / "front.json").read_text())
@@ -259,11 +265,6 @@ def test_an_interrupted_front_goes_on_to_the_same_bits(tmp_path, capsys):
     (out / SEARCH).write_text("{}")
     assert verbs.main(["optimize", file, "--resume", str(out)]) == 1
     assert "expected the state of a search" in capsys.readouterr().err
-
-
-CHOICES = Path(__file__).parents[2] / "blend_assets" / "choices"
-LIDARS = [{"model": "Pandar64", "price": 9}, {"model": "HDL-64E", "price": 5}]
-ROOF = {"sensors": ["roof"], "option": LIDARS}
 
 
 def data(choice=(), **more):

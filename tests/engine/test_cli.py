@@ -10,6 +10,39 @@ import pytest
 import pe_core as pe
 from pe_tools.cli.verbs import main
 
+PATHS = (
+    "compare {}",
+    "review {} -o r",
+    "score {}",
+    "check {}",
+    "optimize {}",
+    "explain {}",
+    "sweep {} -o s",
+    "sweep car.toml -o {}",
+    "score car.toml -o {}",
+    "optimize --resume {}",
+    "import {} -o x",
+    "import car.toml -o {}",
+    "export car.toml --to csv -o {}",
+    "export car.toml --to ros -o {}",
+    "new {} -o x",
+    "new car.npz -o {}",
+    "check car.toml -o {}",
+    "review car.toml -o {}",
+    "new {} --rig kitti -o x",
+    "new --rig kitti -o {}",
+)
+"""Every path on the command line."""
+OUTPUTS = {
+    "check": "check car.toml --preset all -o {}",
+    "export a rig": "export car.toml --to csv -o {}",
+    "export a scene": "export car.toml --to gltf -o {}",
+    "import": "import rig.csv --from csv -o {}",
+    "new": "new car.npz -o {}",
+    "known rig": "new --rig kitti -o {}",
+}
+"""Every output that is a file of a name that the user chooses."""
+
 
 def test_score_prints_what_a_person_wants_to_know(study, capsys):
     assert main(["score", str(study)]) == 0
@@ -78,20 +111,10 @@ def test_a_name_that_is_nearly_right_has_the_right_one_named(line, nearest, stud
     assert status in (1, 2) and nearest in capsys.readouterr().err
 
 
-PATHS = (
-    *("compare {}", "review {} -o r", "score {}", "check {}", "optimize {}", "explain {}"),
-    *("sweep {} -o s", "sweep car.toml -o {}", "score car.toml -o {}", "optimize --resume {}"),
-    *("import {} -o x", "import car.toml -o {}", "export car.toml --to csv -o {}"),
-    *("export car.toml --to ros -o {}", "new {} -o x", "new car.npz -o {}"),
-    *("check car.toml -o {}", "review car.toml -o {}", "new {} --rig kitti -o x"),
-    "new --rig kitti -o {}",
-)
-"""Every path on the command line."""
-
-
 def test_a_path_that_cannot_be_is_one_line(study, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    before, offenders = sorted(tmp_path.iterdir()), []
+    before = sorted(tmp_path.iterdir())
+    offenders = []
     for argv, path in product(PATHS, ["", f"a/{'ü' * 200}/b", "a\0b"]):
         status = main([part.format(path) for part in argv.split()])
         told = capsys.readouterr().err.splitlines()
@@ -107,17 +130,6 @@ def test_no_memory_for_a_thread_is_one_line(study, monkeypatch, capsys):
     monkeypatch.setattr("threading.Thread.start", start)
     assert main(["score", str(study)]) == 1
     assert capsys.readouterr().err.splitlines()[-1].startswith("pe: not enough memory: ")
-
-
-OUTPUTS = {
-    "check": "check car.toml --preset all -o {}",
-    "export a rig": "export car.toml --to csv -o {}",
-    "export a scene": "export car.toml --to gltf -o {}",
-    "import": "import rig.csv --from csv -o {}",
-    "new": "new car.npz -o {}",
-    "known rig": "new --rig kitti -o {}",
-}
-"""Every output that is a file of a name that the user chooses."""
 
 
 @pytest.mark.parametrize("argv", OUTPUTS.values(), ids=OUTPUTS)

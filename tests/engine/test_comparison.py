@@ -23,13 +23,17 @@ from pe_tools.advice.score_comparison import (
 from pe_tools.cli.explain_verbs import comparison
 from tests.engine import shapes
 
-ENTROPY, COVERAGE = ("rig", "", "entropy"), ("rig", "", "coverage")
+ENTROPY = ("rig", "", "entropy")
+COVERAGE = ("rig", "", "coverage")
 NOISE = [
     0.02 / math.sqrt(256 / 15) * np.cos(math.pi * (np.arange(16) + 0.5) * k / 16)
     for k in range(1, 7)
 ]
 """Residuals of six scores: each sums to 0, its squares to 8 of the factor's, and is orthogonal to
 the others. By hand: the error of each difference is sqrt(16 / 15 * 2 * 8) of the factor, 0.02."""
+MODEL = shapes.small_lidar(16, 180)
+PAIR = [pe.Rig([shapes.lidar_on_roof(MODEL, (x, 0.0, 2.0))]) for x in (0.0, 0.4)]
+COMPARED = [ENTROPY, COVERAGE, ("zone", "near", "entropy"), ("class", "car", "coverage")]
 
 
 def score(entropy, coverage=0.5, own=None, sample="one", stderr=0.03):
@@ -39,7 +43,16 @@ def score(entropy, coverage=0.5, own=None, sample="one", stderr=0.03):
         shared = np.linspace(-0.01, 0.01, 16)
         off = shared + own - np.mean(own)
         scatter = Scatter(sample, {ENTROPY: tuple(off), COVERAGE: tuple(off / 20.0)})
-    return pe.Score(entropy, coverage, stderr, {}, {}, {}, 4096, scatter=scatter)
+    return pe.Score(
+        entropy,
+        coverage,
+        stderr,
+        per_class={},
+        per_zone={},
+        per_sensor={},
+        voxels=4096,
+        scatter=scatter,
+    )
 
 
 @pytest.mark.parametrize(
@@ -103,17 +116,13 @@ def test_who_is_better_and_who_is_alike(entropies, own, more, best):
     assert ranked(entropies, own, **more)[1].best == best
 
 
-MODEL = shapes.small_lidar(16, 180)
-PAIR = [pe.Rig([shapes.lidar_on_roof(MODEL, (x, 0.0, 2.0))]) for x in (0.0, 0.4)]
-COMPARED = [ENTROPY, COVERAGE, ("zone", "near", "entropy"), ("class", "car", "coverage")]
-
-
 def test_paired_errors_are_the_scatter_of_differences_on_other_samples():
     """60 samples of 2048 voxels, two rigs on each: what is told is what differences scatter by.
 
     Half of it would be too low, twice too high; and the rigs' own errors are some times as large.
     """
-    space, prior = shapes.small_space(), pe.Prior.road()
+    space = shapes.small_space()
+    prior = pe.Prior.road()
     told, found, alone = ({figure: [] for figure in COMPARED} for _ in range(3))
     for shift in np.random.default_rng(5).random((60, 3)):
         evaluator = pe.Evaluator(space, prior, samples=2048, shift=tuple(shift))
@@ -145,14 +154,16 @@ def test_a_gain_counts_when_it_is_clear_and_a_loss_always():
 
 
 def test_degrees_of_freedom_are_those_of_the_score_with_fewest_batches():
-    noisy, exact = score(2.0, own=NOISE[0]), score(2.0)
+    noisy = score(2.0, own=NOISE[0])
+    exact = score(2.0)
     assert degrees_of([noisy, exact]) == len(NOISE[0]) - 1
     assert degrees_of([exact]) == degrees_of([]) == BLOCKS - 1
 
 
 def test_errors_of_objects_that_are_not_paired_are_their_own():
     """Of two samples: AP of all classes, AP and entropy of one, by the errors that a score has."""
-    rule, prior = pe.TargetRule("objects", scenes=24), pe.Prior.road()
+    rule = pe.TargetRule("objects", scenes=24)
+    prior = pe.Prior.road()
     evaluator = pe.ObjectEvaluator(shapes.small_space(), prior, targets=rule)
     one = dataclasses.replace(evaluator.score(PAIR[0]), scatter=None)
     car = one.objects.per_class["car"]
@@ -206,7 +217,7 @@ def test_less_than_all_is_nowhere_told_as_all():
 @pytest.mark.parametrize("measure", ["blind_ground", "blind_sector"])
 def test_what_is_blind_reads_as_on_the_dashboard(measure):
     """Rounded up: 40.31 m2 are 40.4 m2 in both places; differences are those of what is told."""
-    row = advice.ComparedRow("rig", "", measure, (40.31, 12.0), ((0.0, 0.0),) * 2)
+    row = advice.ComparedRow("rig", "", measure, (40.31, 12.0), errors=((0.0, 0.0),) * 2)
     (line,) = (line for line in comparison(["a", "b"], [row]) if line.startswith("  all"))
     assert line.split()[1:] == ["40.4", "12.0", "(-28.4)*"]
     assert FIGURES[measure].text(40.31).startswith("40.4 ")

@@ -44,6 +44,8 @@ a = 0.055
 b = 0.6
 c = 0.12
 """
+FADING = pe.ApCurve(0.055, 0.6, 0.12)
+"""A camera's curve with a range term."""
 
 
 @pytest.fixture
@@ -121,7 +123,8 @@ def test_what_is_not_the_paper_s_is_one_line(path, noted, capsys):
 @pytest.mark.parametrize("model", ["bevfusion", "centerpoint"])
 def test_curves_of_published_detectors_are_told_with_source_and_span(model, capsys):
     """They take the place of the classes' own; a class that they lack keeps its own."""
-    known, own = detectors()[model], pe.PerceptionModel()
+    known = detectors()[model]
+    own = pe.PerceptionModel()
     chosen = pe.PerceptionModel(model=model)
     assert set(known.rows) == {"lidar"} and "within one rig" in known.trust
     for name, row in known.rows["lidar"].items():
@@ -134,10 +137,6 @@ def test_curves_of_published_detectors_are_told_with_source_and_span(model, caps
     assert main(["sensors", "--curves"]) == 0
     told = capsys.readouterr().out
     assert f"\n{model}: {known.label}, {known.trust}; {known.source}\n" in told
-
-
-FADING = pe.ApCurve(0.055, 0.6, 0.12)
-"""A camera's curve with a range term."""
 
 
 def by_definition(m, curve, distance):
@@ -177,7 +176,8 @@ def test_voxels_have_the_range_term_on_the_grid_and_on_a_sample(blind):
             total += (1.0 / ap - 1.0) ** -2 - (999.0**-2 if blind == "floor" else 0.0)
         total += 999.0**-2 if blind == "floor" else 0.0
         entropy = np.mean(1.0 + np.log(2.0 * np.pi) - np.log(total))
-        rig, prior = pe.Rig(sensors), pe.Prior.uniform()
+        rig = pe.Rig(sensors)
+        prior = pe.Prior.uniform()
         for samples, error in ((0, exact), (1 << 12, 0.01)):
             found = pe.Evaluator(space, prior, model=model, samples=samples)
             assert found.entropy(rig) == pytest.approx(entropy, abs=error)

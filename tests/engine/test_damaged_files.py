@@ -31,7 +31,8 @@ from tests.engine.test_angle_files import HESAI, OUSTER, VELODYNE
 from tests.engine.test_box_files import CSV, KITTI, nuscenes_box
 from tests.thorough import tries
 
-DAMAGES, RIG_DAMAGES = tries(40, 150), tries(12, 40)
+DAMAGES = tries(40, 150)
+RIG_DAMAGES = tries(12, 40)
 """A file; a longer hunt in rigs: `python -m tests.engine.test_damaged_files 5000 8`."""
 WORDS = [b"nan", b"-inf", b"1e308", b"-1", b"0", b"9" * 5000, b"\xff\xfe", b"\0", b"\xed\xa0\x80"]
 WORDS += [b"[", b'"', b"\n", b"\x1b[2J", b"\xe2\x80\xae", b"<!ENTITY a 'b'>", b"&a;", b"1_0", b"\\"]
@@ -56,12 +57,32 @@ GOOD = {
     "columns": (read_angles, "a", b"elevation,azimuth_offset\n5,1\n-3,-1\n"),
     "table": (read_ap_table, "a", b"m,ap,n\n1,0.2,9\n10,0.5,8\n100,0.8,7\n"),
 }
+AXLE = pe.Reference(-1.31, 0.33)
+PUCK = pe.Lidar("even", np.radians([-5.0, 0.0, 5.0]), 12, 80.0)
+OWN = pe.Lidar(
+    "own",
+    np.radians([-20, -7, 3]),
+    azimuth_count=12,
+    max_range=80.0,
+    azimuth_offsets=np.radians([0, 2, 0]),
+)
+JOINT = (
+    '<link name="l{0}"/><joint name="j{0}" type="fixed"><parent link="{1}"/><child link="l{0}"/>'
+    "</joint>"
+)
+CALL = '<node exec="static_transform_publisher" args="--frame-id {1} --child-frame-id f{0}"/>'
+ROWS = "name,x_m,y_m,z_m,roll_deg,pitch_deg,yaw_deg\n{}"
+OSI = '{{"range": 9, "lidar_sensor_view_configuration": [{{"directions": [{}]}}]}}'
+BEAM = '{"x":1,"y":0,"z":0}'
 
 
 def damaged(rng, data):
     """The file with one thing wrong: bytes changed, lost, twice, or a word put in."""
-    start, length = int(rng.integers(len(data))), int(rng.integers(1, 40))
-    before, piece, after = data[:start], data[start : start + length], data[start + length :]
+    start = int(rng.integers(len(data)))
+    length = int(rng.integers(1, 40))
+    before = data[:start]
+    piece = data[start : start + length]
+    after = data[start + length :]
     word = WORDS[int(rng.integers(len(WORDS)))]
     ways = [
         before,
@@ -91,7 +112,8 @@ def test_damage_is_refused_in_one_line_or_does_no_harm(tmp_path, kind):
     """What is read of it holds finite numbers alone; some of the damage is always noticed."""
     reader, name, data = GOOD[kind]
     rng = np.random.default_rng(8)
-    path, refused = tmp_path / name, 0
+    path = tmp_path / name
+    refused = 0
     path.write_bytes(data)
     reader(path)
     for _ in range(DAMAGES):
@@ -114,15 +136,10 @@ def numbers_of(result):
     return np.concatenate([np.ravel(getattr(result, c)) for c in columns if hasattr(result, c)])
 
 
-AXLE = pe.Reference(-1.31, 0.33)
-
-
 def sensor(name, model, position, rotation=(0.3, 2.5, -0.4)):
     return pe.Sensor(name, model, pe.Pose.from_degrees(position, rotation))
 
 
-PUCK = pe.Lidar("even", np.radians([-5.0, 0.0, 5.0]), 12, 80.0)
-OWN = pe.Lidar("own", np.radians([-20, -7, 3]), 12, 80.0, np.radians([0, 2, 0]))
 RIG = pe.Rig(
     [
         sensor("roof", PUCK, (-0.43, 0, 1.8), (0.5, -1.25, 12)),
@@ -145,12 +162,14 @@ def good_files(name, folder):
 def hunt(name, folder, count, seed=8):
     """Read a format's files with a number that is odd, or damage; return how many were refused, or
     told as left out: a damaged lens does not refuse its rig."""
-    rng, refused = np.random.default_rng(seed), 0
+    rng = np.random.default_rng(seed)
+    refused = 0
     paths, asked = good_files(name, folder)
     whole = {path: path.read_bytes() for path in paths}
     for _ in range(count):
         path = paths[int(rng.integers(len(paths)))]
-        data, numbers = whole[path], list(NUMBER.finditer(whole[path]))
+        data = whole[path]
+        numbers = list(NUMBER.finditer(whole[path]))
         wrong = damaged(rng, data)
         if numbers and rng.random() < 0.6:
             number = numbers[int(rng.integers(len(numbers)))]
@@ -185,7 +204,8 @@ def test_a_word_in_place_of_a_number_is_never_0_or_nothing(name, tmp_path):
         begin = whole.find(b"-->") if name == "urdf" else 0
         inside = rb"(?<=[ >,:\"\[])" + NUMBER.pattern + rb"(?=[ <,\"\]\n])"
         for each in [m for m in re.finditer(inside, whole) if m.start() >= begin][::5]:
-            before, after = whole[: each.start()], whole[each.end() :]
+            before = whole[: each.start()]
+            after = whole[each.end() :]
             in_inertial = before.rfind(b"<inertial>") > before.rfind(b"</inertial>")
             if before.endswith(b"<s>") or in_inertial:
                 continue  # a lens's skew and a link's mass: for Gazebo, not read
@@ -196,16 +216,6 @@ def test_a_word_in_place_of_a_number_is_never_0_or_nothing(name, tmp_path):
             refused += 1
         path.write_bytes(whole)
     assert refused >= 6
-
-
-JOINT = (
-    '<link name="l{0}"/><joint name="j{0}" type="fixed"><parent link="{1}"/><child link="l{0}"/>'
-    "</joint>"
-)
-CALL = '<node exec="static_transform_publisher" args="--frame-id {1} --child-frame-id f{0}"/>'
-ROWS = "name,x_m,y_m,z_m,roll_deg,pitch_deg,yaw_deg\n{}"
-OSI = '{{"range": 9, "lidar_sensor_view_configuration": [{{"directions": [{}]}}]}}'
-BEAM = '{"x":1,"y":0,"z":0}'
 
 
 def many(piece, count, chain=False):

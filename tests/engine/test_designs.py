@@ -83,7 +83,8 @@ def test_sensors_of_a_mount_are_interchangeable_and_one_sensor_has_to_be_there()
 
 
 def test_a_pair_takes_one_model_and_costs_twice():
-    left, right = sensor("l", position=(1.0, 0.5, 1.0)), sensor("r", position=(1.0, -0.5, 1.0))
+    left = sensor("l", position=(1.0, 0.5, 1.0))
+    right = sensor("r", position=(1.0, -0.5, 1.0))
     mounting = pe.Mounting(pairs=[("l", "r")])
     choice = pe.Choice(options(MODELS[:1], (9,)), ["l"], optional=True)
     found = designs(pe.Rig([left, right, sensor("held")]), choice, mounting=mounting)
@@ -118,12 +119,14 @@ def test_the_local_search_finds_the_front_of_more_designs_than_it_looks_at(monke
     def entropy(picks):
         return 40.0 - sum(gain[k][pick] for k, pick in enumerate(picks))
 
-    search, looked = DesignSearch(every), {}
+    search = DesignSearch(every)
+    looked = {}
     while asked := search.ask():
         assert not set(asked) & set(looked)
         looked |= {picks: entropy(picks) for picks in asked}
         search.tell(looked)
-    some, total = list(looked), list(every)
+    some = list(looked)
+    total = list(every)
     best, true = (
         {(every.price(p), entropy(p)) for p in (those[k] for k in pareto_front(w))}
         for those, w in (

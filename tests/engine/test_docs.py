@@ -18,6 +18,10 @@ PAGES = [
     *sorted((ROOT / "docs").rglob("*.md")),
     *(ROOT / room / "README.md" for room in ("benchmarks", "blend_assets")),
 ]
+GUIDE = (ROOT / "docs" / "guide.md").read_text("utf-8")
+IMAGES = ROOT / "docs" / "images"
+MAX_STILL_BYTES = 400_000
+MAX_FILM_BYTES = 3_000_000
 
 
 @pytest.fixture(scope="module")
@@ -42,8 +46,10 @@ def worked(figures):
 
 def test_the_bracket_worked_by_hand_is_the_kernel_s(worked):
     """Windows by formulas on plain numbers; rows and columns by the kernel; m by the definition."""
-    by_hand, kernel = worked.bracketed(), worked.kernel_bracket()
-    outer, inner = by_hand.outer, by_hand.inner
+    by_hand = worked.bracketed()
+    kernel = worked.kernel_bracket()
+    outer = by_hand.outer
+    inner = by_hand.inner
     assert outer.rows == list(range(int(kernel.row[0]), int(kernel.row[0] + kernel.rows[0])))
     first = int(kernel.column[0])
     assert outer.columns == list(range(first, first + int(kernel.columns[0])))
@@ -124,11 +130,6 @@ def test_what_a_number_means_is_the_metric_s():
     for nats, ap in pairs:
         digits = len(ap.partition(".")[2])
         assert f"{float(ap_of_entropy(float(nats))):.{digits}f}" == ap, nats
-
-
-GUIDE = (ROOT / "docs" / "guide.md").read_text("utf-8")
-IMAGES = ROOT / "docs" / "images"
-MAX_STILL_BYTES, MAX_FILM_BYTES = 400_000, 3_000_000
 
 
 def test_every_picture_of_the_guide_is_there_and_made_by_the_script():

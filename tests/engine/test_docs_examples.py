@@ -43,37 +43,6 @@ zone = { x = ["rear + 1", "rear + 2"], y = [-1, 1] }
 samples = 1024
 evaluations = 8
 """
-
-
-def command_lines():
-    """(page, line) of each complete line of the command that a page shows."""
-    for page in [*sorted(DOCS.rglob("*.md")), ROOT / "README.md"]:
-        for language, text in BLOCK.findall(page.read_text("utf-8")):
-            if language not in ("", "sh", "console"):
-                continue
-            for line in text.splitlines():
-                typed = line.removeprefix("$ ").partition("  #")[0].strip()
-                typed = typed.replace("$SLURM_ARRAY_TASK_ID", "1")  # of a job's script
-                if typed.startswith("pe ") and "..." not in typed and "$(" not in typed:
-                    yield page.relative_to(ROOT).as_posix(), typed
-
-
-LINES = sorted(set(command_lines()))
-
-
-def test_lines_of_the_command_parse():
-    assert len(LINES) > 60
-    command = parser()
-    for page, line in LINES:
-        words = shlex.split(re.split(r" (?:>|\||&&|;) ?", line)[0])[1:]
-        if words[0].startswith(("VERB", "-")):
-            continue  # the help
-        try:
-            command.parse_args(words)
-        except SystemExit as end:
-            pytest.fail(f"{page}: {line}: {end}")
-
-
 HOW_TO = sorted(p.relative_to(ROOT).as_posix() for p in DOCS.glob("howto/*.md"))
 TYPED = ["README.md", *(HOW_TO if THOROUGH else [])]
 """Pages whose commands a newcomer types from the first to the last."""
@@ -136,6 +105,35 @@ for page, (folder, lines) in pages.items():
 """Types the lines of all pages into a Python without extras, in one process."""
 
 
+def command_lines():
+    """(page, line) of each complete line of the command that a page shows."""
+    for page in [*sorted(DOCS.rglob("*.md")), ROOT / "README.md"]:
+        for language, text in BLOCK.findall(page.read_text("utf-8")):
+            if language not in ("", "sh", "console"):
+                continue
+            for line in text.splitlines():
+                typed = line.removeprefix("$ ").partition("  #")[0].strip()
+                typed = typed.replace("$SLURM_ARRAY_TASK_ID", "1")  # of a job's script
+                if typed.startswith("pe ") and "..." not in typed and "$(" not in typed:
+                    yield page.relative_to(ROOT).as_posix(), typed
+
+
+LINES = sorted(set(command_lines()))
+
+
+def test_lines_of_the_command_parse():
+    assert len(LINES) > 60
+    command = parser()
+    for page, line in LINES:
+        words = shlex.split(re.split(r" (?:>|\||&&|;) ?", line)[0])[1:]
+        if words[0].startswith(("VERB", "-")):
+            continue  # the help
+        try:
+            command.parse_args(words)
+        except SystemExit as end:
+            pytest.fail(f"{page}: {line}: {end}")
+
+
 @pytest.fixture(scope="module")
 def bare_python(tmp_path_factory):
     """A Python that has this checkout and what it depends on, and no extra."""
@@ -153,7 +151,8 @@ def files_of_a_reader(folder, page):
     """Write what the reader of a page has: a car in three formats, studies, a detector's table."""
     body = shapes.box_car()
     wheels = [shapes.box((x, -0.9, 0.0), (x + 0.6, 0.9, 0.3)) for x in (-1.6, 1.1)]
-    names, sizes = ("wheel_rear", "wheel_front"), [len(wheel) for wheel in wheels]
+    names = ("wheel_rear", "wheel_front")
+    sizes = [len(wheel) for wheel in wheels]
     car = pe.Mesh(
         np.concatenate([body.triangles, *wheels]),
         np.concatenate([body.parts, np.repeat([2, 3], sizes)]).astype(int),
@@ -179,7 +178,8 @@ def files_of_a_reader(folder, page):
 def typed(bare_python, tmp_path_factory):
     """Answers to every line of the pages: page, line, status, stdout, stderr."""
     shared = tmp_path_factory.mktemp("typed")
-    pages, own = {}, {page: tmp_path_factory.mktemp("own") for page in OF_THEIR_OWN}
+    pages = {}
+    own = {page: tmp_path_factory.mktemp("own") for page in OF_THEIR_OWN}
     shown = [each for each in command_lines() if each[0] in TYPED]
     told = [{*line.split()} for page, line in shown if page not in own]
     for page in TYPED:

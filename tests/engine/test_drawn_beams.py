@@ -17,9 +17,39 @@ from pe_tools.outputs import mounted_view
 from tests.engine import shapes
 from tests.engine.drawn import box, car, lidar, mounted
 
-ChannelMode, BeamChoice = beams.ChannelMode, beams.BeamChoice
+ChannelMode = beams.ChannelMode
+BeamChoice = beams.BeamChoice
 
 LENGTH_M = 15.0
+COLOR = np.array([0.1, 0.2, 0.3, 0.5])
+# A square picture with 90 degrees: its corners stand at one along each axis, sqrt(3) away.
+SQUARE = pe.Camera("square", 1000, 1000, math.pi / 2)
+WIDE = pe.Camera("wide", 1920, 1080, math.radians(60))
+ARS = "Continental ARS408-21"
+PARKING = "Parking module 2.5 m"
+POSE = pe.Pose.from_degrees((1.0, 1.0, 0.7), (0, 4, -20))
+CAR = shapes.box_car()
+COVERED = replace(CAR, covers={"cabin": 1.0, "body": 2.0})
+EYES = {
+    "all cones": np.eye(3),
+    "no long": [(0.152, 1.053, -0.205), (0.115, 0.786, 0.099), (-0.004, -0.048, 1.052)],
+    "no middle": [(0.367, 0.861, -0.228), (0.280, 0.673, 0.047), (-0.012, 0.043, 0.969)],
+    "no short": [(1.256, -0.077, -0.179), (-0.078, 0.931, 0.148), (0.005, 0.691, 0.304)],
+}
+"""Linear sRGB as it is seen: Machado, Oliveira and Fernandes, 2009, severity 1."""
+TO_XYZ = np.array([(0.4124, 0.3576, 0.1805), (0.2126, 0.7152, 0.0722), (0.0193, 0.1192, 0.9505)])
+WHITE = np.array([0.9505, 1.0, 1.089])
+MIN_DISTANCE = 6.4
+"""In CIE Lab; some 2 can just be told side by side."""
+MIN_CONTRAST = 3.0
+"""Of what is drawn beside its ground: WCAG 2.1, 1.4.11."""
+SHADES = {
+    "viewport": (lambda color: color, VIEWPORT, (0.22, 0.22, 0.22)),
+    "paper": (tints.on_paper, PAPER, (0.97, 0.97, 0.97)),
+}
+KINDS = ("lidar", "camera", "radar", "ultrasonic")
+MIXES = ((11,), (0, 11), (0, 0, 11), (0, 0, 0, 11), (5, 6), (3, 8), (1, 6, 4), (4, 4, 2, 1))
+"""Rigs of eleven sensors, by kind: one kind alone, LiDARs and cameras, and mixes."""
 
 
 @pytest.fixture
@@ -37,7 +67,8 @@ def elevations_of(found):
 
 def test_agrees_with_the_engine_beam_by_beam(vehicle):
     sensor = mounted(position=(-0.3, 0.2, 1.8), rotation=(0, 5, 30))
-    found, field = beams.cast(sensor, vehicle), pe.beam_field(sensor, vehicle)
+    found = beams.cast(sensor, vehicle)
+    field = pe.beam_field(sensor, vehicle)
     np.testing.assert_array_equal(found.occluded, field.occluded_by >= 0)
     np.testing.assert_array_equal(found.ends, field.ends)
     assert found.occluded.any()
@@ -51,7 +82,7 @@ def test_the_share_of_stopped_beams_is_the_true_one(channels, height, low, high,
     field = pe.beam_field(sensor, vehicle)
     true = (field.occluded_by >= 0).mean()
     assert low < true < high
-    found = shown(sensor, vehicle, 300, channels, 2)
+    found = shown(sensor, vehicle, budget=300, channels=channels, number=2)
     assert found.share == pytest.approx(true)
     assert abs(found.occluded.sum() - true * len(found.ends)) <= 1.0
 
@@ -69,11 +100,13 @@ def test_few_stopped_beams_are_neither_lost_nor_a_fan():
 def test_one_channel_shows_its_own_share(vehicle):
     """The lowest channel's, which the roof stops; not that of the whole sensor."""
     sensor = mounted(position=(0.0, 0.0, 1.6))
-    lowest = shown(sensor, vehicle, 200, ChannelMode.ONE, 1)
+    lowest = shown(sensor, vehicle, budget=200, channels=ChannelMode.ONE, number=1)
     assert elevations_of(lowest) == {-40.0} and lowest.occluded.all() and lowest.share == 1.0
-    highest = shown(sensor, vehicle, 200, ChannelMode.ONE, 5)
+    highest = shown(sensor, vehicle, budget=200, channels=ChannelMode.ONE, number=5)
     assert elevations_of(highest) == {10.0} and not highest.occluded.any()
-    assert elevations_of(shown(sensor, vehicle, 200, ChannelMode.ONE, 99)) == {10.0}
+    assert elevations_of(
+        shown(sensor, vehicle, budget=200, channels=ChannelMode.ONE, number=99)
+    ) == {10.0}
 
 
 def test_a_rosette_shows_all_over_its_picture():
@@ -84,12 +117,11 @@ def test_a_rosette_shows_all_over_its_picture():
     assert len(shown(mounted(rosette), None, 200, ChannelMode.FEW).ends) == 200
 
 
-COLOR = np.array([0.1, 0.2, 0.3, 0.5])
-
-
 def free_lines(sensor, found, vehicle=None):
     around = None if vehicle is None else vehicle.bounds
-    lines = beams.free_lines(sensor, found, LENGTH_M, np.tile(COLOR, (len(found.ends), 1)), around)
+    lines = beams.free_lines(
+        sensor, found, LENGTH_M, np.tile(COLOR, (len(found.ends), 1)), around=around
+    )
     return lines.points.reshape(-1, 4, 3), lines.colors.reshape(-1, 4, 4)
 
 
@@ -135,11 +167,6 @@ def test_rings_lie_where_channels_meet_the_ground():
     assert len(points) == 720
 
 
-# A square picture with 90 degrees: its corners stand at one along each axis, sqrt(3) away.
-SQUARE = pe.Camera("square", 1000, 1000, math.pi / 2)
-WIDE = pe.Camera("wide", 1920, 1080, math.radians(60))
-
-
 def test_frustum_corners():
     points = kinds.frustum_points(mounted(SQUARE, (1.0, 2.0, 3.0)), math.sqrt(3.0))
     expected = [(1, 2, 3), (2, 3, 4), (2, 1, 4), (2, 1, 2), (2, 3, 2)]
@@ -160,7 +187,8 @@ def in_outline(outline, points):
     """Whether points (N, 2) are inside a convex outline, counter-clockwise."""
     found = np.ones(len(points), bool)
     for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
-        along, to = b - a, points - a[:2]
+        along = b - a
+        to = points - a[:2]
         found &= along[0] * to[:, 1] - along[1] * to[:, 0] >= -1e-9
     return found
 
@@ -168,7 +196,8 @@ def in_outline(outline, points):
 @pytest.mark.parametrize("rotation", [(0, 0, 0), (10, 45, -100), (0, 89, 0), (0, -5, 180)])
 def test_a_footprint_is_the_ground_in_the_picture(rotation):
     """Against every place of a raster, whichever way the camera looks; the horizon included."""
-    sensor, far_m = mounted(WIDE, (1.0, -0.5, 1.4), rotation), 12.0
+    sensor = mounted(WIDE, (1.0, -0.5, 1.4), rotation)
+    far_m = 12.0
     outline = kinds.footprint(sensor, far_m)
     grid = np.stack(np.meshgrid(*[np.linspace(-14.03, 13.91, 141)] * 2), axis=-1).reshape(-1, 2)
     distance = np.hypot(grid[:, 0] - 1.0, grid[:, 1] + 0.5)
@@ -184,12 +213,6 @@ def test_a_camera_that_looks_up_or_is_below_the_ground_has_no_footprint():
     assert not len(below)
     assert not len(kinds.footprint_lines(below, (1.0, 1.0, 1.0, 1.0)).points)
     assert not len(kinds.footprint_faces(below, (1.0, 1.0, 1.0, 1.0)).points)
-
-
-ARS, PARKING = "Continental ARS408-21", "Parking module 2.5 m"
-POSE = pe.Pose.from_degrees((1.0, 1.0, 0.7), (0, 4, -20))
-CAR = shapes.box_car()
-COVERED = replace(CAR, covers={"cabin": 1.0, "body": 2.0})
 
 
 def mounted_preset(name):
@@ -217,27 +240,13 @@ def test_rays_are_in_the_field_and_fill_it(name):
 
 
 def test_covers_let_radars_through_and_stop_sound():
-    radar, sonar = mounted_preset(ARS), mounted_preset(PARKING)
+    radar = mounted_preset(ARS)
+    sonar = mounted_preset(PARKING)
     for sensor, is_free in ((radar, True), (sonar, False)):
         view = mounted_view(sensor, COVERED, 5.0, math.radians(3.0))
         assert (view.ends == 5.0).all() == is_free
         plain = mounted_view(sensor, CAR, 5.0, math.radians(3.0))
         assert (plain.ends < 5.0).any()
-
-
-EYES = {
-    "all cones": np.eye(3),
-    "no long": [(0.152, 1.053, -0.205), (0.115, 0.786, 0.099), (-0.004, -0.048, 1.052)],
-    "no middle": [(0.367, 0.861, -0.228), (0.280, 0.673, 0.047), (-0.012, 0.043, 0.969)],
-    "no short": [(1.256, -0.077, -0.179), (-0.078, 0.931, 0.148), (0.005, 0.691, 0.304)],
-}
-"""Linear sRGB as it is seen: Machado, Oliveira and Fernandes, 2009, severity 1."""
-TO_XYZ = np.array([(0.4124, 0.3576, 0.1805), (0.2126, 0.7152, 0.0722), (0.0193, 0.1192, 0.9505)])
-WHITE = np.array([0.9505, 1.0, 1.089])
-MIN_DISTANCE = 6.4
-"""In CIE Lab; some 2 can just be told side by side."""
-MIN_CONTRAST = 3.0
-"""Of what is drawn beside its ground: WCAG 2.1, 1.4.11."""
 
 
 def linear(color):
@@ -257,15 +266,6 @@ def contrast(color, ground):
     """Contrast ratio of WCAG."""
     low, high = sorted(float(TO_XYZ[1] @ linear(each)) for each in (color, ground))
     return (high + 0.05) / (low + 0.05)
-
-
-SHADES = {
-    "viewport": (lambda color: color, VIEWPORT, (0.22, 0.22, 0.22)),
-    "paper": (tints.on_paper, PAPER, (0.97, 0.97, 0.97)),
-}
-KINDS = ("lidar", "camera", "radar", "ultrasonic")
-MIXES = ((11,), (0, 11), (0, 0, 11), (0, 0, 0, 11), (5, 6), (3, 8), (1, 6, 4), (4, 4, 2, 1))
-"""Rigs of eleven sensors, by kind: one kind alone, LiDARs and cameras, and mixes."""
 
 
 def rig_of(counts):

@@ -77,7 +77,8 @@ def test_the_latest_of_a_topic_is_answered_and_lanes_do_not_wait_for_each_other(
 
 def test_some_topics_are_delivered_before_the_others(engine):
     """As for a redraw, which starts no process either."""
-    score, other = ask(engine, "score", math.factorial, 4), ask(engine, "other", math.factorial, 3)
+    score = ask(engine, "score", math.factorial, 4)
+    other = ask(engine, "other", math.factorial, 3)
     while not score:
         assert engine.deliver_all("lively", "score")
     for _ in range(50):
@@ -85,7 +86,8 @@ def test_some_topics_are_delivered_before_the_others(engine):
         time.sleep(0.005)
     settled(engine)
     assert (score, other) == ([24], [6])
-    again, pid = ask(engine, "score", time.sleep, 0.1), engine.pid
+    again = ask(engine, "score", time.sleep, 0.1)
+    pid = engine.pid
     killed(engine)
     time.sleep(0.2)
     assert engine.deliver_all("score") and engine.pid == pid and not again
@@ -100,7 +102,8 @@ def test_no_request_waits_for_the_engine(engine):
     lets the process go on."""
     ask(engine, "begin", math.factorial, 3)
     settled(engine)
-    process, late = psutil.Process(engine.pid), []
+    process = psutil.Process(engine.pid)
+    late = []
     process.suspend()
     timer = threading.Timer(HANG_S, lambda: (late.append(True), process.resume()))
     timer.start()
@@ -133,7 +136,8 @@ def test_what_cannot_be_sent_fails_at_once_and_harms_nothing(engine):
 
 
 def test_a_vehicle_is_sent_once_and_comes_back_as_the_same_object(engine, monkeypatch):
-    car, sent = shapes.box_car(), []
+    car = shapes.box_car()
+    sent = []
     put = Writer.put
 
     def counted(self, message):
@@ -200,7 +204,12 @@ def test_too_little_memory_is_an_answer(engine):
 def small_search():
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 90))])
     search = pe.Search(
-        {"roof": ("x", "z")}, {}, 3, 1024, pe.Schedule(candidates=2), method="random"
+        {"roof": ("x", "z")},
+        limits={},
+        seed=3,
+        samples=1024,
+        schedule=pe.Schedule(candidates=2),
+        method="random",
     )
     return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search)
 
@@ -219,7 +228,8 @@ def run(engine, watched, step=None):
 
 
 def test_a_search_there_has_the_bits_of_one_here(engine):
-    study, here = small_search(), OptimizeJob(small_search())
+    study = small_search()
+    here = OptimizeJob(small_search())
     list(here)
     watched = WatchedJob(OptimizeJob(study))
     got = run(engine, watched)
@@ -237,7 +247,9 @@ def test_a_search_there_has_the_bits_of_one_here(engine):
 def test_a_search_whose_process_is_killed_goes_on_where_it_was(engine):
     here = OptimizeJob(small_search())
     list(here)
-    watched, kills, known = WatchedJob(OptimizeJob(small_search())), [], []
+    watched = WatchedJob(OptimizeJob(small_search()))
+    kills = []
+    known = []
 
     def step():
         known.append(len(watched.job.journal.entries))
@@ -274,7 +286,8 @@ def test_a_stopped_search_keeps_the_best_and_a_dropped_one_nothing(engine):
 
 
 def test_a_cancel_is_not_lost_with_the_process_that_was_told(engine):
-    watched, stopped = WatchedJob(OptimizeJob(small_search())), []
+    watched = WatchedJob(OptimizeJob(small_search()))
+    stopped = []
 
     def step():
         if watched.seen.evaluations >= 1 and not stopped:
@@ -338,5 +351,5 @@ def test_without_a_process_the_same_functions_are_called_here():
     call_here(math.factorial, (4,), got.append, got.append)
     call_here(math.sqrt, (-1.0,), got.append, got.append)
     steps = []
-    call_here(JobRun, (OptimizeJob(small_search()),), got.append, got.append, steps.append)
+    call_here(JobRun, (OptimizeJob(small_search()),), got.append, got.append, step=steps.append)
     assert got[0] == 24 and isinstance(got[1], ValueError) and got[2].kind == "optimize" and steps

@@ -28,6 +28,24 @@ from tests.thorough import THOROUGH, pairs
 
 SPACE = shapes.small_space()
 ROAD = pe.Prior.road()
+SAMPLES = 4096
+EACH_SENSOR_SPACE = pe.PerceptionSpace((-12.0, 12.0), (-7.0, 7.5), (0.0, 2.5), 0.5)
+RIGS = {
+    "cameras early, too": (None, None, "eyes", "eyes", "eyes"),
+    "all late": ("a", "b", None, None, None),
+    "as usual": (None,) * 5,
+    "some of them": ("a", "b", "eyes", "eyes", None),
+}
+SMALL_SPACE = shapes.small_space(0.25)
+CAR = shapes.box_car(2)
+STANDARD_ERROR_RIGS = {
+    "lidar": pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))]),
+    "camera": pe.Rig([shapes.camera(60.0)]),
+}
+BLIND = shapes.lidar_on_roof(shapes.small_lidar(2, 4), (0.0, 0.0, 900.0))
+EVERYWHERE = pe.Lidar("all", np.radians(np.linspace(-89.0, 89.0, 90)), 180, 100.0)
+TINY = pe.PerceptionSpace((-0.8, 0.8), (-0.8, 0.8), (0, 1.6), 0.2)
+WATCH_SPACE = pe.PerceptionSpace((-40, 40), (-10, 10), (0, 4), 0.5)  # five blocks of 32 planes
 
 
 def rig_of_all_kinds():
@@ -47,7 +65,8 @@ def defined(request):
     vehicle = shapes.box_car() if request.param else None
     space = pe.PerceptionSpace((-8, 8), (-6, 6), (0, 4), 0.5 if THOROUGH else 1.0)
     index = np.stack(np.unravel_index(np.arange(space.size), space.shape), axis=1)
-    centers, rig = space.center_of(index), rig_of_all_kinds()
+    centers = space.center_of(index)
+    rig = rig_of_all_kinds()
     measured = {s.name: pe.measure(s, centers, space.interval, vehicle) for s in rig}
     return SimpleNamespace(
         vehicle=vehicle, space=space, index=index, centers=centers, rig=rig, measured=measured
@@ -56,12 +75,16 @@ def defined(request):
 
 def score_by_definition(defined, prior, model):
     """Entropy and coverage from `measure`, the equations, and nothing of the evaluator."""
-    space, vehicle, index, centers = defined.space, defined.vehicle, defined.index, defined.centers
+    space = defined.space
+    vehicle = defined.vehicle
+    index = defined.index
+    centers = defined.centers
     weights = sum((d.ground[:, :, None] * d.profile).reshape(-1) for d in prior.densities(space))
     if vehicle is not None:
         top = vehicle.top(space)[index[:, 0], index[:, 1]]
         weights = np.where(centers[:, 2] < top, 0.0, weights)
-    measured, precisions = defined.measured, []
+    measured = defined.measured
+    precisions = []
     for members in defined.rig.groups.values():
         m = sum(measured[s.name] for s in members)
         ap = average_precision(m, model.curve(members[0].kind))
@@ -82,7 +105,8 @@ def test_the_grid_score_is_the_definition_s(defined, blind):
 
 
 def test_the_sampled_score_agrees_with_the_grid_within_its_error():
-    vehicle, rig = shapes.box_car(), rig_of_all_kinds()
+    vehicle = shapes.box_car()
+    rig = rig_of_all_kinds()
     grid = pe.Evaluator(SPACE, ROAD, vehicle).score(rig)
     sampled = pe.Evaluator(SPACE, ROAD, vehicle, samples=30_000).score(rig)
     assert 0.0 < sampled.stderr < 0.05
@@ -129,14 +153,12 @@ def test_beams_down_from_the_middle_are_stopped(at):
     space = pe.PerceptionSpace((-3, 3), (-3, 3), (0, 2), 0.5)
     index = np.stack(np.unravel_index(np.arange(space.size), space.shape), axis=1)
     sensor = shapes.lidar_on_roof(shapes.small_lidar(), at, (0, 0, 20))
-    vehicle, centers = shapes.box_car(), space.center_of(index)
+    vehicle = shapes.box_car()
+    centers = space.center_of(index)
     exact = pe.measure(sensor, centers, space.interval, vehicle)
     assert exact.sum() < pe.measure(sensor, centers, space.interval).sum()
     sample = kind_of(sensor).on_sample(Voxels(space, index, centers), vehicle, 60000)
     assert (sample.measure(sensor).m == exact).all()
-
-
-SAMPLES = 4096
 
 
 def evaluator(samples=SAMPLES):
@@ -145,7 +167,8 @@ def evaluator(samples=SAMPLES):
 
 def test_a_summary_and_a_score_agree():
     rig = rig_at((0.0, 0.0, 1.9))
-    summary, score = evaluator().summary(rig), evaluator().score(rig)
+    summary = evaluator().summary(rig)
+    score = evaluator().score(rig)
     rows = {k: v for k, v in score.scatter.residuals.items() if k[0] != "class"}
     scatter = replace(score.scatter, residuals=rows)
     assert summary == replace(score, per_sensor={}, scatter=scatter)
@@ -159,12 +182,10 @@ def test_a_summary_at_objects_has_the_ap_of_the_score():
     assert evaluator.summary(rig).ap == evaluator.score(rig).objects.ap
 
 
-EACH_SENSOR_SPACE = pe.PerceptionSpace((-12.0, 12.0), (-7.0, 7.5), (0.0, 2.5), 0.5)
-
-
 def sensors(groups):
     """Two LiDARs and three cameras all round a car, in these fusion groups."""
-    lidar, camera = shapes.small_lidar(16, 180), pe.Camera("eye", 640, 480, 1.2)
+    lidar = shapes.small_lidar(16, 180)
+    camera = pe.Camera("eye", 640, 480, 1.2)
     placed = [
         ("roof", lidar, (-0.4, 0.0, 1.7), 0.0),
         ("nose", lidar, (2.0, 0.1, 0.9), 0.2),
@@ -174,14 +195,6 @@ def sensors(groups):
     ]
     rows = zip(placed, groups, strict=True)
     return [pe.Sensor(n, m, pe.Pose(at, (0.0, 0.0, yaw)), g) for (n, m, at, yaw), g in rows]
-
-
-RIGS = {
-    "cameras early, too": (None, None, "eyes", "eyes", "eyes"),
-    "all late": ("a", "b", None, None, None),
-    "as usual": (None,) * 5,
-    "some of them": ("a", "b", "eyes", "eyes", None),
-}
 
 
 @pytest.mark.parametrize(("name", "how"), pairs(RIGS, product(["floor", "literal"], [5, 2])))
@@ -204,21 +217,11 @@ def test_alone_and_failing_are_scores_of_other_rigs(name, how):
         assert own.lost > 0.0 or blind == "literal"
 
 
-SMALL_SPACE = shapes.small_space(0.25)
-CAR = shapes.box_car(2)
-
-
 def rig_at(*places):
     sensors = [
         shapes.lidar_on_roof(position=place, name=f"lidar {n}") for n, place in enumerate(places)
     ]
     return pe.Rig(sensors)
-
-
-STANDARD_ERROR_RIGS = {
-    "lidar": pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))]),
-    "camera": pe.Rig([shapes.camera(60.0)]),
-}
 
 
 @pytest.mark.parametrize("rig", STANDARD_ERROR_RIGS)
@@ -238,7 +241,8 @@ def test_it_is_the_scatter_of_scores_on_other_samples(rig):
 
 def test_it_is_that_of_the_mean_of_sixteen_runs():
     """By its definition: the scatter of the runs' means, n - 1, over the root of their number."""
-    vehicle, sensor = shapes.box_car(), STANDARD_ERROR_RIGS["lidar"]["roof"]
+    vehicle = shapes.box_car()
+    sensor = STANDARD_ERROR_RIGS["lidar"]["roof"]
     evaluator = pe.Evaluator(SPACE, pe.Prior.road(), vehicle, samples=3000)
     sample = draw(pe.Prior.road().densities(SPACE), SPACE, 3000, vehicle.top(SPACE))
     m = pe.measure(sensor, sample.centers, SPACE.interval, vehicle)
@@ -250,11 +254,6 @@ def test_it_is_that_of_the_mean_of_sixteen_runs():
     score = evaluator.score(STANDARD_ERROR_RIGS["lidar"])
     assert score.entropy == pytest.approx(fmean(entropies), abs=1e-8)
     assert score.stderr == pytest.approx(stdev(means) / 4.0, abs=1e-8)
-
-
-BLIND = shapes.lidar_on_roof(shapes.small_lidar(2, 4), (0.0, 0.0, 900.0))
-EVERYWHERE = pe.Lidar("all", np.radians(np.linspace(-89.0, 89.0, 90)), 180, 100.0)
-TINY = pe.PerceptionSpace((-0.8, 0.8), (-0.8, 0.8), (0, 1.6), 0.2)
 
 
 @pytest.mark.parametrize(
@@ -285,9 +284,6 @@ def test_it_covers_what_a_sample_that_sees_nothing_has_missed():
         assert abs(score.entropy - truth.entropy) <= 2.0 * score.stderr
 
 
-WATCH_SPACE = pe.PerceptionSpace((-40, 40), (-10, 10), (0, 4), 0.5)  # five blocks of 32 planes
-
-
 def evaluator_of_watch(samples=0):
     return pe.Evaluator(WATCH_SPACE, pe.Prior.road(), shapes.box_car(), samples=samples)
 
@@ -298,7 +294,8 @@ def rig():
 
 def test_a_sample_tells_its_share_after_each_sensor_and_ends_when_asked():
     """Thousands of sensors take hours: how long is known after the first few."""
-    told, some = [], evaluator_of_watch(4096)
+    told = []
+    some = evaluator_of_watch(4096)
     score = some.score(rig(), watch=lambda share: told.append(share) or True)
     assert len(told) == 5 and told == sorted(told) and told[0] == 0.0
     assert told[-1] == pytest.approx(1.0)
@@ -329,8 +326,11 @@ def test_a_score_ends_when_it_is_reported_and_the_next_is_sound(at):
 
 def test_a_stopped_job_s_thread_stops_as_well(monkeypatch):
     """Its score is given up, and does not run on behind the program's back."""
-    started, go, done = threading.Event(), threading.Event(), threading.Event()
-    ended, whole = [], pe.Evaluator.score
+    started = threading.Event()
+    go = threading.Event()
+    done = threading.Event()
+    ended = []
+    whole = pe.Evaluator.score
 
     def score(self, *args, **kwargs):
         started.set()

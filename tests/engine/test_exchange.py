@@ -20,6 +20,73 @@ from tests.engine.refusals import wrongly_refused
 
 AXLE = pe.Reference(-1.31, 0.33)
 PUCK = "Velodyne VLP-16 Puck"
+TABLE = """\
+# a comment; with a semicolon, and a comma
+name,kind,model,x_m,y_m,z_m,roll_deg,pitch_deg,yaw_deg
+roof,lidar,Pandar64,-0.43,0,1.8,0,0,0
+"front, left",camera,Camera 60 deg,1.5,0,1.2,0,5,0
+"""
+JOINT = '<joint name="{0}{1}" type="fixed"><parent link="{0}"/><child link="{1}"/></joint>'
+LINKS = '<link name="a"/><link name="b"/><link name="c"/>'
+CALL = "static_transform_publisher --x one --frame-id a --child-frame-id b"
+LEFT_HANDED = "R0_rect: 1 0 0 0 1 0 0 0 1\nTr_velo_to_cam: 0 1 0 0 1 0 0 0 0 0 1 0\n"
+ALL_SIX = "".join(f"    {key}: 0\n" for key in ("x", "y", "z", "roll", "pitch", "yaw"))
+BAD_KITS = [
+    ("base_link", "base_link: [1, 2]\n"),
+    ("line 3", "base_link:\n    a:\n  b:\n"),
+    ("base_link.a", "base_link:\n  a: &x 1\n"),
+    ("line 3", "base_link:\n  a: 1\n  a: 2\n"),
+    ("base_link.sensor_kit_base_link.y", "base_link:\n  sensor_kit_base_link:\n    x: 1\n"),
+    ("base_link", f"base_link:\n  other:\n{ALL_SIX}"),
+    ("base_link", "map:\n  x: 1\n"),
+]
+SUFFIXES = [
+    ("PRIUS.URDF", None, "urdf"),
+    ("objects.json", None, "carla"),
+    ("scene.glb", None, "gltf"),
+    ("prius.urdf", "urdf", "urdf"),
+    ("rig.launch.xml", "ros", "ros"),
+    ("front.json", "osi", "osi"),
+    ("kit", "autoware", "autoware"),
+    ("prius.v2", "csv", "csv"),
+    ("rig.json", None, "driveworks"),
+    ("rig.json", "carla", "carla"),
+]
+"""Output, the format that is asked for, and the one that is written."""
+CURVE = pe.ApCurve(0.2, 0.1)
+NEAR = pe.Camera("near", 640, 480, math.radians(70.0), min_range=0.3, max_range=40.0)
+BEAMS = pe.Lidar("own", np.radians([-20, -10, 0]), 36, 80.0, min_range=0.5)
+LOSSY = pe.Rig(
+    [
+        pe.Sensor("roof", BEAMS, pe.Pose((0.0, 0.0, 1.8)), fusion="top"),
+        pe.Sensor("puck", pe.catalog.load("Velodyne VLP-16 Puck"), pe.Pose((1.0, 0.0, 1.0))),
+        pe.Sensor("eye", NEAR, pe.Pose((1.5, 0.1, 1.3)), curve=CURVE),
+    ]
+)
+RANGES = "minimum range of eye; maximum range of eye"
+NOTHING_BUT_POSES = f"beams of roof, puck; {RANGES}; fusion group of roof; AP curve of eye"
+EVERY_BEAM = (
+    "minimum range of roof, eye; maximum range of eye; fusion group of roof; AP curve of eye"
+)
+LOST = {
+    "csv": "beams of roof; AP curve of eye",
+    "urdf": "AP curve of eye",
+    "carla": EVERY_BEAM,
+    "osi": EVERY_BEAM,
+    "driveworks": f"beams of roof; {RANGES}; fusion group of roof; AP curve of eye",
+    "kitti": f"beams of roof; {RANGES}; fusion group of roof; AP curve of eye",
+}
+P0 = "718.856 0 607.1928 0 0 718.856 185.2157 0 0 0 1 0"
+P2 = "718.856 0 607.1928 45.38225 0 718.856 185.2157 -0.1130887 0 0 1 0.003779761"
+TR = (
+    "0.0004276802 -0.9999672 -0.008084492 -0.0119846 -0.007210627 0.008081198 -0.9999413 "
+    "-0.05403985 0.9999739 0.000485949 -0.007206934 -0.2921969"
+)
+"""Of odometry's sequence 00: the LiDAR to the rectified first camera."""
+TO_FIRST = (
+    "0.007533745 -0.9999714 -0.000616602 -0.004069766 0.01480249 0.0007280733 -0.9998902 "
+    "-0.07631618 0.9998621 0.00752379 0.01480755 -0.2717806"
+)
 
 
 def sensor(name, model, position, rotation=(0, 0, 0)):
@@ -74,14 +141,6 @@ def test_carla_s_ground_truth_and_spectator_are_no_sensors(tmp_path):
         "2 spectator sensors (rgb_view, Spectator)" in line
         and "1 camera.dvs sensor (events)" in line
     )
-
-
-TABLE = """\
-# a comment; with a semicolon, and a comma
-name,kind,model,x_m,y_m,z_m,roll_deg,pitch_deg,yaw_deg
-roof,lidar,Pandar64,-0.43,0,1.8,0,0,0
-"front, left",camera,Camera 60 deg,1.5,0,1.2,0,5,0
-"""
 
 
 def saved_by_a_spreadsheet(separator):
@@ -182,7 +241,17 @@ def test_the_rear_axle_is_guessed_from_wheels_alone():
         (("body", "steering_wheel", "wheel_arch"), False),
     ):
         found = pe.guessed_reference(pe.Vehicle(np.concatenate(meshes), numbers, names))
-        assert found == (pe.Reference(-1.3, 0.3, 2.8, 0.9, 1.0) if known else None)
+        assert found == (
+            pe.Reference(
+                rear_axle_x=-1.3,
+                rear_axle_z=0.3,
+                wheelbase=2.8,
+                front_overhang=0.9,
+                rear_overhang=1.0,
+            )
+            if known
+            else None
+        )
     assert pe.guessed_reference(None) is None
 
 
@@ -193,12 +262,6 @@ def test_without_the_rear_axle_its_formats_are_refused(tmp_path):
         with pytest.raises(pe.InputError, match="rear axle's place, which is the origin"):
             pt.export_rig(MIXED, name, tmp_path / "new")
     assert not (tmp_path / "new").exists()
-
-
-JOINT = '<joint name="{0}{1}" type="fixed"><parent link="{0}"/><child link="{1}"/></joint>'
-LINKS = '<link name="a"/><link name="b"/><link name="c"/>'
-CALL = "static_transform_publisher --x one --frame-id a --child-frame-id b"
-LEFT_HANDED = "R0_rect: 1 0 0 0 1 0 0 0 1\nTr_velo_to_cam: 0 1 0 0 1 0 0 0 0 0 1 0\n"
 
 
 def robot(*joints):
@@ -224,16 +287,6 @@ BAD = [
     ("Tr_velo_to_cam", ("calib.txt", "P0: 1 2 3\nR0_rect: 1 0 0 0 1 0 0 0 1\n")),
     ("Tr_velo_to_cam", ("calib.txt", LEFT_HANDED)),
     ("format", ("something.bin", "")),
-]
-ALL_SIX = "".join(f"    {key}: 0\n" for key in ("x", "y", "z", "roll", "pitch", "yaw"))
-BAD_KITS = [
-    ("base_link", "base_link: [1, 2]\n"),
-    ("line 3", "base_link:\n    a:\n  b:\n"),
-    ("base_link.a", "base_link:\n  a: &x 1\n"),
-    ("line 3", "base_link:\n  a: 1\n  a: 2\n"),
-    ("base_link.sensor_kit_base_link.y", "base_link:\n  sensor_kit_base_link:\n    x: 1\n"),
-    ("base_link", f"base_link:\n  other:\n{ALL_SIX}"),
-    ("base_link", "map:\n  x: 1\n"),
 ]
 
 
@@ -268,19 +321,6 @@ def test_the_command_writes_and_reads(tmp_path, capsys, monkeypatch):
     assert "an existing file" in capsys.readouterr().err
 
 
-SUFFIXES = [
-    ("PRIUS.URDF", None, "urdf"),
-    ("objects.json", None, "carla"),
-    ("scene.glb", None, "gltf"),
-    ("prius.urdf", "urdf", "urdf"),
-    ("rig.launch.xml", "ros", "ros"),
-    ("front.json", "osi", "osi"),
-    ("kit", "autoware", "autoware"),
-    ("prius.v2", "csv", "csv"),
-    ("rig.json", None, "driveworks"),
-    ("rig.json", "carla", "carla"),
-]
-"""Output, the format that is asked for, and the one that is written."""
 NO_FORMAT = [("rig", "ros"), ("prius.urdf", "csv"), ("plan.svg", "gltf"), ("front.json", None)]
 NO_FORMAT += [("prius.step", None), ("prius", None)]
 
@@ -293,31 +333,6 @@ def test_the_suffix_of_a_file_decides_its_format():
         format_of_file(Path(given[0]), FILE_NAMES, given[1])
 
     assert wrongly_refused(refused, [("format", given) for given in NO_FORMAT]) == []
-
-
-CURVE = pe.ApCurve(0.2, 0.1)
-NEAR = pe.Camera("near", 640, 480, math.radians(70.0), min_range=0.3, max_range=40.0)
-BEAMS = pe.Lidar("own", np.radians([-20, -10, 0]), 36, 80.0, min_range=0.5)
-LOSSY = pe.Rig(
-    [
-        pe.Sensor("roof", BEAMS, pe.Pose((0.0, 0.0, 1.8)), fusion="top"),
-        pe.Sensor("puck", pe.catalog.load("Velodyne VLP-16 Puck"), pe.Pose((1.0, 0.0, 1.0))),
-        pe.Sensor("eye", NEAR, pe.Pose((1.5, 0.1, 1.3)), curve=CURVE),
-    ]
-)
-RANGES = "minimum range of eye; maximum range of eye"
-NOTHING_BUT_POSES = f"beams of roof, puck; {RANGES}; fusion group of roof; AP curve of eye"
-EVERY_BEAM = (
-    "minimum range of roof, eye; maximum range of eye; fusion group of roof; AP curve of eye"
-)
-LOST = {
-    "csv": "beams of roof; AP curve of eye",
-    "urdf": "AP curve of eye",
-    "carla": EVERY_BEAM,
-    "osi": EVERY_BEAM,
-    "driveworks": f"beams of roof; {RANGES}; fusion group of roof; AP curve of eye",
-    "kitti": f"beams of roof; {RANGES}; fusion group of roof; AP curve of eye",
-}
 
 
 def test_what_a_format_cannot_hold_is_one_line():
@@ -338,19 +353,8 @@ def test_gazebo_s_clip_is_the_camera_s_ranges_and_a_foreign_clip_is_not():
     assert "<clip>" not in rig_files(plain, "urdf")[0]["rig.urdf"].decode()
 
 
-P0 = "718.856 0 607.1928 0 0 718.856 185.2157 0 0 0 1 0"
-P2 = "718.856 0 607.1928 45.38225 0 718.856 185.2157 -0.1130887 0 0 1 0.003779761"
-TR = (
-    "0.0004276802 -0.9999672 -0.008084492 -0.0119846 -0.007210627 0.008081198 -0.9999413 "
-    "-0.05403985 0.9999739 0.000485949 -0.007206934 -0.2921969"
-)
-"""Of odometry's sequence 00: the LiDAR to the rectified first camera."""
 R = "0.9999239 0.00983776 -0.007445048 -0.009869795 0.9999421 -0.004278459 0.007402527 "
 R += "0.004351614 0.9999631"
-TO_FIRST = (
-    "0.007533745 -0.9999714 -0.000616602 -0.004069766 0.01480249 0.0007280733 -0.9998902 "
-    "-0.07631618 0.9998621 0.00752379 0.01480755 -0.2717806"
-)
 LAYOUTS = {
     "calib.txt": f"P0: {P0}\nP2: {P2}\nTr: {TR}\n",
     "000007.txt": f"P0: {P0}\nP2: {P2}\nR0_rect: {R}\nTr_velo_to_cam: {TO_FIRST}\n\n",

@@ -32,6 +32,7 @@ ROBOT = f"""<robot name="cart">
   {IMU}
 </robot>
 """
+CALL = '<node exec="static_transform_publisher" args="--frame-id {} --child-frame-id {}{}"/>'
 
 
 def sensor(name, model=PUCK, position=(0.5, 0.1, 1.5), rotation=(3, 10, 20)):
@@ -75,7 +76,10 @@ def test_frames_of_sensors_and_of_the_format_stay_apart(name, tmp_path):
     assert "cam_optical: called cam_optical_sensor, which is a legal frame of its own" in lines
     found = import_rig(paths[0], name).rig
     assert [each.name for each in found] == [
-        *("cam_optical_sensor", "cam", "base_link_2", "base_link_2_2")
+        "cam_optical_sensor",
+        "cam",
+        "base_link_2",
+        "base_link_2_2",
     ]
     for ours, theirs in zip(rig, found, strict=True):
         assert theirs.pose.position == pytest.approx(ours.pose.position, abs=1e-9)
@@ -94,9 +98,6 @@ def test_a_robot_s_origin_is_the_link_on_the_ground_else_its_root(tmp_path):
     ours, _ = rig_files(found.rig, "urdf")
     (tmp_path / "ours.urdf").write_bytes(ours["rig.urdf"])
     assert not any("taken in" in s for s in import_rig(tmp_path / "ours.urdf").lines)
-
-
-CALL = '<node exec="static_transform_publisher" args="--frame-id {} --child-frame-id {}{}"/>'
 
 
 def test_a_frame_with_an_optical_frame_below_it_is_a_camera(tmp_path):

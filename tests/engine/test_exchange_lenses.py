@@ -12,13 +12,6 @@ from pe_core.sensors.camera import BrownConrady, Camera
 
 AXLE = pe.Reference(-1.31, 0.33)
 SIZE = (1920, 1080)
-
-
-def camera(name, lens):
-    pose = pe.Pose.from_degrees((1.5, 0.1, 1.3), (0.3, 2.5, -0.4))
-    return pe.Sensor(name, Camera(f"own {name}", *SIZE, lens=lens), pose)
-
-
 LAUNCH = (
     '<node exec="static_transform_publisher" args="--frame-id base_link --child-frame-id eye"/>'
 )
@@ -37,6 +30,18 @@ distortion_coefficients:
   cols: 5
   data: [{values}]
 """
+COEFFICIENTS = "distortion_coefficients.data"
+BAD_INFO = [
+    ("distortion_model", ("fov", "0.9, 0, 0, 0")),
+    (COEFFICIENTS, ("plumb_bob", "0.1, 0.2")),
+    (COEFFICIENTS, ("plumb_bob", "0.1, 0.2, 0, 0, 0, 0.5")),
+    (COEFFICIENTS, ("plumb_bob", "0.1, a, 0, 0")),
+]
+
+
+def camera(name, lens):
+    pose = pe.Pose.from_degrees((1.5, 0.1, 1.3), (0.3, 2.5, -0.4))
+    return pe.Sensor(name, Camera(f"own {name}", *SIZE, lens=lens), pose)
 
 
 def info_of(folder, model, values):
@@ -60,8 +65,7 @@ def info_of(folder, model, values):
 def test_ros_intrinsics_are_read_right(model, values, right, tmp_path):
     (eye,) = pt.import_rig(info_of(tmp_path, model, values)).rig
     assert (eye.kind, eye.model.width, eye.model.height) == ("camera", 640, 480)
-    ahead = np.array([2.0]), np.array([-1.0]), np.array([0.0])
-    x, y = eye.model.projection.project(*ahead)
+    x, y = eye.model.projection.project(np.array([2.0]), np.array([-1.0]), np.array([0.0]))
     assert (x[0], y[0]) == (pytest.approx(right, abs=1e-6), 240.0)
 
 
@@ -72,15 +76,6 @@ def test_a_lens_that_folds_sees_as_far_as_it_does_not(tmp_path):
     assert fov == pytest.approx(2.0 * math.degrees(math.atan(math.sqrt(1 / 2.7))), abs=0.3)
     (line,) = found.lines
     assert line.startswith("eye: its lens folds inside the picture; what is farther than 31.")
-
-
-COEFFICIENTS = "distortion_coefficients.data"
-BAD_INFO = [
-    ("distortion_model", ("fov", "0.9, 0, 0, 0")),
-    (COEFFICIENTS, ("plumb_bob", "0.1, 0.2")),
-    (COEFFICIENTS, ("plumb_bob", "0.1, 0.2, 0, 0, 0, 0.5")),
-    (COEFFICIENTS, ("plumb_bob", "0.1, a, 0, 0")),
-]
 
 
 @pytest.mark.parametrize(("field", "given"), BAD_INFO)
@@ -150,7 +145,7 @@ def test_driveworks_corrections_are_applied(tmp_path):
 
 
 def test_gazebo_s_distortion_centre_is_the_principal_point(tmp_path):
-    lens = BrownConrady(930.0, 930.0, 0.485 * 1920, 0.526 * 1080, None, -0.02)
+    lens = BrownConrady(fx=930.0, fy=930.0, cx=0.485 * 1920, cy=0.526 * 1080, fov=None, k1=-0.02)
     (path,), _ = pt.export_rig(pe.Rig([camera("eye", lens)]), "urdf", tmp_path / "rig.urdf")
     text = path.read_text()
     center = text.partition("<center>")[2].partition("</center>")[0]

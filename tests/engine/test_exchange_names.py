@@ -19,31 +19,6 @@ AXLE = pe.Reference(-1.3, 0.3)
 KIT_AT = (1.3, 0.0, 1.7)
 HALF = math.pi / 2.0
 PUCK = "Velodyne VLP-16 Puck"
-
-
-def kit_of(folder, rows, comments=(), sensor_kit=KIT_AT):
-    """Write an Autoware kit: frames of six numbers on a sensor kit that is not turned."""
-    folder.mkdir(exist_ok=True)
-    keys = ("x", "y", "z", "roll", "pitch", "yaw")
-
-    def text(parent, frames):
-        lines = [f"{parent}:"]
-        for name, numbers in frames.items():
-            comment = f"  # {dict(comments)[name]}" if name in dict(comments) else ""
-            lines.append(f"  {name}:{comment}")
-            lines += [f"    {key}: {v!r}" for key, v in zip(keys, numbers, strict=True)]
-        return "\n".join(lines) + "\n"
-
-    base = {"sensor_kit_base_link": (*sensor_kit, 0.0, 0.0, 0.0)}
-    (folder / "sensors_calibration.yaml").write_text(text("base_link", base))
-    (folder / "sensor_kit_calibration.yaml").write_text(text("sensor_kit_base_link", rows))
-    return folder
-
-
-def texts_of(folder):
-    return {path.name: path.read_text() for path in folder.glob("*_calibration.yaml")}
-
-
 SAID = {
     "VLS128_TOP": "Velodyne VLS-128 Alpha Prime",
     "vlp32c": "Velodyne VLP-32C Ultra Puck",
@@ -89,6 +64,77 @@ KINDS = {
     "roof": None,
     "ears": None,
 }
+OPTICAL = {
+    "FRONT/camera_link": (0.2, 0.0, -0.2, -1.5708, 0.0, -1.5708),
+    "BACK/camera_link": (-1.6, 0.0, -0.5, -1.5708, 0.0, 1.5708),
+    "low/camera_link": (0.0, 0.1, 0.0, -HALF - 0.4, 0.0, -HALF),
+    "side/camera_link": (0.0, 0.5, 0.0, 0.0, 0.3, HALF),
+    "down_camera_optical_link": (0.5, 0.0, 0.0, math.pi, 0.0, -HALF),
+    "steep/camera_link": (0.5, 0.5, 0.0, -HALF - 1.1, 0.0, -HALF),
+    "turned/camera_link": (0.5, 1.0, 0.0, math.pi - 0.1, 0.3, 0.0),
+}
+"""By roll, by roll, nose down by 0.4, in body axes, by name: z points down, y to the rear; nose
+down by 1.1; in body axes upside down."""
+STRAY = {
+    "left_calibration.yaml": "image_width: 1920\nimage_height: 1280\ncamera_name: left\n",
+    "rear_calibration.yaml": "other_unit_base_link:\n  a_base_link: {x: 0}\n",
+    "odd_calibration.yaml": "a:\n  b:\n c: [\n",
+}
+INFO = (
+    "image_width: 640\nimage_height: 480\ndistortion_model: {}\n"
+    "camera_matrix: {{rows: 3, cols: 3, data: [400, 0, {}, 0, 400, 240, 0, 0, 1]}}\n"
+    "distortion_coefficients: {{rows: 1, cols: 4, data: [0, 0, 0, 0]}}\n"
+)
+ODD = {
+    "distortion_model": INFO.format("double_sphere", 320),
+    "cx": INFO.format("plumb_bob", 700),  # of a calibration at another size
+    "image_width": INFO.format("plumb_bob", 320).replace("640", "wide"),
+    "line 1": "{",
+}
+CALL = "static_transform_publisher"
+POSITIONAL = {
+    "-0.5 0.7 1.5 0.1 0.2 0.3 base lidar": (0.3, 0.2, 0.1),
+    "-0.5 0.7 1.5 0.1 0.2 0.3 base lidar 100": (0.3, 0.2, 0.1),
+    "-0.5 0.7 1.5 0 0 0.6 0.8 base lidar": (0.0, 0.0, 2.0 * math.atan2(0.6, 0.8)),
+    "-0.5 0.7 1.5 0 0 0.6 0.8 base lidar 100": (0.0, 0.0, 2.0 * math.atan2(0.6, 0.8)),
+    "--x -0.5 --y 0.7 --z 1.5 --yaw 0.1 --frame-id base --child-frame-id lidar": (0, 0, 0.1),
+}
+"""Arguments, and roll, pitch, yaw: the order of a call without options is yaw, pitch, roll, or
+qx, qy, qz, qw (tf2_ros and tf: static_transform_publisher; ROS 1 has a period in ms)."""
+FORMS = {
+    "a.launch.xml": '<launch><group><node pkg="tf2_ros" exec="{1}" name="a" args="{0}"/></group>'
+    "</launch>",
+    "b.launch.xml": '<launch><node args="{0}" name=\'it\' pkg="tf" type="{1}"/></launch>',
+    "c.sh": "#!/bin/sh\nros2 run tf2_ros {1} {0}\n",
+    "d.sh": "ros2 run tf2_ros {1} {0} &\n",
+    "e.sh": "ros2 run tf2_ros {1} {0}; sleep 1\n",
+    "f.sh": "ros2 run tf2_ros {1} {0} --ros-args -r __node:=it > log &\n",
+    "g.launch": '<launch><node args="{0}" name="it" pkg="tf" type="{1}"/></launch>',
+}
+OPTICAL_YPR = "-1.5707963267948966 0 -1.5707963267948966"
+
+
+def kit_of(folder, rows, comments=(), sensor_kit=KIT_AT):
+    """Write an Autoware kit: frames of six numbers on a sensor kit that is not turned."""
+    folder.mkdir(exist_ok=True)
+    keys = ("x", "y", "z", "roll", "pitch", "yaw")
+
+    def text(parent, frames):
+        lines = [f"{parent}:"]
+        for name, numbers in frames.items():
+            comment = f"  # {dict(comments)[name]}" if name in dict(comments) else ""
+            lines.append(f"  {name}:{comment}")
+            lines += [f"    {key}: {v!r}" for key, v in zip(keys, numbers, strict=True)]
+        return "\n".join(lines) + "\n"
+
+    base = {"sensor_kit_base_link": (*sensor_kit, 0.0, 0.0, 0.0)}
+    (folder / "sensors_calibration.yaml").write_text(text("base_link", base))
+    (folder / "sensor_kit_calibration.yaml").write_text(text("sensor_kit_base_link", rows))
+    return folder
+
+
+def texts_of(folder):
+    return {path.name: path.read_text() for path in folder.glob("*_calibration.yaml")}
 
 
 def test_a_name_says_its_model_and_its_kind():
@@ -140,19 +186,6 @@ def test_a_lidar_is_lifted_by_its_own_housing_and_a_stand_in_by_none(tmp_path):
         again = pt.import_rig(out, None, AXLE).rig
         for ours, theirs in zip(found.rig, again, strict=True):
             assert theirs.pose.position == pytest.approx(ours.pose.position, abs=1e-9)
-
-
-OPTICAL = {
-    "FRONT/camera_link": (0.2, 0.0, -0.2, -1.5708, 0.0, -1.5708),
-    "BACK/camera_link": (-1.6, 0.0, -0.5, -1.5708, 0.0, 1.5708),
-    "low/camera_link": (0.0, 0.1, 0.0, -HALF - 0.4, 0.0, -HALF),
-    "side/camera_link": (0.0, 0.5, 0.0, 0.0, 0.3, HALF),
-    "down_camera_optical_link": (0.5, 0.0, 0.0, math.pi, 0.0, -HALF),
-    "steep/camera_link": (0.5, 0.5, 0.0, -HALF - 1.1, 0.0, -HALF),
-    "turned/camera_link": (0.5, 1.0, 0.0, math.pi - 0.1, 0.3, 0.0),
-}
-"""By roll, by roll, nose down by 0.4, in body axes, by name: z points down, y to the rear; nose
-down by 1.1; in body axes upside down."""
 
 
 def test_an_optical_frame_of_a_kit_looks_along_z(tmp_path):
@@ -221,13 +254,6 @@ def test_optical_axes_and_body_axes_are_each_other_s():
         assert seen[:, 1] == pytest.approx(-pose.ground_from_sensor[:, 2]), "y is down"
 
 
-STRAY = {
-    "left_calibration.yaml": "image_width: 1920\nimage_height: 1280\ncamera_name: left\n",
-    "rear_calibration.yaml": "other_unit_base_link:\n  a_base_link: {x: 0}\n",
-    "odd_calibration.yaml": "a:\n  b:\n c: [\n",
-}
-
-
 @pytest.mark.parametrize("name", STRAY)
 def test_a_stray_file_is_told_and_the_kit_is_read(name, tmp_path):
     kit = kit_of(tmp_path, {"top_base_link": (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)})
@@ -252,19 +278,6 @@ def test_a_unit_with_a_damaged_number_is_refused_and_so_are_strays_alone(tmp_pat
     (kit / "kit_calibration.yaml").write_text(STRAY["left_calibration.yaml"])
     with pytest.raises(pe.InputError, match="one frame"):
         pt.import_rig(kit, None, AXLE)
-
-
-INFO = (
-    "image_width: 640\nimage_height: 480\ndistortion_model: {}\n"
-    "camera_matrix: {{rows: 3, cols: 3, data: [400, 0, {}, 0, 400, 240, 0, 0, 1]}}\n"
-    "distortion_coefficients: {{rows: 1, cols: 4, data: [0, 0, 0, 0]}}\n"
-)
-ODD = {
-    "distortion_model": INFO.format("double_sphere", 320),
-    "cx": INFO.format("plumb_bob", 700),  # of a calibration at another size
-    "image_width": INFO.format("plumb_bob", 320).replace("640", "wide"),
-    "line 1": "{",
-}
 
 
 @pytest.mark.parametrize("field", ODD)
@@ -318,28 +331,6 @@ def test_sensors_of_one_kind_at_one_place_are_told(tmp_path):
     assert advice == ["velodyne_top", "c2"]
 
 
-CALL = "static_transform_publisher"
-POSITIONAL = {
-    "-0.5 0.7 1.5 0.1 0.2 0.3 base lidar": (0.3, 0.2, 0.1),
-    "-0.5 0.7 1.5 0.1 0.2 0.3 base lidar 100": (0.3, 0.2, 0.1),
-    "-0.5 0.7 1.5 0 0 0.6 0.8 base lidar": (0.0, 0.0, 2.0 * math.atan2(0.6, 0.8)),
-    "-0.5 0.7 1.5 0 0 0.6 0.8 base lidar 100": (0.0, 0.0, 2.0 * math.atan2(0.6, 0.8)),
-    "--x -0.5 --y 0.7 --z 1.5 --yaw 0.1 --frame-id base --child-frame-id lidar": (0, 0, 0.1),
-}
-"""Arguments, and roll, pitch, yaw: the order of a call without options is yaw, pitch, roll, or
-qx, qy, qz, qw (tf2_ros and tf: static_transform_publisher; ROS 1 has a period in ms)."""
-FORMS = {
-    "a.launch.xml": '<launch><group><node pkg="tf2_ros" exec="{1}" name="a" args="{0}"/></group>'
-    "</launch>",
-    "b.launch.xml": '<launch><node args="{0}" name=\'it\' pkg="tf" type="{1}"/></launch>',
-    "c.sh": "#!/bin/sh\nros2 run tf2_ros {1} {0}\n",
-    "d.sh": "ros2 run tf2_ros {1} {0} &\n",
-    "e.sh": "ros2 run tf2_ros {1} {0}; sleep 1\n",
-    "f.sh": "ros2 run tf2_ros {1} {0} --ros-args -r __node:=it > log &\n",
-    "g.launch": '<launch><node args="{0}" name="it" pkg="tf" type="{1}"/></launch>',
-}
-
-
 @pytest.mark.parametrize("args", POSITIONAL)
 @pytest.mark.parametrize("name", FORMS)
 def test_a_transform_is_read_in_each_form(args, name, tmp_path):
@@ -359,9 +350,6 @@ def test_a_transform_of_too_few_numbers_is_refused(tmp_path):
 def calls(*rows):
     nodes = (f'<node exec="{CALL}" args="{row}"/>' for row in rows)
     return f"<launch>{''.join(nodes)}</launch>"
-
-
-OPTICAL_YPR = "-1.5707963267948966 0 -1.5707963267948966"
 
 
 def test_optical_frames_of_transforms(tmp_path):

@@ -13,7 +13,13 @@ from pe_tools.exchange import rig_files
 from tests.engine.refusals import wrongly_refused
 
 AXLE = pe.Reference(-1.31, 0.33)
-BEAMS = pe.Lidar("few beams", np.radians([-20, -7, 3]), 36, 80.0, np.radians([0, 2, 0]))
+BEAMS = pe.Lidar(
+    "few beams",
+    np.radians([-20, -7, 3]),
+    azimuth_count=36,
+    max_range=80.0,
+    azimuth_offsets=np.radians([0, 2, 0]),
+)
 NEAR = pe.Lidar("near", np.radians([-10.0]), 8, 30.0)
 RIG = pe.Rig(
     [
@@ -22,6 +28,19 @@ RIG = pe.Rig(
         pe.Sensor("eye", pe.Camera("own", 1920, 1080, math.radians(70.0)), pe.Pose((1, 0, 1))),
     ]
 )
+WRONG = [
+    ("num_of_pixels", {"num_of_pixels": 7}),
+    ("sensor_id", {"sensorId": {"value": "x"}}),
+    ("sensor_id.value", {"sensor_id": {"value": "x"}}),
+    ("sensor_id", {"sensor_id": {"value": 0}}),
+    ("directions", {"directions": [{"x": 1e308}], "num_of_pixels": 1}),
+    ("directions", {"directions": [{"x": 0.0}], "num_of_pixels": 1}),
+    ("field_of_view_vertical", {"field_of_view_vertical": 1e308}),
+    ("number_of_rays_horizontal", {"number_of_rays_horizontal": 1e308}),
+    ("range", {"range": 1e308}),
+    ("directions", {"directions": [{"x": "east"}]}),
+    ("mounting_position.position.x", {"mounting_position": {"position": {"x": "far"}}}),
+]
 
 
 @pytest.fixture(scope="module")
@@ -80,21 +99,6 @@ def test_one_range_is_there_for_all_lidars_and_others_are_reported(tmp_path):
     found = pt.import_rig(path, "osi", AXLE)
     assert "lidar_0, lidar_1: no range in the file; 100 m stands in" in found.lines
     assert found.rig["lidar_0"].model.beam_count == 108, "its beams stay"
-
-
-WRONG = [
-    ("num_of_pixels", {"num_of_pixels": 7}),
-    ("sensor_id", {"sensorId": {"value": "x"}}),
-    ("sensor_id.value", {"sensor_id": {"value": "x"}}),
-    ("sensor_id", {"sensor_id": {"value": 0}}),
-    ("directions", {"directions": [{"x": 1e308}], "num_of_pixels": 1}),
-    ("directions", {"directions": [{"x": 0.0}], "num_of_pixels": 1}),
-    ("field_of_view_vertical", {"field_of_view_vertical": 1e308}),
-    ("number_of_rays_horizontal", {"number_of_rays_horizontal": 1e308}),
-    ("range", {"range": 1e308}),
-    ("directions", {"directions": [{"x": "east"}]}),
-    ("mounting_position.position.x", {"mounting_position": {"position": {"x": "far"}}}),
-]
 
 
 def test_what_is_none_of_osi_s_is_refused(tmp_path):

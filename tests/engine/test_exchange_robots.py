@@ -24,6 +24,52 @@ CAMERA = (
     "<camera{1}><horizontal_fov>{0}</horizontal_fov><image><width>640</width><height>480</height>"
     "</image></camera>"
 )
+MAST = ("base_link", "mast", "0 0 1", "fixed")
+AT_FRONT = "<pose>0.5 0 0.25 0 0.3 0</pose>"
+FULL_SCAN = SCAN.format(360, -math.pi, math.pi, 16)
+FRONT = f'<sensor name="front" type="gpu_lidar">{AT_FRONT}{FULL_SCAN}</sensor>'
+QUATERNION = '<pose rotation_format="quat_xyzw">0 0 0 0 0 0.6 0.8</pose>'
+TURNED = f'<sensor name="t" type="depth_camera">{QUATERNION}{CAMERA.format(1.0, "")}</sensor>'
+TRUTH = '<sensor name="boxes" type="boundingbox_camera"><pose>1 0 0 0 0 0</pose></sensor>'
+LINKS = [
+    ("base_link", "lidar_mount", "0 0 1.7", "fixed"),
+    ("lidar_mount", "lidar_base", "0 0 0.05", "fixed"),
+    ("lidar_base", "lidar_top", "0 0 0.05", "fixed"),
+    ("base_link", "camera_front", "1 0 1.2", "fixed"),
+    ("camera_front", "camera_front_optical_frame", "0 0 0", "fixed"),
+    ("base_link", "wheel_left", "1.4 0.8 0.3", "continuous"),
+    ("base_link", "antenna_marker", "-1 0 1.5", "fixed"),
+    ("base_link", "imu_link", "0 0 0.5", "fixed"),
+    ("base_link", "top_plate", "0 0 1.6", "fixed"),
+    ("base_link", "steer", "1 0 0.5", "revolute"),
+    ("base_link", "shelf", "0 0 1.5", "fixed"),
+]
+XACRO = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r">{}</robot>'
+FANS = [
+    (5, -60, 60, [-60, -30, 0, 30, 60]),
+    (4, -60, 60, [-60, -20, 20, 60]),  # half a step beside those of a full circle
+    (4, -50, 25, [-50, -25, 0, 25]),  # 360 is no multiple of 25
+    (3, 10, 12, [10, 11, 12]),
+    (9, -180, 180, [-135, -90, -45, 0, 45, 90, 135, 180]),  # both ends are one direction
+    (8, -180, 135, [-180, -135, -90, -45, 0, 45, 90, 135]),
+    (4, 0, 270, [-90, 0, 90, 180]),
+    (720, -90, 90, np.linspace(-90, 90, 720)),
+    (1081, -135, 135, np.linspace(-135, 135, 1081)),
+]
+SCANS = [(-60.0, 60.0, 0.1), (-45.0, 44.0, 1.0), (-180.0, 180.0, 0.2), (-180.0, 180.0, 40.0)]
+SDF = f"""<sdf version="1.9"><world name="w"><model name="car"><pose>5 5 0 0 0 1</pose>
+<include><uri>model://wheel</uri></include>
+<link name="body"><pose>0 0 0.5 0 0 0</pose>
+  <sensor name="low" type="gpu_lidar"><pose>2 0 0 0 0 0</pose>{SCAN.format(90, -1, 1, 4)}</sensor>
+  <sensor name="imu" type="imu"/></link>
+<link name="nose"><sensor name="s" type="sonar"><range>9</range></sensor></link>
+<frame name="roof" attached_to="body"><pose>0 0 1.2 0 0 0</pose></frame>
+<link name="eye"><pose relative_to="roof">0.3 0 0.1 0 0 1.5707963267948966</pose>
+  <sensor name="e" type="camera">{CAMERA.format(1.0, "")}</sensor></link>
+<model name="rack"><pose>0 1 0 0 0 0</pose><link name="bar"><pose>0 0 2 0 0 0</pose>
+  <sensor name="top" type="lidar"><pose relative_to="bar">0 0 0.2 0 0 0</pose>
+  {SCAN.format(90, -1, 1, 4)}</sensor></link></model>
+</model><model name="house"/></world></sdf>"""
 
 
 def robot(joints, *blocks, masses=(), root="base_link"):
@@ -40,15 +86,8 @@ def read(folder, text, name="r.urdf"):
     return pt.import_rig(folder / name)
 
 
-MAST = ("base_link", "mast", "0 0 1", "fixed")
-AT_FRONT = "<pose>0.5 0 0.25 0 0.3 0</pose>"
-FULL_SCAN = SCAN.format(360, -math.pi, math.pi, 16)
-FRONT = f'<sensor name="front" type="gpu_lidar">{AT_FRONT}{FULL_SCAN}</sensor>'
 EYE = '<sensor name="eye" type="camera"><pose degrees="true">0.6 0 0.1 0 0 90</pose>{}</sensor>'
 EYE = EYE.format(CAMERA.format(1.0, ""))
-QUATERNION = '<pose rotation_format="quat_xyzw">0 0 0 0 0 0.6 0.8</pose>'
-TURNED = f'<sensor name="t" type="depth_camera">{QUATERNION}{CAMERA.format(1.0, "")}</sensor>'
-TRUTH = '<sensor name="boxes" type="boundingbox_camera"><pose>1 0 0 0 0 0</pose></sensor>'
 
 
 def test_sensors_are_on_their_link_by_their_own_pose(tmp_path):
@@ -61,7 +100,9 @@ def test_sensors_are_on_their_link_by_their_own_pose(tmp_path):
     found = read(tmp_path, text)
     poses = {s.name: (s.kind, s.pose) for s in found.rig}
     assert {name: kind for name, (kind, _) in poses.items()} == {
-        **{"front": "lidar", "eye": "camera", "t": "camera"}
+        "front": "lidar",
+        "eye": "camera",
+        "t": "camera",
     }
     assert poses["front"][1].position == (0.5, 0.0, 1.25)
     assert poses["front"][1].rpy == pytest.approx((0.0, 0.3, 0.0))
@@ -93,21 +134,6 @@ def test_a_pose_that_is_none_is_refused(tmp_path):
         block = f'<gazebo reference="mast">{FRONT}</gazebo>'.replace("0.5 0 0.25 0 0.3 0", bad)
         with pytest.raises(pe.InputError, match="sensor of mast, pose"):
             read(tmp_path, robot([MAST], block))
-
-
-LINKS = [
-    ("base_link", "lidar_mount", "0 0 1.7", "fixed"),
-    ("lidar_mount", "lidar_base", "0 0 0.05", "fixed"),
-    ("lidar_base", "lidar_top", "0 0 0.05", "fixed"),
-    ("base_link", "camera_front", "1 0 1.2", "fixed"),
-    ("camera_front", "camera_front_optical_frame", "0 0 0", "fixed"),
-    ("base_link", "wheel_left", "1.4 0.8 0.3", "continuous"),
-    ("base_link", "antenna_marker", "-1 0 1.5", "fixed"),
-    ("base_link", "imu_link", "0 0 0.5", "fixed"),
-    ("base_link", "top_plate", "0 0 1.6", "fixed"),
-    ("base_link", "steer", "1 0 0.5", "revolute"),
-    ("base_link", "shelf", "0 0 1.5", "fixed"),
-]
 
 
 def test_links_are_sensors_by_name_joint_and_mass(tmp_path):
@@ -152,9 +178,6 @@ def test_links_stand_in_the_robot_itself(tmp_path):
     assert found.rig["lidar"].pose.position == (0.0, 0.0, 1.8)
 
 
-XACRO = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r">{}</robot>'
-
-
 @pytest.mark.parametrize("name", ["car.urdf.xacro", "car.urdf"])
 @pytest.mark.parametrize(
     "inside",
@@ -184,19 +207,6 @@ def azimuths_of(model):
     return np.sort(np.degrees(np.arctan2(level[:, 1], level[:, 0])))
 
 
-FANS = [
-    (5, -60, 60, [-60, -30, 0, 30, 60]),
-    (4, -60, 60, [-60, -20, 20, 60]),  # half a step beside those of a full circle
-    (4, -50, 25, [-50, -25, 0, 25]),  # 360 is no multiple of 25
-    (3, 10, 12, [10, 11, 12]),
-    (9, -180, 180, [-135, -90, -45, 0, 45, 90, 135, 180]),  # both ends are one direction
-    (8, -180, 135, [-180, -135, -90, -45, 0, 45, 90, 135]),
-    (4, 0, 270, [-90, 0, 90, 180]),
-    (720, -90, 90, np.linspace(-90, 90, 720)),
-    (1081, -135, 135, np.linspace(-135, 135, 1081)),
-]
-
-
 @pytest.mark.parametrize(("samples", "low", "high", "azimuths"), FANS)
 @pytest.mark.parametrize("channels", [1, 3])
 def test_n_samples_are_n_minus_1_steps_apart(samples, low, high, azimuths, channels, tmp_path):
@@ -210,9 +220,6 @@ def test_n_samples_are_n_minus_1_steps_apart(samples, low, high, azimuths, chann
     assert np.sort(found) == pytest.approx(np.sort(expected), abs=1e-6)
     up = np.degrees(np.arcsin(model.directions[:, 2]))
     assert len(np.unique(up.round(6))) == channels and model.beam_count == channels * len(azimuths)
-
-
-SCANS = [(-60.0, 60.0, 0.1), (-45.0, 44.0, 1.0), (-180.0, 180.0, 0.2), (-180.0, 180.0, 40.0)]
 
 
 @pytest.mark.parametrize(("low", "high", "step"), SCANS)
@@ -234,21 +241,6 @@ def test_a_scan_comes_back_beam_by_beam(low, high, step, tmp_path):
     again = read(tmp_path, text).rig["roof"].model
     assert azimuths_of(again) == pytest.approx(ours, abs=1e-6)
     assert again.beam_count == lidar.beam_count
-
-
-SDF = f"""<sdf version="1.9"><world name="w"><model name="car"><pose>5 5 0 0 0 1</pose>
-<include><uri>model://wheel</uri></include>
-<link name="body"><pose>0 0 0.5 0 0 0</pose>
-  <sensor name="low" type="gpu_lidar"><pose>2 0 0 0 0 0</pose>{SCAN.format(90, -1, 1, 4)}</sensor>
-  <sensor name="imu" type="imu"/></link>
-<link name="nose"><sensor name="s" type="sonar"><range>9</range></sensor></link>
-<frame name="roof" attached_to="body"><pose>0 0 1.2 0 0 0</pose></frame>
-<link name="eye"><pose relative_to="roof">0.3 0 0.1 0 0 1.5707963267948966</pose>
-  <sensor name="e" type="camera">{CAMERA.format(1.0, "")}</sensor></link>
-<model name="rack"><pose>0 1 0 0 0 0</pose><link name="bar"><pose>0 0 2 0 0 0</pose>
-  <sensor name="top" type="lidar"><pose relative_to="bar">0 0 0.2 0 0 0</pose>
-  {SCAN.format(90, -1, 1, 4)}</sensor></link></model>
-</model><model name="house"/></world></sdf>"""
 
 
 def test_sdf_is_read_in_the_frame_of_its_model(tmp_path):

@@ -21,9 +21,13 @@ LENSES = {
     "radial": BrownConrady(*PLACE, None, -0.29, 0.08, k3=-0.001),
     "brown": BrownConrady(*PLACE, None, -0.165, 0.0099, -0.00075, 5.37e-05, 0.01),
     "rational": BrownConrady(*PLACE, None, 0.3, 0.02, 1e-4, -2e-4, 1e-3, 0.5, 0.04, 2e-3),
-    "fisheye": KannalaBrandt(500.0, 501.0, 960.5, 540.5, None, 0.02, -0.003, 1e-4, -1e-5),
-    "edge": KannalaBrandt(500.0, 500.0, 960.0, 540.0, math.radians(190.0)),
-    "angles": FTheta(1.0, 1.0, 960.5, 540.5, None, 560.0, -30.0, 40.0, -7.0),
+    "fisheye": KannalaBrandt(
+        fx=500.0, fy=501.0, cx=960.5, cy=540.5, fov=None, k1=0.02, k2=-0.003, k3=1e-4, k4=-1e-5
+    ),
+    "edge": KannalaBrandt(fx=500.0, fy=500.0, cx=960.0, cy=540.0, fov=math.radians(190.0)),
+    "angles": FTheta(
+        fx=1.0, fy=1.0, cx=960.5, cy=540.5, fov=None, k1=560.0, k2=-30.0, k3=40.0, k4=-7.0
+    ),
 }
 OPENCV = {"pinhole", "radial", "brown", "rational", "fisheye"}
 KEEPS = {
@@ -55,7 +59,13 @@ WITHOUT = {
 }
 """Kinds that a format has not."""
 EVEN = pe.Lidar("even", np.radians([-20.0, -10.0, 0.0]), 36, 80.0, min_range=0.5)
-UNEVEN = pe.Lidar("uneven", np.radians([-20.0, -7.0, 3.0]), 36, 80.0, np.radians([0.0, 2.0, 0.0]))
+UNEVEN = pe.Lidar(
+    "uneven",
+    np.radians([-20.0, -7.0, 3.0]),
+    azimuth_count=36,
+    max_range=80.0,
+    azimuth_offsets=np.radians([0.0, 2.0, 0.0]),
+)
 NEAR = Camera("near", 640, 480, math.radians(70.0), min_range=0.3, max_range=40.0)
 OWN_RADAR = catalog.from_table("own", catalog.to_table(catalog.load("Delphi ESR")))
 
@@ -93,7 +103,9 @@ def there_and_back(rig, name, folder, in_folder):
     paths, lines = pt.export_rig(rig, name, folder, AXLE)
     placed = next(iter(s.pose for s in rig if s.kind == "lidar")) if name == "kitti" else None
     path = folder if in_folder or len(paths) > 1 else paths[0]
-    found = pt.import_rig(path, None if name != "argoverse2" else name, AXLE, None, placed)
+    found = pt.import_rig(
+        path, None if name != "argoverse2" else name, AXLE, models=None, placed=placed
+    )
     return found, lines
 
 
@@ -109,7 +121,8 @@ def on_axis(lens):
 @pytest.mark.parametrize("name", RIG_FORMATS)
 def test_a_rig_comes_back(name, seed, tmp_path):
     rng = np.random.default_rng(seed)
-    rig, holds = random_rig(name, rng), HOLDS.get(name, set())
+    rig = random_rig(name, rng)
+    holds = HOLDS.get(name, set())
     found, lines = there_and_back(rig, name, tmp_path, in_folder=seed == 1)
     text = "\n".join(lines)
     names = [s.name for s in rig]
@@ -124,9 +137,12 @@ def test_a_rig_comes_back(name, seed, tmp_path):
         assert np.abs(np.subtract(theirs.pose.position, ours.pose.position)).max() < WITHIN
         turned = theirs.pose.ground_from_sensor - ours.pose.ground_from_sensor
         assert np.abs(turned).max() < WITHIN
-        model, again, key = ours.model, theirs.model, ours.name.split("_")[1]
+        model = ours.model
+        again = theirs.model
+        key = ours.name.split("_")[1]
         if key in LENSES:
-            own, other = model.projection, again.projection
+            own = model.projection
+            other = again.projection
             assert (key in KEEPS[name]) == (f"{ours.name}: the " not in text), text
             if key in KEEPS[name]:
                 assert type(other) is type(own) and other.fov == pytest.approx(own.fov)

@@ -37,7 +37,8 @@ def study(goals=None, names=("roof",), **more):
     given = {"free": dict.fromkeys(names, ("z", "pitch")), "objective": AP} | more
     search = pe.Search(samples=1024, evaluations=given.pop("evaluations", 30), **given)
     search = replace(search, goals=goals or Goals())
-    targets, space = pe.TargetRule(scenes=8), pe.PerceptionSpace((-40, 40), (-20, 20), (0, 3), 0.5)
+    targets = pe.TargetRule(scenes=8)
+    space = pe.PerceptionSpace((-40, 40), (-20, 20), (0, 3), 0.5)
     own = {"rig": rig, "targets": targets, "samples": 1024, "search": search} | changes
     return pe.Study(vehicle=shapes.box_car(), space=space, **own)
 
@@ -54,7 +55,8 @@ def ap_of(given, rig):
 
 def placed(given, count):
     """Random placements of the study's search."""
-    rng, coding = np.random.default_rng(5), given.coding()
+    rng = np.random.default_rng(5)
+    coding = given.coding()
     return [
         coding.candidate([rng.uniform(v.low, v.high) for v in coding.variables]).rig
         for _ in range(count)
@@ -118,7 +120,8 @@ def test_a_target_is_an_ap(plain):
 
 def test_the_analysis_is_of_the_ap():
     outcome = finished(study(evaluations=96))
-    found, best = outcome.flatness, outcome.study.rig
+    found = outcome.flatness
+    best = outcome.study.rig
     x, y, z = best["roof"].pose.position
     lower = best.with_poses([replace(best["roof"].pose, position=(x, y, z - 0.01))])
     cost = next(each.cost[-1.0] for each in found.axes if each.axis == "z")
@@ -180,7 +183,8 @@ def test_requirements_come_before_the_ap():
 def chosen(**more):
     """A study with a choice of two LiDARs, many beams for more money."""
     given = study(**more)
-    many, few = shapes.small_lidar(32, 360), shapes.small_lidar(4, 90)
+    many = shapes.small_lidar(32, 360)
+    few = shapes.small_lidar(4, 90)
     options = [pe.Option(replace(many, name="many"), 9.0), pe.Option(replace(few, name="few"), 2.0)]
     return replace(given, selection=pe.Selection([pe.Choice(options, ["roof"])]))
 

@@ -17,6 +17,8 @@ from pe_tools import advice
 from pe_tools.cli.verbs import main
 from tests.engine import shapes
 
+PAGE = (Path(pe.__file__).parent.parent / "docs" / "explain.md").read_text("utf-8")
+
 
 def saved(folder, name, rig=None, **changes):
     """A small study in a file of its own."""
@@ -47,7 +49,12 @@ def test_explain_one_place(study, capsys):
     assert main(["explain", study, "--at", "8", "-2.2", "0.7"]) == 0
     loaded = pe.load_study(study)
     place = advice.ask_place(
-        loaded.rig, loaded.space, loaded.prior, loaded.vehicle, (8, -2.2, 0.7), loaded.model
+        loaded.rig,
+        loaded.space,
+        loaded.prior,
+        loaded.vehicle,
+        point=(8, -2.2, 0.7),
+        model=loaded.model,
     )
     out, err = capsys.readouterr()
     assert out.splitlines() == list(place.text)
@@ -156,9 +163,6 @@ def test_what_does_not_compare_is_refused_in_a_line(study, tmp_path, field, chan
         f"pe: other: {field}: expected the same as in car, to be compared with it, found another"
     )
     assert (out, err.splitlines()) == ("", [expected])
-
-
-PAGE = (Path(pe.__file__).parent.parent / "docs" / "explain.md").read_text("utf-8")
 
 
 def without_sight(text):

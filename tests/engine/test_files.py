@@ -30,6 +30,9 @@ from pe_core.base.files import (
 from pe_core.base.input_files import not_noting_inputs, noting_inputs
 
 resource = pytest.importorskip("resource")
+FAULTS = ("ENOSPC", "EDQUOT", "EIO")
+FORMULAS = ('=HYPERLINK("http://a.b","c")', "+cmd", "-1+A1", "@SUM(A1)", "'=1", "\t=1", "＝1")
+PLAIN = ("front", "-1.5", "+1e-3", "-0.33 0.11 -2", "a=b", "'twas", "", "3,5", 'say "so"')
 
 
 def test_a_file_may_be_as_large_as_its_limit_and_no_larger(tmp_path):
@@ -43,7 +46,8 @@ def test_a_file_may_be_as_large_as_its_limit_and_no_larger(tmp_path):
 @pytest.mark.parametrize(("grown", "whole"), [(3, True), (4, True), (5, False), (9_000_000, False)])
 def test_a_file_that_grows_while_it_is_read_is_bounded_too(tmp_path, monkeypatch, grown, whole):
     """The size is asked before the first byte is read; then more comes."""
-    path, read = tmp_path / "log", os.read
+    path = tmp_path / "log"
+    read = os.read
     path.write_bytes(b"12345678")
 
     def read_and_grow(handle, count):
@@ -124,9 +128,6 @@ def test_several_files_are_written_together_or_not_at_all(tmp_path):
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == new
 
 
-FAULTS = ("ENOSPC", "EDQUOT", "EIO")
-
-
 @pytest.mark.parametrize("fault", FAULTS)
 @pytest.mark.parametrize(
     ("call", "first"),
@@ -145,7 +146,8 @@ def test_a_disk_that_fails_leaves_all_old_files(tmp_path, failing_call, call, fi
 
 def test_a_file_is_on_the_disk_before_its_name_counts_and_its_folder_after(tmp_path, monkeypatch):
     """Else a power failure leaves an empty file, or the old name."""
-    done, real = [], {name: getattr(os, name) for name in ("write", "fsync", "replace")}
+    done = []
+    real = {name: getattr(os, name) for name in ("write", "fsync", "replace")}
 
     def noted(name):
         def call(first, *others):
@@ -234,10 +236,6 @@ def test_a_changed_line_has_the_end_of_most_lines():
     old = b"a\r\nb\r\nc\nd\r\n"
     assert encode_like("a\nB\nc\nnew\nd\n", old) == b"a\r\nB\r\nc\nnew\r\nd\r\n"
     assert encode_like("a\nb", b"a") == b"a\nb"
-
-
-FORMULAS = ('=HYPERLINK("http://a.b","c")', "+cmd", "-1+A1", "@SUM(A1)", "'=1", "\t=1", "＝1")
-PLAIN = ("front", "-1.5", "+1e-3", "-0.33 0.11 -2", "a=b", "'twas", "", "3,5", 'say "so"')
 
 
 @pytest.mark.parametrize("text", [*FORMULAS, *PLAIN])

@@ -15,14 +15,17 @@ from tests.engine import shapes
 from tests.thorough import tries
 
 ASSETS = Path(pe.__file__).parents[1] / "blend_assets"
+RAYS = tries(150, 600)
 
 
 def every_triangle(triangles, directions):
     """The definition: nearest of all triangles, of equals the lowest; rays from the origin."""
     a, b, c = (triangles[:, i] for i in range(3))
-    edges, normal = (cross(a, b), cross(b, c), cross(c, a)), cross(b - a, c - a)
+    edges = (cross(a, b), cross(b, c), cross(c, a))
+    normal = cross(b - a, c - a)
     offset = dot(normal, a)
-    best, which = np.full(len(directions), np.inf), np.full(len(directions), -1)
+    best = np.full(len(directions), np.inf)
+    which = np.full(len(directions), -1)
     for number, d in enumerate(directions):
         sides = np.stack([dot(e, d) for e in edges])
         toward = dot(normal, d)
@@ -41,13 +44,11 @@ def directions_of(points):
     return points[size > 0] / size[size > 0, None]
 
 
-RAYS = tries(150, 600)
-
-
 def rays_at(triangles, rng, count=RAYS):
     """All round; to corners, along edges, to their middles, and into the triangles."""
     some = triangles[rng.choice(len(triangles), min(count, len(triangles)), replace=False)]
-    corner, ahead = some[:, 0], some[:, 1]
+    corner = some[:, 0]
+    ahead = some[:, 1]
     aims = [
         rng.normal(size=(2 * count, 3)),
         corner,
@@ -181,7 +182,8 @@ def test_boxes_near_a_point_miss_no_triangle():
     triangles = soup(rng)
     tree = TriangleTree(triangles)
     for point in rng.normal(0, 2, (20, 3)):
-        low, high = triangles.min(axis=1), triangles.max(axis=1)
+        low = triangles.min(axis=1)
+        high = triangles.max(axis=1)
         gap = np.maximum(np.maximum(low - point, point - high), 0.0)
         near = np.flatnonzero(dot(gap, gap) <= 0.3**2)
         assert set(near) <= set(tree.near(point, 0.3).tolist())

@@ -12,6 +12,30 @@ from pe_core import catalog
 from pe_tools.formats import ApTable, fit_ap_curve, m_by_range, read_ap_table, study_snippet
 from tests.engine.refusals import wrongly_refused
 
+BAD = [
+    ("file", ""),
+    ("file", "# nothing\n"),
+    ("file", b"\x89PNG\0\0"),
+    ("line 1", "a,b\n1,2\n"),
+    ("line 1", "m,m,ap\n1,2,0.5\n"),
+    ("line 2", "m,ap\n1,0.5,3\n"),
+    ("line 3", "m,ap\n1,0.5\n2,77.3\n"),
+    ("line 2", "m,ap\n1,-0.1\n"),
+    ("line 4", "m,ap\n\n# x\n1,nan\n"),
+    ("line 2", "m,ap\n-1,0.5\n"),
+    ("line 2", "m,ap\none,0.5\n"),
+    ("line 2", "m,ap,n\n1,0.5,0\n"),
+]
+NO_CURVE = [
+    ("points", ([], [])),
+    ("points", ([1, 2], [0.5, 0.6])),
+    ("points", ([0, 1, 2, 3], [0, 0.3, 0.5, 1.0])),
+    ("m", ([1, 1, 1], [0.5, 0.6, 0.7])),
+    ("ap", ([1, 2, 4], [0.7, 0.5, 0.2])),
+]
+RADAR = "Continental ARS408-21"
+RANGES = (60.0, 80.0, 100.0, 120.0)
+
 
 def table(m, ap, n=None):
     m = np.array(m, dtype=float)
@@ -62,7 +86,8 @@ def test_errors_are_those_of_least_squares():
 
 
 def test_points_weigh_what_stands_behind_them():
-    m, ap = [0.1, 0.2, 0.4, 0.8], [0.3, 0.4, 0.5, 0.9]
+    m = [0.1, 0.2, 0.4, 0.8]
+    ap = [0.3, 0.4, 0.5, 0.9]
     twice = fit_ap_curve(table([*m, m[0]], [*ap, ap[0]]), saturation=0.0)
     weighed = fit_ap_curve(table(m, ap, [2, 1, 1, 1]), saturation=0.0)
     assert (weighed.curve.a, weighed.curve.b) == pytest.approx((twice.curve.a, twice.curve.b))
@@ -98,33 +123,8 @@ def test_a_table_is_read_with_comments_columns_in_any_order_and_any_line_ends(tm
         assert read.n.tolist() == [1.0, 1.0]
 
 
-BAD = [
-    ("file", ""),
-    ("file", "# nothing\n"),
-    ("file", b"\x89PNG\0\0"),
-    ("line 1", "a,b\n1,2\n"),
-    ("line 1", "m,m,ap\n1,2,0.5\n"),
-    ("line 2", "m,ap\n1,0.5,3\n"),
-    ("line 3", "m,ap\n1,0.5\n2,77.3\n"),
-    ("line 2", "m,ap\n1,-0.1\n"),
-    ("line 4", "m,ap\n\n# x\n1,nan\n"),
-    ("line 2", "m,ap\n-1,0.5\n"),
-    ("line 2", "m,ap\none,0.5\n"),
-    ("line 2", "m,ap,n\n1,0.5,0\n"),
-]
-
-
 def test_a_wrong_table_is_refused_by_its_line(tmp_path):
     assert wrongly_refused(lambda text: read_ap_table(written(tmp_path, text)), BAD) == []
-
-
-NO_CURVE = [
-    ("points", ([], [])),
-    ("points", ([1, 2], [0.5, 0.6])),
-    ("points", ([0, 1, 2, 3], [0, 0.3, 0.5, 1.0])),
-    ("m", ([1, 1, 1], [0.5, 0.6, 0.7])),
-    ("ap", ([1, 2, 4], [0.7, 0.5, 0.2])),
-]
 
 
 def test_tables_without_a_curve_are_refused():
@@ -143,9 +143,6 @@ def test_the_snippet_names_the_table_and_how_many_points_it_used(tmp_path):
     found = fit_ap_curve(read_ap_table(written(tmp_path, rows)))
     assert found.left_out == {"at the clip": 1}
     assert "3 of 4 points of ap.csv" in study_snippet(found, "lidar")
-
-
-RADAR, RANGES = "Continental ARS408-21", (60.0, 80.0, 100.0, 120.0)
 
 
 def test_a_table_by_range_gives_the_curve_of_what_the_model_measures(tmp_path):

@@ -31,7 +31,8 @@ def outcome():
 
 
 def test_costs_are_those_of_plain_evaluations_on_samples_that_the_search_did_not_use(outcome):
-    found, rig = outcome.flatness, outcome.study.rig
+    found = outcome.flatness
+    rig = outcome.study.rig
     halves = [study(96).evaluator(1024, shift=shift) for shift in HELD_OUT]
     row = next(each for each in found.axes if each.axis == "z")
     pose = rig["roof"].pose
@@ -69,7 +70,10 @@ def test_costs_of_a_slope_are_its_gradient_and_all_else_is_flat():
     assert rows["z"].cost == pytest.approx({-1.0: 0.03, 1.0: -0.03, -5.0: 0.15, 5.0: -0.15})
     assert rows["x"].cost[-1.0] == pytest.approx(0.01)
     assert {axis for axis, row in rows.items() if row.word == "flat"} == {
-        *("y", "roll", "pitch", "yaw")
+        "y",
+        "roll",
+        "pitch",
+        "yaw",
     }
     assert rows["z"].word == "steep"
 

@@ -101,7 +101,8 @@ def test_margins_and_blind_zones_are_those_of_the_verdicts():
 
 def test_a_path_that_fails_and_mounting_errors_count_in_the_margin():
     """A requirement that is not met never leaves the margin at what the others have."""
-    body, of = pe.requirements.Body("post", (0.3, 0.3, 0.5)), pe.requirements.Requirement
+    body = pe.requirements.Body("post", (0.3, 0.3, 0.5))
+    of = pe.requirements.Requirement
     ahead = of("ahead", pe.requirements.Zone(x=(4.0, 5.0), y=(-1.0, 1.0)), [body])
     spots = pe.requirements.Zone(spots=((1.0, 70.0), (5.0, 0.0)))
     names = ("margin", "entropy")
@@ -249,7 +250,8 @@ def test_functions_are_objectives_beside_those_of_a_name(tmp_path):
 
 
 def test_several_functions_alone_are_those_of_processes_too():
-    here, there = front_of((apart, droop)), front_of((apart, droop), workers=2)
+    here = front_of((apart, droop))
+    there = front_of((apart, droop), workers=2)
     assert here.objectives == ("apart", "droop")
     assert [d.figures for d in here.front] == [d.figures for d in there.front]
     assert front_of((apart, lambda rig: droop(rig)), workers=2).objectives[1] == "<lambda>"

@@ -15,6 +15,13 @@ import pe_core as pe
 import pe_tools
 from tests.engine import shapes
 
+BUILT_UP = {
+    "pe_tools.formats.boxes.labels.Labels",
+    "pe_tools.cli.interrupts.Received",
+    "pe_tools.page.pictures.svg.Canvas",
+}
+"""Filled while a file is read, signals come or a picture is drawn; so are some that are private."""
+
 
 def refuses_writing(array):
     with pytest.raises(ValueError, match="read-only"):
@@ -22,8 +29,9 @@ def refuses_writing(array):
 
 
 def test_a_lidar_keeps_its_own_angles():
-    elevations, offsets = np.array([0.1, -0.1]), np.array([0.0, 0.2])
-    lidar = pe.Lidar("mine", elevations, 4, 100.0, offsets)
+    elevations = np.array([0.1, -0.1])
+    offsets = np.array([0.0, 0.2])
+    lidar = pe.Lidar("mine", elevations, azimuth_count=4, max_range=100.0, azimuth_offsets=offsets)
     before = lidar.directions.copy()
     elevations[:] = offsets[:] = 1.0
     assert lidar.elevations.tolist() == [0.1, -0.1]
@@ -35,9 +43,11 @@ def test_a_lidar_keeps_its_own_angles():
 
 
 def test_a_vehicle_keeps_its_own_triangles():
-    triangles, parts = shapes.box((-1, -1, 0), (1, 1, 1)), np.zeros(12, np.int32)
+    triangles = shapes.box((-1, -1, 0), (1, 1, 1))
+    parts = np.zeros(12, np.int32)
     vehicle = pe.Vehicle(triangles, parts, ("a", "b"))
-    triangles[:], parts[:] = 7.0, 1
+    triangles[:] = 7.0
+    parts[:] = 1
     assert vehicle.triangles.max() == 1.0 and not vehicle.parts.any()
     assert vehicle.bounds[1].tolist() == [1.0, 1.0, 1.0]
     refuses_writing(vehicle.triangles)
@@ -48,7 +58,16 @@ def test_a_vehicle_keeps_its_own_triangles():
 def test_boxes_keep_their_own_columns():
     x = np.array([1.0, 2.0])
     one = np.ones(2)
-    boxes = pe.Boxes(np.array(["car", "car"]), x, one, one, one, one, one, one)
+    boxes = pe.Boxes(
+        names=np.array(["car", "car"]),
+        x=x,
+        y=one,
+        z=one,
+        length=one,
+        width=one,
+        height=one,
+        yaw=one,
+    )
     x[:] = 9.0
     assert boxes.x.tolist() == [1.0, 2.0]
     refuses_writing(boxes.x)
@@ -77,7 +96,8 @@ def test_a_preset_of_ones_own_is_copied():
 
 
 def test_a_search_is_copied_and_fixed_and_can_be_sent_to_another_process():
-    free, limits = {"roof": ["x"]}, {"roof": {"x": [0.0, 1.0]}}
+    free = {"roof": ["x"]}
+    limits = {"roof": {"x": [0.0, 1.0]}}
     search = pe.Search(free=free, limits=limits)
     space = pe.SearchSpace(limits)
     free["roof"].append("y")
@@ -97,14 +117,6 @@ def test_a_search_is_copied_and_fixed_and_can_be_sent_to_another_process():
                 change(mapping)
     again = pickle.loads(pickle.dumps(search))
     assert again == search and type(again.limits["roof"]) is type(search.limits["roof"])
-
-
-BUILT_UP = {
-    "pe_tools.formats.boxes.labels.Labels",
-    "pe_tools.cli.interrupts.Received",
-    "pe_tools.page.pictures.svg.Canvas",
-}
-"""Filled while a file is read, signals come or a picture is drawn; so are some that are private."""
 
 
 @functools.cache

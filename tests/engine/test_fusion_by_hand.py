@@ -25,21 +25,35 @@ from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused
 
 # Entropies as test_by_hand.py derives them: no, one, two, three beams; 100 pixels; fused late.
-H0, H1, H2, H3, HC = 16.651386624, 1.520194952, 0.484427819, -0.277049759, 3.580001643
-H1_1, H1_C, H2_C, H1_1_C = 0.827047906, 1.400211369, 0.440172737, 0.765257677
+H0 = 16.651386624
+H1 = 1.520194952
+H2 = 0.484427819
+H3 = -0.277049759
+HC = 3.580001643
+H1_1 = 0.827047906
+H1_C = 1.400211369
+H2_C = 0.440172737
+H1_1_C = 0.765257677
 SATURATED = -10.975632491
 F = 1.0 / 998_001.0
 """1 / 999^2: what a blind sensor is worth."""
+BEAMS = ("lidar", np.array([0, 1, 0, 2, 300], np.uint16))
+MORE = ("lidar", np.array([0, 1, 1, 0, 0], np.uint8))
+PIXELS = ("camera", np.array([0.0, 100.0, 100.0, 100.0, 0.0]))
+IMPOSSIBLE_MODELS = [
+    ("blind", {"blind": "maybe"}),
+    ("kind", {"sonar": POINTPILLARS}),
+    ("lidar", {"lidar": (0.2, 0.5)}),
+]
+SHAPE = (60, 50)
+ROUNDING = 2.0**-DIGITS
+BETTER = pe.ApCurve(0.2, 0.8)
+SPACE = pe.PerceptionSpace((-6, 10), (-5, 5), (0, 2), 0.5)
 
 
 def fused(groups, **model):
     entropies, seen = Fusion(pe.PerceptionModel(**model)).entropies(groups)
     return entropies.tolist(), seen.tolist()
-
-
-BEAMS = ("lidar", np.array([0, 1, 0, 2, 300], np.uint16))
-MORE = ("lidar", np.array([0, 1, 1, 0, 0], np.uint8))
-PIXELS = ("camera", np.array([0.0, 100.0, 100.0, 100.0, 0.0]))
 
 
 @pytest.mark.parametrize(
@@ -165,13 +179,6 @@ def test_a_model_tells_its_curves():
         _ = model.sonar
 
 
-IMPOSSIBLE_MODELS = [
-    ("blind", {"blind": "maybe"}),
-    ("kind", {"sonar": POINTPILLARS}),
-    ("lidar", {"lidar": (0.2, 0.5)}),
-]
-
-
 def test_impossible_models_are_refused():
     assert wrongly_refused(lambda v: pe.PerceptionModel(**v), IMPOSSIBLE_MODELS) == []
 
@@ -186,7 +193,8 @@ def test_a_curve_too_flat_to_saturate_says_so():
 
 def test_sums_of_a_group_hold_what_their_parts_add_up_to():
     """Bytes add up in 16 bits, longer counts in 32, areas as they are."""
-    byte, word = np.full(2, 250, np.uint8), np.full(2, 60_000, np.uint16)
+    byte = np.full(2, 250, np.uint8)
+    word = np.full(2, 60_000, np.uint16)
     assert group_sum([byte, byte, byte]).tolist() == [750, 750]
     assert group_sum([word, word]).tolist() == [120_000, 120_000]
     assert group_sum([byte, word]).tolist() == [60_250, 60_250]
@@ -265,10 +273,6 @@ def test_the_ap_of_an_entropy_is_the_one_it_comes_from():
     assert ap_of_entropy(entropy_of(sigma_of(ap) ** -2)) == pytest.approx(ap, rel=1e-9)
 
 
-SHAPE = (60, 50)
-ROUNDING = 2.0**-DIGITS
-
-
 def beams(rng, dtype=np.uint16):
     return rng.integers(0, 13, (2, *SHAPE)).astype(dtype)
 
@@ -297,7 +301,8 @@ def by_equations(groups, model, factor=1.0):
 def rigs():
     rng = np.random.default_rng(3)
     ahead, behind, none = (view(rng, slice(*r)) for r in ((5, 40), (30, 60), (0, 0)))
-    lidar, other = ("lidar", beams(rng)), ("lidar", beams(rng, np.uint8))
+    lidar = ("lidar", beams(rng))
+    other = ("lidar", beams(rng, np.uint8))
     return {
         "lidar": [lidar],
         "camera": [("camera", ahead)],
@@ -312,7 +317,8 @@ def rigs():
 @pytest.mark.parametrize("blind", ["floor", "literal"])
 @pytest.mark.parametrize("rig", rigs())
 def test_planes_equal_the_equations_within_the_rounding_of_areas(rig, blind):
-    groups, model = rigs()[rig], pe.PerceptionModel(blind=blind)
+    groups = rigs()[rig]
+    model = pe.PerceptionModel(blind=blind)
     fusion = PlaneFusion(Fusion(model), SHAPE)
     found = np.stack([fusion.entropies(groups, plane) for plane in range(2)])
     most, least = (by_equations(groups, model, 1.0 + k * ROUNDING) for k in (-1.0, 1.0))
@@ -331,18 +337,14 @@ def test_the_rounding_of_areas_averages_out():
     assert abs(found.mean() - plain.mean()) < 1e-5
 
 
-BETTER = pe.ApCurve(0.2, 0.8)
-SPACE = pe.PerceptionSpace((-6, 10), (-5, 5), (0, 2), 0.5)
-
-
 def rig(curve, kind_wide=False):
     """Two LiDARs that fuse early and a camera, the LiDARs with a curve of their own."""
     own = None if kind_wide else curve
     lidar = shapes.small_lidar()
     return pe.Rig(
         [
-            pe.Sensor("a", lidar, pe.Pose((0.0, 0.0, 1.9)), None, own),
-            pe.Sensor("b", lidar, pe.Pose((1.0, 0.5, 1.9)), None, own),
+            pe.Sensor("a", lidar, pe.Pose((0.0, 0.0, 1.9)), fusion=None, curve=own),
+            pe.Sensor("b", lidar, pe.Pose((1.0, 0.5, 1.9)), fusion=None, curve=own),
             shapes.camera(),
         ]
     )
@@ -353,10 +355,12 @@ def rig(curve, kind_wide=False):
 def test_a_curve_of_all_of_a_kind_is_that_kind_s(samples, blind):
     def score(some, **curves):
         model = pe.PerceptionModel(blind, **curves)
-        prior, car = pe.Prior.uniform(), shapes.box_car()
+        prior = pe.Prior.uniform()
+        car = shapes.box_car()
         return pe.Evaluator(SPACE, prior, car, samples=samples, model=model).score(some)
 
-    one, other = score(rig(BETTER)), score(rig(BETTER, kind_wide=True), lidar=BETTER)
+    one = score(rig(BETTER))
+    other = score(rig(BETTER, kind_wide=True), lidar=BETTER)
     assert one.to_dict() == other.to_dict()
     assert one.entropy < score(rig(None)).entropy
 
@@ -364,8 +368,9 @@ def test_a_curve_of_all_of_a_kind_is_that_kind_s(samples, blind):
 @pytest.mark.parametrize("samples", [0, 1024])
 def test_sensors_of_one_kind_with_two_curves_are_fused_late(samples):
     """Of two LiDARs in one place each counts by its own curve: alone as that curve scores it."""
-    lidar, pose = shapes.small_lidar(), pe.Pose((0.0, 0.0, 1.9))
-    two = pe.Rig([pe.Sensor("a", lidar, pose, "a", BETTER), pe.Sensor("b", lidar, pose, "b")])
+    lidar = shapes.small_lidar()
+    pose = pe.Pose((0.0, 0.0, 1.9))
+    two = pe.Rig([pe.Sensor("a", lidar, pose, "a", curve=BETTER), pe.Sensor("b", lidar, pose, "b")])
     evaluator = pe.Evaluator(SPACE, pe.Prior.uniform(), None, samples=samples)
     own = evaluator.score(two).per_sensor
     plain = evaluator.entropy(pe.Rig([two["b"]]))

@@ -20,6 +20,12 @@ from tests.engine import shapes
 from tests.engine.processes import finished as driven
 
 pytestmark = pytest.mark.usefixtures("few_errors", "no_key_figures")
+GOALS = Goals(
+    Stop(60.0, 0.001, 50),
+    ("roof",),
+    [Start("other", {"front": pe.Pose.from_degrees((0.0, 0.5, 2.0), (0.0, 5.0, 90.0))})],
+    Front(("entropy", "height"), 4),
+)
 
 
 def study(goals=None, names=("roof",), **search):
@@ -95,7 +101,8 @@ def test_a_search_that_races_tells_within_what_another_seed_would_end(plain):
 
 def test_fixed_sensors_stay_and_the_others_move():
     outcome = finished(study(Goals(fixed=("roof",)), ("roof", "front")))
-    start, best = outcome.start.rig, outcome.study.rig
+    start = outcome.start.rig
+    best = outcome.study.rig
     assert best["roof"].pose == start["roof"].pose and best["front"].pose != start["front"].pose
     with pytest.raises(pe.InputError, match="optimize: fixed: expected sensors that follow no"):
         study(Goals(fixed=("bogus",)))
@@ -168,14 +175,6 @@ def journal_of(outcome, count):
     return pe.search.Journal(outcome.evaluated[:count])
 
 
-GOALS = Goals(
-    Stop(60.0, 0.001, 50),
-    ("roof",),
-    [Start("other", {"front": pe.Pose.from_degrees((0.0, 0.5, 2.0), (0.0, 5.0, 90.0))})],
-    Front(("entropy", "height"), 4),
-)
-
-
 def test_goals_are_in_the_file_and_nothing_is_written_of_the_default(tmp_path):
     given = study(names=("roof", "front"))
     given = replace(given, vehicle=None, search=replace(given.search, goals=GOALS))
@@ -201,13 +200,13 @@ def test_options_of_the_command_line_are_the_goals_of_the_study(tmp_path):
     given = replace(study(names=("roof", "front")), vehicle=None)
     path = tmp_path / "other.toml"
     pe.save_study(given, path)
-    changes = (
+    changed = typed_study(
+        path,
         "limits.entropy=-1.5",
         "optimize.stop.gain=0.01",
         'optimize.fixed=["roof"]',
         'optimize.front.objectives=["entropy", "height"]',
     )
-    changed = typed_study(path, *changes)
     goals = changed.search.goals
     assert changed.limits == pe.Limits(entropy=-1.5)
     assert (goals.stop.gain, goals.stop.seconds) == (0.01, None)

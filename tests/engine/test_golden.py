@@ -11,6 +11,24 @@ from pe_core.prior import HIGHWAY_CLASSES, ROAD_CLASSES
 from pe_core.scoring.score import ZONES
 from pe_core.search import PAPER_FREE, search_space
 
+ROAD = [
+    # name, size (length, width, height), its spread, decay_x, Laplace and Gauss along y, Laplace's
+    # share, lanes, share
+    ("car", (4.6, 1.9, 1.7), 0.195, 39.4, 12.82, 20.03, 0.533, (0.0,), 1.0),
+    ("pedestrian", (0.8, 0.7, 1.75), 0.120, 32.2, 659.55, 16.15, 0.171, (0.0,), 1.0),
+    ("cyclist", (1.76, 0.65, 1.74), 0.267, 28.7, 170.45, 14.89, 0.033, (0.0,), 1.0),
+    ("truck", (7.5, 2.55, 3.0), 0.785, 58.5, 20.1, 22.33, 0.365, (0.0,), 1.0),
+    ("cone", (0.4, 0.4, 0.9), 0.232, 14.8, 34.25, 10.05, 0.024, (0.0,), 1.0),
+]
+LANES = (-3.75, 0.0, 3.75)
+EDGES = (-5.625, -1.875, 1.875, 5.625)
+HIGHWAY = [
+    ("car", (4.6, 1.9, 1.7), 0.195, 58.1, 13.93, 0.3, 0.2, LANES, 0.4),
+    ("truck", (10.8, 2.7, 3.5), 0.327, 59.5, 13.93, 0.3, 0.2, LANES, 0.4),
+    ("cyclist", (2.11, 0.77, 1.74), 0.267, 45.4, 13.93, 0.3, 0.2, LANES, 0.1),
+    ("cone", (0.4, 0.4, 0.9), 0.232, 21.7, 13.93, 0.3, 0.0, EDGES, 0.1),
+]
+
 # Ma, Liu and Li, Perception Entropy, ICRA 2021. Table I has the channels, steps and vertical fields
 # of view; where in it the channels lie is from Hesai's manuals, ranges are the makers'.
 
@@ -181,23 +199,6 @@ def test_algorithm_1_s_schedule():
 # The priors' classes. Road: maximum likelihood fits to CenterPoint's boxes of score 0.4 and more in
 # the 150 scenes of nuScenes val (46,817 cars, 28,720 pedestrians, 5,740 cyclists, 13,069 trucks,
 # 13,928 cones). Highway: decays of KITTI tracking (trucks) and Argoverse 2; lanes of 3.75 m.
-
-ROAD = [
-    # name, size (length, width, height), its spread, decay_x, Laplace and Gauss along y, Laplace's
-    # share, lanes, share
-    ("car", (4.6, 1.9, 1.7), 0.195, 39.4, 12.82, 20.03, 0.533, (0.0,), 1.0),
-    ("pedestrian", (0.8, 0.7, 1.75), 0.120, 32.2, 659.55, 16.15, 0.171, (0.0,), 1.0),
-    ("cyclist", (1.76, 0.65, 1.74), 0.267, 28.7, 170.45, 14.89, 0.033, (0.0,), 1.0),
-    ("truck", (7.5, 2.55, 3.0), 0.785, 58.5, 20.1, 22.33, 0.365, (0.0,), 1.0),
-    ("cone", (0.4, 0.4, 0.9), 0.232, 14.8, 34.25, 10.05, 0.024, (0.0,), 1.0),
-]
-LANES, EDGES = (-3.75, 0.0, 3.75), (-5.625, -1.875, 1.875, 5.625)
-HIGHWAY = [
-    ("car", (4.6, 1.9, 1.7), 0.195, 58.1, 13.93, 0.3, 0.2, LANES, 0.4),
-    ("truck", (10.8, 2.7, 3.5), 0.327, 59.5, 13.93, 0.3, 0.2, LANES, 0.4),
-    ("cyclist", (2.11, 0.77, 1.74), 0.267, 45.4, 13.93, 0.3, 0.2, LANES, 0.1),
-    ("cone", (0.4, 0.4, 0.9), 0.232, 21.7, 13.93, 0.3, 0.0, EDGES, 0.1),
-]
 
 
 @pytest.mark.parametrize(

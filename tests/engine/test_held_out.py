@@ -55,7 +55,10 @@ def test_the_samples_are_independent_draws():
     space = pe.PerceptionSpace()
     densities = study().prior.densities(space)
     shifts = (SEARCHED, *HELD_OUT)
-    found = [set(map(tuple, draw(densities, space, 1024, None, s).index)) for s in shifts]
+    found = [
+        set(map(tuple, draw(densities, space, count=1024, excluded=None, shift=s).index))
+        for s in shifts
+    ]
     for one, other in combinations(found, 2):
         assert len(one & other) < 8
 

@@ -41,6 +41,8 @@ READERS = {
     "table": read_ap_table,
     "study": pe.load_study,
 }
+HEADER = "class,x,y,z,length,width,height,yaw\n"
+ROW = ",1,2,3,4,5,6,7\n"
 
 
 def holding(name, data):
@@ -154,9 +156,6 @@ def packed(name, size):
 def ply(faces, data, of="uchar int"):
     head = ply_header("binary_little_endian", 8, faces).replace("uchar int", of)
     return head.encode() + np.asarray(POINTS, "<f4").tobytes() + data
-
-
-HEADER, ROW = "class,x,y,z,length,width,height,yaw\n", ",1,2,3,4,5,6,7\n"
 
 
 def one_box(**change):
@@ -273,13 +272,15 @@ def test_hostile_files_are_refused_in_one_line(tmp_path_factory):
 
 def outcome(reader, path):
     """The field that a refusal names, None where the file is read; and what is wrong with it."""
-    field, fault = None, ""
+    field = None
+    fault = ""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         try:
             READERS[reader](path)
         except pe.InputError as error:
-            field, line = error.field, str(error)
+            field = error.field
+            line = str(error)
             fault = "" if line.isprintable() and len(line) < 600 else f"no line: {line:.300}"
         except BaseException:
             fault = traceback.format_exc(limit=-5)[-2000:]

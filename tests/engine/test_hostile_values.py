@@ -16,6 +16,62 @@ from tests.engine import shapes
 from tests.thorough import pairs, tries
 
 MAX_LINE_LENGTH = 300
+STUDIES = Path(__file__).parent / "hostile_studies"
+STUDY = tomllib.loads((STUDIES / "study.toml").read_text("utf-8"))
+MORE = tomllib.loads((STUDIES / "more.toml").read_text("utf-8"))
+"""A study with the tables that the first one lacks."""
+PINHOLE = {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 90.0}
+BOXES = {"boxes": "boxes.csv", "origin": [0.0, 0.0, 0.0], "focus": []}
+PARTNERS = {
+    "aspect_deg": ["dbsm"],
+    "bandwidth_mhz": ["range_resolution_m"],
+    "class": ["classes"],
+    "dbsm": ["aspect_deg"],
+    "elevations_deg": ["azimuth_offsets_deg"],
+    "fov_deg": ["distortion"],
+    "k1": ["distortion"],
+    "max_range_m": ["min_range_m"],
+    "model": ["kind"],
+    "optimize": ["mount"],
+    "p1": ["distortion"],
+    "position": ["bounds"],
+    "rotation": ["position"],
+    "sensors": ["group"],
+    "vehicle": ["move"],
+    "x": ["zone"],
+    "y": ["zone"],
+}
+"""Keys whose values have to fit together: a message may name the other one."""
+STEP = tries(6, 3)
+"""Every key is given one value in so many, each key others than the one before it."""
+EXTREMES = [
+    ("ap", "lidar", "a", 1e-12),
+    ("ap", "lidar", "a", 1e3),
+    ("ap", "lidar", "b", -1e3),
+    ("prior", "focus", 0, "factor", 1e9),
+    ("prior", "focus", 0, "factor", 5e-324),
+    ("prior", "focus", 0, "x", [-math.inf, math.inf]),
+    ("prior", "class", 0, "size", [5e-324, 5e-324, 5e-324]),
+    ("prior", "class", 0, "height_spread", 5e-324),
+    ("prior", "class", 0, "decay_x", 5e-324),
+    ("prior", "class", 0, "laplace_y", 5e-324),
+    ("prior", "class", 0, "gauss_y", 1e9),
+    ("prior", "class", 0, "share", 0.0),
+    ("prior", "class", 0, "lanes", [1e9]),
+    ("sensor", 0, "position", [1e4, -1e4, 1e4]),
+    ("sensor", 0, "rotation", [3600.0, -3600.0, 3600.0]),
+    ("sensor", 0, "model", "max_range_m", 0.001),
+    ("sensor", 0, "model", "elevations_deg", [-90.0, 90.0, 5e-324]),
+    ("sensor", 0, "rotation", [1e-320, 0.0, 0.0]),
+    ("sensor", 0, "model", "azimuth_count", 1),
+    ("sensor", 2, "model", "hfov_deg", 0.001),
+    ("sensor", 2, "model", "hfov_deg", 179.999),
+    ("sensor", 2, "model", "width", 1_000_000),
+    ("vehicle", "clearance", 0.999),
+    ("vehicle", "clearance", 5e-324),
+    ("space", {"x": [999_992, 1_000_000], "y": [-4, 4], "z": [0, 4], "interval": 0.5}),
+    ("space", {"x": [-0.002, 0.002], "y": [-0.002, 0.002], "z": [2, 2.004], "interval": 0.001}),
+]
 
 
 def nested(depth, of=list):
@@ -59,13 +115,6 @@ VALUES = {
     "three 5000 digits": [10**5000] * 3,
     "null": None,
 }
-
-STUDIES = Path(__file__).parent / "hostile_studies"
-STUDY = tomllib.loads((STUDIES / "study.toml").read_text("utf-8"))
-MORE = tomllib.loads((STUDIES / "more.toml").read_text("utf-8"))
-"""A study with the tables that the first one lacks."""
-PINHOLE = {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 90.0}
-BOXES = {"boxes": "boxes.csv", "origin": [0.0, 0.0, 0.0], "focus": []}
 
 
 def paths(value, path=()):
@@ -121,28 +170,6 @@ def refused(read, *words):
     return None
 
 
-PARTNERS = {
-    "aspect_deg": ["dbsm"],
-    "bandwidth_mhz": ["range_resolution_m"],
-    "class": ["classes"],
-    "dbsm": ["aspect_deg"],
-    "elevations_deg": ["azimuth_offsets_deg"],
-    "fov_deg": ["distortion"],
-    "k1": ["distortion"],
-    "max_range_m": ["min_range_m"],
-    "model": ["kind"],
-    "optimize": ["mount"],
-    "p1": ["distortion"],
-    "position": ["bounds"],
-    "rotation": ["position"],
-    "sensors": ["group"],
-    "vehicle": ["move"],
-    "x": ["zone"],
-    "y": ["zone"],
-}
-"""Keys whose values have to fit together: a message may name the other one."""
-
-
 def names_of(path):
     """What a message about a value may call it: its key as in the file, or that of its partner."""
     return [key_of(path), *PARTNERS.get(key_of(path), [])]
@@ -194,10 +221,6 @@ def test_every_key_takes_a_hostile_value_or_refuses_it_in_one_line(folder):
     assert {where: fault for where, fault in tried.items() if fault} == {}
 
 
-STEP = tries(6, 3)
-"""Every key is given one value in so many, each key others than the one before it."""
-
-
 NO_TOML = ["samples = " + "[" * 5000 + "]" * 5000, "samples = 1979-13-45", "samples = \x00"]
 NO_TOML += ['samples = "\\ud800"', "\x1b[31m = \u202e"]
 
@@ -214,36 +237,6 @@ def test_a_study_of_nothing_hostile_is_taken(folder):
     for data in (STUDY, STUDY | {"prior": BOXES}, MORE):
         study = study_from_dict(data, "study.toml", folder)
         assert len(study.rig) >= 4 and study.vehicle is not None
-
-
-EXTREMES = [
-    ("ap", "lidar", "a", 1e-12),
-    ("ap", "lidar", "a", 1e3),
-    ("ap", "lidar", "b", -1e3),
-    ("prior", "focus", 0, "factor", 1e9),
-    ("prior", "focus", 0, "factor", 5e-324),
-    ("prior", "focus", 0, "x", [-math.inf, math.inf]),
-    ("prior", "class", 0, "size", [5e-324, 5e-324, 5e-324]),
-    ("prior", "class", 0, "height_spread", 5e-324),
-    ("prior", "class", 0, "decay_x", 5e-324),
-    ("prior", "class", 0, "laplace_y", 5e-324),
-    ("prior", "class", 0, "gauss_y", 1e9),
-    ("prior", "class", 0, "share", 0.0),
-    ("prior", "class", 0, "lanes", [1e9]),
-    ("sensor", 0, "position", [1e4, -1e4, 1e4]),
-    ("sensor", 0, "rotation", [3600.0, -3600.0, 3600.0]),
-    ("sensor", 0, "model", "max_range_m", 0.001),
-    ("sensor", 0, "model", "elevations_deg", [-90.0, 90.0, 5e-324]),
-    ("sensor", 0, "rotation", [1e-320, 0.0, 0.0]),
-    ("sensor", 0, "model", "azimuth_count", 1),
-    ("sensor", 2, "model", "hfov_deg", 0.001),
-    ("sensor", 2, "model", "hfov_deg", 179.999),
-    ("sensor", 2, "model", "width", 1_000_000),
-    ("vehicle", "clearance", 0.999),
-    ("vehicle", "clearance", 5e-324),
-    ("space", {"x": [999_992, 1_000_000], "y": [-4, 4], "z": [0, 4], "interval": 0.5}),
-    ("space", {"x": [-0.002, 0.002], "y": [-0.002, 0.002], "z": [2, 2.004], "interval": 0.001}),
-]
 
 
 @pytest.mark.parametrize(

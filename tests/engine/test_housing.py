@@ -14,6 +14,14 @@ from tests.engine.refusals import wrongly_refused
 CAN = Housing("cylinder", (0.2, 0.2, 0.3), (0.0, 0.0, 0.1), "a test")
 CRATE = Housing("box", (0.2, 0.4, 0.3), (0.1, 0.0, 0.15), "a test")
 UPRIGHT = pe.Pose((0.0, 0.0, 0.0))
+BAD = [
+    ("housing", "round"),
+    ("housing.shape", {"shape": "ball"}),
+    ("housing.diameter", {"shape": "box", "diameter": 1}),
+    ("housing.size", {"shape": "box", "size": [1, 2], "source": "a"}),
+    ("housing.diameter", {"shape": "cylinder", "height": 1, "source": "a"}),
+    ("housing.source", {"shape": "box", "size": [1, 2, 3]}),
+]
 
 
 def one_triangle(*corners):
@@ -115,16 +123,6 @@ def test_what_a_box_s_table_leaves_out_is_assumed():
     assert box.optical_center == (0.05, 0.0, 0.03)
     can = {"shape": "cylinder", "diameter": 0.1, "height": 0.08, "source": "a test"}
     assert read_housing("x", can).optical_center == (0.0, 0.0, 0.04)
-
-
-BAD = [
-    ("housing", "round"),
-    ("housing.shape", {"shape": "ball"}),
-    ("housing.diameter", {"shape": "box", "diameter": 1}),
-    ("housing.size", {"shape": "box", "size": [1, 2], "source": "a"}),
-    ("housing.diameter", {"shape": "cylinder", "height": 1, "source": "a"}),
-    ("housing.source", {"shape": "box", "size": [1, 2, 3]}),
-]
 
 
 def test_a_wrong_table_is_refused():

@@ -74,7 +74,8 @@ def test_stop_while_the_result_is_scored_cuts_nothing_short():
 @pytest.mark.parametrize("when", [("optimizing",) * 2, ("optimizing", "analysing"), ("analysing",)])
 def test_a_stop_ends_the_analysis_and_the_result_does_not_wait_for_it(when, monkeypatch):
     """Before it begins, or while it runs for as long as it likes; the search was stopped or not."""
-    goes_on, left = threading.Event(), list(when)
+    goes_on = threading.Event()
+    left = list(when)
     monkeypatch.setattr(score_and_optimize, "robustness", lambda *_: goes_on.wait(60.0))
     job = pt.OptimizeJob(study())
     for progress in job:
@@ -90,7 +91,10 @@ def test_a_stop_ends_the_analysis_and_the_result_does_not_wait_for_it(when, monk
 
 
 def test_stop_keeps_the_best_so_far_at_once_and_analyses_it(monkeypatch):
-    given, goes_on, asked, ended = study(), threading.Event(), [], []
+    given = study()
+    goes_on = threading.Event()
+    asked = []
+    ended = []
     job = pt.OptimizeJob(given)
     entropy = pe.Evaluator.entropy
 

@@ -40,6 +40,19 @@ POSES = {
     "above the space": ((0.0, 0.0, 6.2), (0.0, 32.0, 0.0)),
     "below the space": ((1.0, 0.5, -0.7), (0.0, -10.0, 20.0)),
 }
+SCAN = {
+    "name": "scan",
+    "azimuth_deg": [-50, 0, 50],
+    "range_m": [40, 100, 60],
+    "elevation_deg": [-15, 0, 15],
+    "elevation_scale": [0.5, 1.0, 0.6],
+    "azimuth_resolution_deg": 2.0,
+    "min_range_m": 1.0,
+}
+CONE = {"kind": "ultrasonic", "hfov_deg": 60, "vfov_deg": 30, "max_range_m": 2.0}
+ELEVATIONS = np.radians(np.linspace(-25.0, 15.0, 20))
+SPREAD = np.linspace(-4.0, 4.0, 20)
+TILTS = ((0, 3, 0), (0, 90, 0), (90, 0, 0), (180, 0, 0), (0, -30, 90), (0, 1e-7, 0), (1e-4, 0, 45))
 
 
 def rosette(nearest=0.0):
@@ -58,16 +71,6 @@ def bent(lens, **options):
     return pe.Camera("bent", 480, 270, lens=lens, **options)
 
 
-SCAN = {
-    "name": "scan",
-    "azimuth_deg": [-50, 0, 50],
-    "range_m": [40, 100, 60],
-    "elevation_deg": [-15, 0, 15],
-    "elevation_scale": [0.5, 1.0, 0.6],
-    "azimuth_resolution_deg": 2.0,
-    "min_range_m": 1.0,
-}
-CONE = {"kind": "ultrasonic", "hfov_deg": 60, "vfov_deg": 30, "max_range_m": 2.0}
 MODELS = {
     "regular": shapes.small_lidar(24, 360),
     "offsets": shapes.small_lidar(24, 360, azimuth_offsets=np.radians(np.linspace(-5, 5, 24))),
@@ -94,9 +97,19 @@ MODELS = {
         min_range=1.5,
         max_range=6.0,
     ),
-    "circle": bent(pe.KannalaBrandt(70.0, 70.0, 250.0, 150.0, math.radians(190.0), -0.02, 0.001)),
-    "fisheye": bent(pe.KannalaBrandt(110.0, 112.0, 250.0, 150.0, None, -0.02, 0.001)),
-    "f-theta": bent(pe.FTheta(1.0, 1.0, 240.0, 135.0, None, 127.0, -12.0, 18.0, -2.7)),
+    "circle": bent(
+        pe.KannalaBrandt(
+            fx=70.0, fy=70.0, cx=250.0, cy=150.0, fov=math.radians(190.0), k1=-0.02, k2=0.001
+        )
+    ),
+    "fisheye": bent(
+        pe.KannalaBrandt(fx=110.0, fy=112.0, cx=250.0, cy=150.0, fov=None, k1=-0.02, k2=0.001)
+    ),
+    "f-theta": bent(
+        pe.FTheta(
+            fx=1.0, fy=1.0, cx=240.0, cy=135.0, fov=None, k1=127.0, k2=-12.0, k3=18.0, k4=-2.7
+        )
+    ),
     "radar": catalog.from_table("own", {"kind": "radar", "mode": [SCAN], "list_length": 400}),
     "ultrasonic": catalog.from_table("own", CONE),
 }
@@ -104,7 +117,8 @@ MODELS = {
 
 def some_voxels(sensor, space, grid, rng, count):
     """Indices of voxels that are seen, of any voxels, and of voxels round and level with it."""
-    seen, shape = np.flatnonzero(grid), np.array(space.shape)
+    seen = np.flatnonzero(grid)
+    shape = np.array(space.shape)
     flat = np.concatenate([rng.choice(seen, count), rng.integers(0, space.size, count)])
     index = np.stack(np.unravel_index(flat, space.shape), axis=1)
     here = ((np.array(sensor.pose.position) - space.origin) / space.interval).astype(int)
@@ -131,8 +145,8 @@ def test_grid_and_sample_equal_the_definition(model, pose):
     grid = on_grid(sensor, SPACE, vehicle)
     if not grid.any():  # nothing in view: not of a small cone up there
         return
-    index = some_voxels(sensor, SPACE, grid, np.random.default_rng(number), 200)
-    assert np.count_nonzero(assert_defined(sensor, SPACE, index, vehicle, grid)) > 100
+    index = some_voxels(sensor, SPACE, grid, np.random.default_rng(number), count=200)
+    assert np.count_nonzero(assert_defined(sensor, SPACE, index, vehicle, grid=grid)) > 100
 
 
 @pytest.mark.parametrize("seed", range(tries(2, 3)))
@@ -142,8 +156,8 @@ def test_a_lidar_anywhere_on_the_vehicle(seed):
     yaw = float(rng.choice([0.0, rng.uniform(-180, 180)]))
     sensor = pe.Sensor("s", MODELS["paper"], pe.Pose.from_degrees(place, (0.0, 0.0, yaw)))
     grid = on_grid(sensor, SPACE, CAR)
-    index = some_voxels(sensor, SPACE, grid, rng, 100)
-    expected = assert_defined(sensor, SPACE, index, CAR, grid)
+    index = some_voxels(sensor, SPACE, grid, rng, count=100)
+    expected = assert_defined(sensor, SPACE, index, CAR, grid=grid)
     voxels = Voxels(SPACE, index, SPACE.center_of(index))
     few = kind_of(sensor).on_sample(voxels, CAR, 10).measure(sensor).m
     assert np.minimum(few, 10).tolist() == np.minimum(expected, 10).tolist()
@@ -194,7 +208,8 @@ def test_more_beams_one_way_than_a_count_holds():
     """Equal to the same beams added in small portions, and summed without a limit."""
     dense = pe.Lidar("dense", np.radians(np.linspace(-25.0, 15.0, 80)), 3600, 40.0)
     sensor = shapes.lidar_on_roof(dense, (0.1, 0.1, 2.1))
-    field, total = pe.beam_field(sensor, None), np.zeros(SMALL.shape, int)
+    field = pe.beam_field(sensor, None)
+    total = np.zeros(SMALL.shape, int)
     for some in np.array_split(np.arange(len(field.ends)), 5):
         grid = BeamGrid(SMALL)
         grid.add(sensor.pose.position, field.directions[some], field.ends[some])
@@ -213,21 +228,42 @@ def test_a_pattern_of_a_lidar_s_own_beams_is_that_lidar():
     assert np.count_nonzero(a != b) <= a.size // 10_000  # beams differ in their last bit
 
 
-ELEVATIONS = np.radians(np.linspace(-25.0, 15.0, 20))
-SPREAD = np.linspace(-4.0, 4.0, 20)
 AT_OBJECTS = {
     "regular": pe.Lidar("regular", ELEVATIONS, 150, 60.0),
     "more than a word": pe.Lidar("tall", np.radians(np.linspace(-30.0, 20.0, 70)), 90, 60.0),
-    "fans": pe.Lidar("fans", ELEVATIONS, 150, 60.0, np.radians(np.round(SPREAD))),
-    "a fan a channel": pe.Lidar("many", ELEVATIONS, 150, 60.0, np.radians(SPREAD)),
-    "limited": pe.Lidar("limited", ELEVATIONS, 150, 60.0, None, (-1.0, 0.8)),
+    "fans": pe.Lidar(
+        "fans",
+        ELEVATIONS,
+        azimuth_count=150,
+        max_range=60.0,
+        azimuth_offsets=np.radians(np.round(SPREAD)),
+    ),
+    "a fan a channel": pe.Lidar(
+        "many", ELEVATIONS, azimuth_count=150, max_range=60.0, azimuth_offsets=np.radians(SPREAD)
+    ),
+    "limited": pe.Lidar(
+        "limited",
+        ELEVATIONS,
+        azimuth_count=150,
+        max_range=60.0,
+        azimuth_offsets=None,
+        horizontal_fov=(-1.0, 0.8),
+    ),
     "ranged": pe.Lidar("ranged", ELEVATIONS, 150, 15.0, min_range=6.0),
     "steep": pe.Lidar("steep", np.radians([-90.0, -80.0, -30.0, 0.0, 89.5]), 60, 60.0),
     "a pattern": pe.Lidar.from_directions(
         "pattern", np.random.default_rng(3).normal((2, 0, -0.2), (1, 1, 0.3), (1500, 3)), 60.0
     ),
     **SMALL_CAMERAS,
-    "ranged camera": pe.Camera("ranged", 200, 130, math.radians(60.0), None, 8.0, 20.0),
+    "ranged camera": pe.Camera(
+        "ranged",
+        width=200,
+        height=130,
+        hfov=math.radians(60.0),
+        lens=None,
+        min_range=8.0,
+        max_range=20.0,
+    ),
     "radar": MODELS["radar"],
     "far radar": catalog.load("Continental ARS408-21"),
     "ultrasonic": catalog.from_table("far", {**CONE, "max_range_m": 15.0, "hfov_deg": 120}),
@@ -241,7 +277,9 @@ def round_objects(rng):
     yaws = np.round(some.yaws * 2.0 / math.pi) * math.pi / 2.0
     centers[:, 2] = np.maximum(centers[:, 2], 0.5)
     names = some.class_names
-    return pe.Objects(centers, np.maximum(sizes, 0.5), yaws, some.labels, names, some.scenes)
+    return pe.Objects(
+        centers, np.maximum(sizes, 0.5), yaws, some.labels, class_names=names, scenes=some.scenes
+    )
 
 
 def places(rng):
@@ -257,7 +295,8 @@ def places(rng):
 @pytest.mark.parametrize("name", AT_OBJECTS)
 def test_the_kernel_of_objects_equals_the_definition(name):
     """To the bit, free, in traffic, on a car, and both."""
-    rng, model = np.random.default_rng(sorted(AT_OBJECTS).index(name)), AT_OBJECTS[name]
+    rng = np.random.default_rng(sorted(AT_OBJECTS).index(name))
+    model = AT_OBJECTS[name]
     totals = np.zeros(len(VIEWS))
     for pose, objects in places(rng):
         sensor = pe.Sensor("s", model, pose)
@@ -266,9 +305,6 @@ def test_the_kernel_of_objects_equals_the_definition(name):
             for on_car, traffic in VIEWS.values()
         ]
     assert totals[0] > totals[3] > 0  # something hides something
-
-
-TILTS = ((0, 3, 0), (0, 90, 0), (90, 0, 0), (180, 0, 0), (0, -30, 90), (0, 1e-7, 0), (1e-4, 0, 45))
 
 
 @pytest.mark.parametrize("rotation", TILTS)
@@ -284,10 +320,13 @@ def test_a_tilted_lidar_at_round_angles_among_round_objects(rotation):
 def test_a_sensor_over_and_in_objects_of_a_scene():
     """Such scenes are compared beam by beam, the others are not."""
     some = random_objects(np.random.default_rng(4), 40, 10, nearest=4.0, farthest=25.0)
-    centers, sizes = some.centers.copy(), some.sizes.copy()
+    centers = some.centers.copy()
+    sizes = some.sizes.copy()
     centers[[3, 20]] = (0.0, 0.0, 0.5), (0.1, 0.0, 1.5)
     sizes[[3, 20]] = (4.0, 2.0, 1.0), (1.0, 1.0, 2.0)
-    objects = pe.Objects(centers, sizes, some.yaws, some.labels, some.class_names, some.scenes)
+    objects = pe.Objects(
+        centers, sizes, some.yaws, some.labels, class_names=some.class_names, scenes=some.scenes
+    )
     for name in ("regular", "a pattern"):
         sensor = pe.Sensor("s", AT_OBJECTS[name], pe.Pose((0.0, 0.0, 1.5)))
         for traffic in (False, True):

@@ -15,6 +15,34 @@ from pe_core.sensors.camera import BrownConrady
 from pe_tools.cli.verbs import main
 from pe_tools.exchange import pose_from_quaternion
 
+ROOT = Path(__file__).parents[2]
+FEW = 16_384
+SIGMAS = 4.0
+"""Passes by chance all but once in 16,000 figures."""
+SIZE = (1920, 1080)
+CALIBRATION = {
+    "front_camera": {
+        "translation": (0.0012, -0.0391, -0.0440),
+        "rotation": (0.0162, 0.0031, 0.7115, -0.7025),
+        "K": [1970.0, 0.0, 970.0, 0.0, 1970.1, 483.3, 0.0, 0.0, 1.0],
+        "D": [-0.5894, 0.66, 0.0011, -0.001, -1.0088],
+        "fov_deg": 71.0,
+    },
+    "back_camera": {
+        "translation": (-0.0004, -0.2168, -1.0553),
+        "rotation": (0.7138, 0.7004, -0.0016, -0.0005),
+        "K": [933.4, 0.0, 896.4, 0.0, 934.6, 507.3, 0.0, 0.0, 1.0],
+        "D": [-0.1619, 0.0113, -0.00028, -7.9e-05, 0.0067],
+    },
+}
+"""Of the form of pandaset-devkit's static_extrinsic_calibration.yaml, its names; rotations are
+(w, x, y, z) and, with the translations, take the LiDAR's frame to the camera's optical one."""
+LIDAR_AT = pe.Pose((-0.1, 0.0, 1.97), (0.0, 0.0, math.pi / 2.0))
+"""Its x axis is to the left, its y axis to the rear."""
+ELEVATIONS = [round(15.0 - 0.37 * k - 0.01 * (k % 3), 3) for k in range(64)]
+OFFSETS = [round(0.5 * ((k * 7) % 5 - 2) - 0.042, 3) for k in range(64)]
+"""A table a channel: elevation and azimuth offset [deg], none like another."""
+
 
 @pytest.mark.parametrize("rig", catalog.known_rigs().values(), ids=lambda rig: rig.key)
 def test_each_has_models_of_the_catalogue_names_of_its_own_and_a_source(rig):
@@ -39,19 +67,14 @@ def test_the_origin_moves_from_the_rear_axle_under_the_centre():
 def test_a_rig_is_stretched_to_another_box_by_hand():
     """From 4.084 x 1.73 x 1.562 m to twice that: inside doubled, what stands out stays out."""
     rig = catalog.known_rig("nuscenes")
-    low, high = (-4.084, -1.73, 0.0), (4.084, 1.73, 3.124)
+    low = (-4.084, -1.73, 0.0)
+    high = (4.084, 1.73, 3.124)
     lidar, front = rig.on_vehicle(low, high)[:2]
     assert lidar.pose.position == (-0.8726, 0.0, 3.4022)  # 0.2782 m above a roof of 3.124 m
     assert front.pose.position == pytest.approx((2 * 0.3208, 2 * 0.0159, 2 * 1.511), abs=1e-5)
     assert front.pose.rpy == rig.sensors[1].pose.rpy
     same = rig.on_vehicle((-2.042, -0.865, 0.0), (2.042, 0.865, 1.562))
     assert [s.pose for s in same] == [s.pose for s in rig.sensors]
-
-
-ROOT = Path(__file__).parents[2]
-FEW = 16_384
-SIGMAS = 4.0
-"""Passes by chance all but once in 16,000 figures."""
 
 
 @pytest.fixture(scope="module")
@@ -98,38 +121,14 @@ def test_each_is_a_study_that_reads_back(key, tmp_path, capsys):
     assert main(["new", "--rig", key, "-o", str(tmp_path / "study.toml")]) == 0
     assert "as published" in capsys.readouterr().err
     study = pe.load_study(tmp_path / "study.toml")
-    found, rig = study.rig, catalog.known_rig(key)
+    found = study.rig
+    rig = catalog.known_rig(key)
     assert study.samples == FIRST_SAMPLES, "seconds, not 64 million voxels"
     assert [s.name for s in found] == [s.name for s in rig.sensors]
     for ours, theirs in zip(rig.sensors, found, strict=True):
         assert theirs.model is catalog.load(ours.model)
         assert theirs.pose.position == pytest.approx(ours.pose.position, abs=1e-9)
         assert theirs.pose.rotation_deg == pytest.approx(ours.pose.rotation_deg, abs=1e-9)
-
-
-SIZE = (1920, 1080)
-CALIBRATION = {
-    "front_camera": {
-        "translation": (0.0012, -0.0391, -0.0440),
-        "rotation": (0.0162, 0.0031, 0.7115, -0.7025),
-        "K": [1970.0, 0.0, 970.0, 0.0, 1970.1, 483.3, 0.0, 0.0, 1.0],
-        "D": [-0.5894, 0.66, 0.0011, -0.001, -1.0088],
-        "fov_deg": 71.0,
-    },
-    "back_camera": {
-        "translation": (-0.0004, -0.2168, -1.0553),
-        "rotation": (0.7138, 0.7004, -0.0016, -0.0005),
-        "K": [933.4, 0.0, 896.4, 0.0, 934.6, 507.3, 0.0, 0.0, 1.0],
-        "D": [-0.1619, 0.0113, -0.00028, -7.9e-05, 0.0067],
-    },
-}
-"""Of the form of pandaset-devkit's static_extrinsic_calibration.yaml, its names; rotations are
-(w, x, y, z) and, with the translations, take the LiDAR's frame to the camera's optical one."""
-LIDAR_AT = pe.Pose((-0.1, 0.0, 1.97), (0.0, 0.0, math.pi / 2.0))
-"""Its x axis is to the left, its y axis to the rear."""
-ELEVATIONS = [round(15.0 - 0.37 * k - 0.01 * (k % 3), 3) for k in range(64)]
-OFFSETS = [round(0.5 * ((k * 7) % 5 - 2) - 0.042, 3) for k in range(64)]
-"""A table a channel: elevation and azimuth offset [deg], none like another."""
 
 
 def sensor_of(name, row):
@@ -145,8 +144,11 @@ def sensor_of(name, row):
 
 @pytest.fixture
 def rig():
-    elevations, offsets = np.radians(ELEVATIONS), np.radians(OFFSETS)
-    lidar = pe.Lidar("own lidar", elevations, 1800, 200.0, offsets)
+    elevations = np.radians(ELEVATIONS)
+    offsets = np.radians(OFFSETS)
+    lidar = pe.Lidar(
+        "own lidar", elevations, azimuth_count=1800, max_range=200.0, azimuth_offsets=offsets
+    )
     eyes = [sensor_of(name, row) for name, row in CALIBRATION.items()]
     return pe.Rig([pe.Sensor("main_lidar", lidar, LIDAR_AT), *eyes])
 
@@ -166,7 +168,8 @@ def test_every_figure_is_in_the_study_and_comes_back(rig, tmp_path):
         assert [lens.k1, lens.k2, lens.p1, lens.p2, lens.k3] == row["D"]
         assert lens.fov == (math.radians(row["fov_deg"]) if "fov_deg" in row else None)
         assert (again[name].model.width, again[name].model.height) == SIZE
-    lidar, own = again["main_lidar"].model, rig["main_lidar"].model
+    lidar = again["main_lidar"].model
+    own = rig["main_lidar"].model
     assert np.abs(lidar.directions - own.directions).max() < 1e-12
     assert np.degrees(lidar.elevations) == pytest.approx(ELEVATIONS, abs=1e-9)
 

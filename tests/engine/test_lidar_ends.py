@@ -50,8 +50,8 @@ def placed(sensor, ends):
         position_in_voxels(sensor.pose.position, SPACE.origin, SPACE.interval),
         sensor.pose.ground_from_sensor,
         RotatedBeams(sensor),
-        ends,
-        SPACE.interval,
+        ends=ends,
+        side=SPACE.interval,
     )
 
 
@@ -84,7 +84,8 @@ def test_counts_are_those_of_all_beams_cast(pose, kind):
     """The plain way is to cast every beam."""
     part = {"horizontal_fov": (-2.6, 2.6)} if kind == "part of a circle" else {}
     sensor = lidar(POSES[pose], shapes.small_lidar(24, 360, **part))
-    field, voxels = pe.beam_field(sensor, CAR), some_voxels()
+    field = pe.beam_field(sensor, CAR)
+    voxels = some_voxels()
     plain = count_voxel_beams(voxels, placed(sensor, FixedEnds(field.ends)))
     assert np.array_equal(count_voxel_beams(voxels, placed(sensor, lazy(sensor, CAR))), plain)
     free = count_voxel_beams(voxels, placed(sensor, FixedEnds(np.full_like(field.ends, 60.0))))

@@ -20,13 +20,15 @@ PLACES = {
     "face": (0.27, -0.33, 1.8),
     "centre": (0.3, -0.3, 1.9),
 }
+TURNED = [(0, 90, 0), (90, 0, 0), (90, 90, -90), (0, -90, 180), (-90, 0, 90), (30, 90, 0)]
 
 
 def grazing_beams(rng, count):
     """Directions that pass the edges of a corner by a hundred-thousandth of the nudge, or less."""
     directions = NUDGE * -rng.uniform(0.1, 10.0, (count, 3))
     a, b = rng.permuted(np.tile(np.arange(3), (count, 1)), axis=1)[:, :2].T
-    rows, off = np.arange(count), rng.uniform(-1e-5, 1e-5, count)
+    rows = np.arange(count)
+    off = rng.uniform(-1e-5, 1e-5, count)
     directions[rows, b] = directions[rows, a] * (NUDGE[b] / NUDGE[a]) * (1.0 + off)
     return directions / np.linalg.norm(directions, axis=1)[:, None]
 
@@ -47,10 +49,12 @@ def exact_count(directions, position, index):
 
 
 def _meets(beam, low):
-    enter, leave = Fraction(0), None
+    enter = Fraction(0)
+    leave = None
     for d, near in zip(map(Fraction, beam), low, strict=True):
         t0, t1 = sorted((near / d, (near + 1) / d))
-        enter, leave = max(enter, t0), t1 if leave is None else min(leave, t1)
+        enter = max(enter, t0)
+        leave = t1 if leave is None else min(leave, t1)
     return enter < leave
 
 
@@ -64,7 +68,8 @@ def test_no_beam_that_grazes_a_corner_goes_astray(place):
     position = PLACES[place]
     beams = grazing_beams(np.random.default_rng(len(place)), 200)
     lidar = pe.Lidar.from_directions("grazing", beams, 50.0)
-    sensor, index = pe.Sensor("s", lidar, pe.Pose(position)), around(position)
+    sensor = pe.Sensor("s", lidar, pe.Pose(position))
+    index = around(position)
     index = index[((index >= 0) & (index < SPACE.shape)).all(axis=1)]
     directions = pe.beam_field(sensor, None).directions
     expected = [exact_count(directions, position, own) for own in index]
@@ -82,9 +87,6 @@ def test_voxels_on_a_lidar_s_axis(rotation, height):
     index = every_voxel(SPACE).index
     index = index[np.abs(SPACE.center_of(index) - pose.position).max(axis=1) < 0.8]
     assert assert_defined(sensor, SPACE, index).any()
-
-
-TURNED = [(0, 90, 0), (90, 0, 0), (90, 90, -90), (0, -90, 180), (-90, 0, 90), (30, 90, 0)]
 
 
 @pytest.mark.parametrize("turn", TURNED)

@@ -11,6 +11,20 @@ from pe_core.base.values import numbers
 from tests.engine import shapes
 
 DEG = math.pi / 180.0
+BOX = ("car", 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0)
+OTHERS = {
+    pe.ApCurve: {"a": 0.1, "b": 0.1},
+    pe.Pose: {"position": (0, 0, 0)},
+    pe.SurfaceMount: {"parts": ["a"]},
+    pe.NoGo: {"name": "a"},
+}
+NEVER = [math.nan, np.float64("nan"), 10**400, 10**5000, True, np.True_, "1", "x" * 10**6]
+"""What no setting takes, whatever it is of."""
+FIGURE_LIMITS = (
+    ("height", (1.0, True, None, {"value": 2.0, "kept": False}), (-1.0, False, {"kept": False})),
+    ("entropy", (1.0, {"value": -2.0}), (True, math.nan, {"vale": 1.0}, {"value": 1.0, "kept": 1})),
+    ("requirements", (True, None), (1.0, "keep", False)),
+)
 
 
 def lidar(**options):
@@ -40,7 +54,6 @@ def vehicle(**options):
     return pe.Vehicle(shapes.box((0, 0, 0), (1, 1, 1)), **options)
 
 
-BOX = ("car", 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0)
 # what is made, the option, values that are taken, values that are not
 LIMITS = [
     (lidar, "azimuth_count", (1, 360_000, 1800.0), (0, -1, 360_001, 180.7, True, "4", None)),
@@ -90,14 +103,6 @@ LIMITS = [
     *((pe.Mounting, key, ({},), (1, math.nan)) for key in ("mounts", "on")),
     (pe.Mounting, "pairs", ([],), (1,)),
 ]
-OTHERS = {
-    pe.ApCurve: {"a": 0.1, "b": 0.1},
-    pe.Pose: {"position": (0, 0, 0)},
-    pe.SurfaceMount: {"parts": ["a"]},
-    pe.NoGo: {"name": "a"},
-}
-NEVER = [math.nan, np.float64("nan"), 10**400, 10**5000, True, np.True_, "1", "x" * 10**6]
-"""What no setting takes, whatever it is of."""
 
 
 def is_taken(make, **options):
@@ -119,13 +124,6 @@ def test_limits():
         if is_taken(make, **OTHERS.get(make, {}) | {key: value}) is not taken
     ]
     assert offenders == []
-
-
-FIGURE_LIMITS = (
-    ("height", (1.0, True, None, {"value": 2.0, "kept": False}), (-1.0, False, {"kept": False})),
-    ("entropy", (1.0, {"value": -2.0}), (True, math.nan, {"vale": 1.0}, {"value": 1.0, "kept": 1})),
-    ("requirements", (True, None), (1.0, "keep", False)),
-)
 
 
 @pytest.mark.parametrize(("key", "good", "bad"), FIGURE_LIMITS)

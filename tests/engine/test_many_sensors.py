@@ -21,7 +21,8 @@ def ring(count, lidar_group="lidar", camera_group=None):
     sensors = []
     for k in range(count):
         angle = 2.0 * np.pi * k / count
-        x, y = np.cos(angle), 0.5 * np.sin(angle)
+        x = np.cos(angle)
+        y = 0.5 * np.sin(angle)
         lidar = shapes.small_lidar(8, 90)
         above = pe.Pose((x - 0.3, y, 1.75))
         ahead = pe.Pose((x - 0.3, y, 1.6), (0.0, 0.0, angle))
@@ -47,7 +48,8 @@ def evaluator(**model):
     ids=str,
 )
 def test_what_a_sensor_adds_is_the_rig_s_entropy_without_it_less_the_rig_s(groups, model):
-    ours, rig = evaluator(**model), ring(3, *groups)
+    ours = evaluator(**model)
+    rig = ring(3, *groups)
     score = ours.score(rig)
     for sensor in rig:
         rest = pe.Rig([other for other in rig if other.name != sensor.name])
@@ -56,7 +58,8 @@ def test_what_a_sensor_adds_is_the_rig_s_entropy_without_it_less_the_rig_s(group
 
 
 def test_the_measurements_that_a_score_turns_into_precision_grow_with_the_sensors(monkeypatch):
-    converted, precision = [], Fusion.precision
+    converted = []
+    precision = Fusion.precision
 
     def counted(self, m, kind):
         converted.append(m.size)
@@ -73,10 +76,12 @@ def test_the_measurements_that_a_score_turns_into_precision_grow_with_the_sensor
 
 
 def test_eight_squares_that_a_sensor_marks_take_a_byte_and_say_the_same():
-    rig, grid = ring(3), GroundGrid((-10.0, -10.0), (201, 199), 0.1)
+    rig = ring(3)
+    grid = GroundGrid((-10.0, -10.0), (201, 199), 0.1)
     view = GroundView(grid, 0.5, shapes.box_car())
     ours = VisibleGroundCache(view, {})
-    marked, by_sensor = ours.marked(rig), ours.by_sensor
+    marked = ours.marked(rig)
+    by_sensor = ours.by_sensor
     assert ours.kept_bytes <= len(rig.sensors) * (201 * 199 / 8 + 1)
     alone = [VisibleGroundCache(view, {}).marked(pe.Rig([sensor])) for sensor in rig]
     assert all(np.array_equal(by_sensor[s.name], m) for s, m in zip(rig, alone, strict=True))
@@ -85,7 +90,8 @@ def test_eight_squares_that_a_sensor_marks_take_a_byte_and_say_the_same():
 
 
 def test_sensors_of_one_model_and_orientation_share_their_rotated_beams():
-    model, cache = shapes.small_lidar(), BeamCache(None)
+    model = shapes.small_lidar()
+    cache = BeamCache(None)
     left, right = (pe.Sensor(str(y), model, pe.Pose((0.0, y, 1.8))) for y in (0.5, -0.5))
     turned = pe.Sensor("turned", model, pe.Pose((0.0, 0.0, 1.8), (0.0, 0.1, 0.0)))
     shared = cache.rotated(left)

@@ -34,6 +34,14 @@ LENSES = (
 
 
 pytestmark = pytest.mark.usefixtures("example_plugin")
+WALL = pe.Vehicle(
+    np.array(
+        [  # a wall across, 2 m ahead, 4 m wide, from the ground up to 3 m
+            [[2.0, -2.0, 0.0], [2.0, 2.0, 0.0], [2.0, 2.0, 3.0]],
+            [[2.0, -2.0, 0.0], [2.0, 2.0, 3.0], [2.0, -2.0, 3.0]],
+        ]
+    )
+)
 
 
 def plugin():
@@ -60,7 +68,8 @@ def test_each_pixel_is_the_ray_through_its_middle(lens, monkeypatch):
     monkeypatch.setattr(plugin(), "RAYS_AT_ONCE", 64 * 7)
     sensor = mounted(camera(lens))
     parts = ego_mask(sensor, BODY).parts
-    axes, lens = sensor.pose.ground_from_sensor, sensor.model.projection
+    axes = sensor.pose.ground_from_sensor
+    lens = sensor.model.projection
     kinds = set()
     for row, column in np.random.default_rng(0).integers(0, (36, 64), (300, 2)).tolist():
         way = lens.unproject(np.array([column + 0.5]), np.array([row + 0.5]))
@@ -100,7 +109,7 @@ def study(vehicle=BODY):
 
 def test_files_say_what_the_arrays_do():
     files, lines = scene_files(study(), "masks")
-    assert set(files) == {*("masks.json", "eye_left_mask.png"), *("top_mask.png", "top_mask.csv")}
+    assert set(files) == {"masks.json", "eye_left_mask.png", "top_mask.png", "top_mask.csv"}
     assert lines == ["eye/left: called eye_left in names of files"]
     told = {each["sensor"]: each for each in json.loads(files["masks.json"])["masks"]}
     for sensor in study().rig:
@@ -114,16 +123,6 @@ def test_files_say_what_the_arrays_do():
         assert sum(told[sensor.name]["by_part"].values()) == pytest.approx(stopped, abs=1e-5)
     assert told["eye/left"]["outside_share"] > 0.0
     assert told["eye/left"]["rays_by_part"].keys() <= {"wall", "rod"}
-
-
-WALL = pe.Vehicle(
-    np.array(
-        [  # a wall across, 2 m ahead, 4 m wide, from the ground up to 3 m
-            [[2.0, -2.0, 0.0], [2.0, 2.0, 0.0], [2.0, 2.0, 3.0]],
-            [[2.0, -2.0, 0.0], [2.0, 2.0, 3.0], [2.0, -2.0, 3.0]],
-        ]
-    )
-)
 
 
 def lidar(elevations_deg, azimuths=4, max_range=50.0, fov=(-180, 180)):
@@ -149,7 +148,8 @@ def test_by_hand():
 def test_each_pixel_is_its_beam_s_first_hit(model):
     """Beam by beam, from directions worked out anew, turned and tilted."""
     sensor = pe.Sensor("it", catalog.load(model), pe.Pose((0.3, 0.2, 1.1), (0.1, 0.2, 0.4)))
-    picture, rng = range_picture(sensor, WALL), np.random.default_rng(0)
+    picture = range_picture(sensor, WALL)
+    rng = np.random.default_rng(0)
     offsets = dict(zip(sensor.model.elevations, sensor.model.azimuth_offsets, strict=True))
     turned = sensor.pose.ground_from_sensor
     seen = set()
@@ -184,10 +184,12 @@ def test_things_end_beams_unless_something_is_before_them():
 def chunks(png):
     """Names and contents of a file's chunks, their sums checked."""
     assert png[:8] == b"\x89PNG\r\n\x1a\n"
-    at, found = 8, []
+    at = 8
+    found = []
     while at < len(png):
         (size,) = struct.unpack(">I", png[at : at + 4])
-        name, data = png[at + 4 : at + 8], png[at + 8 : at + 8 + size]
+        name = png[at + 4 : at + 8]
+        data = png[at + 8 : at + 8 + size]
         (told,) = struct.unpack(">I", png[at + 8 + size : at + 12 + size])
         assert told == zlib.crc32(name + data)
         found.append((name, data))
@@ -202,7 +204,8 @@ def decoded(png):
     assert depth == 8 and rest == [0, 0, 0]
     n = {0: 1, 2: 3, 3: 1, 6: 4}[kind]
     lines = np.frombuffer(zlib.decompress(parts[b"IDAT"]), np.uint8).reshape(height, -1).tolist()
-    above, rows = [0] * (width * n), []
+    above = [0] * (width * n)
+    rows = []
     for number, *line in lines:
         row = []
         for k, value in enumerate(line):

@@ -13,6 +13,34 @@ from pe_core.sensors.camera.sample_areas import pixel_areas
 from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused
 
+ROOT3 = math.sqrt(3.0) / 2.0
+NOWHERE = [
+    ("directions", []),
+    ("directions", [1.0, 2.0, 3.0]),
+    ("directions", [[1.0, 2.0]]),
+    ("directions", [[1, 0, 0], [0, 0, 0]]),
+    ("directions", [[math.inf, 0, 0], [0, 0, 0]]),
+    ("directions", [[1, 0, 0], [0, math.nan, 1]]),
+]
+LIDAR = {"kind": "lidar", "elevations_deg": [-10, 0.5], "azimuth_step_deg": 0.7, "max_range_m": 80}
+CAMERA = {"kind": "camera", "width": 200, "height": 100, "hfov_deg": 90}
+WRONG_TABLES = [
+    ("horizontal_fov_deg", LIDAR | {"horizontal_fov_deg": [1, 2, 3]}),
+    ("horizontal_fov_deg", LIDAR | {"horizontal_fov_deg": 90}),
+    ("horizontal_fov_deg", LIDAR | {"horizontal_fov_deg": [0, "x"]}),
+    ("azimuth_step_deg", LIDAR | {"azimuth_step_deg": 0}),
+    ("azimuth_step_deg", LIDAR | {"azimuth_step_deg": 361}),
+    ("azimuth_step_deg", LIDAR | {"azimuth_step_deg": True}),
+    ("elevations_deg", LIDAR | {"elevations_deg": []}),
+    ("elevations_deg", LIDAR | {"elevations_deg": 3}),
+    ("elevations_deg", LIDAR | {"elevations_deg": [1, None]}),
+    ("angles", LIDAR | {"angles": ""}),
+    ("angles", LIDAR | {"angles": "x.csv"}),
+    ("max_range_m", LIDAR | {"max_range_m": None}),
+    ("width", CAMERA | {"width": "wide"}),
+    ("hfov_deg", CAMERA | {"hfov_deg": None}),
+]
+
 
 def lidar(elevations_deg=(0.0,), azimuths=4, max_range=50.0, **options):
     return pe.Lidar("mine", np.radians(elevations_deg), azimuths, max_range, **options)
@@ -20,9 +48,6 @@ def lidar(elevations_deg=(0.0,), azimuths=4, max_range=50.0, **options):
 
 def at(model, position=(0.0, 0.0, 0.0), rotation=(0.0, 0.0, 0.0)):
     return pe.Sensor("s", model, pe.Pose.from_degrees(position, rotation))
-
-
-ROOT3 = math.sqrt(3.0) / 2.0
 
 
 def test_beams_of_a_lidar_channel_by_channel():
@@ -63,16 +88,6 @@ def test_arbitrary_beams_of_any_length():
     expected = [[1, 0, 0], [0, 0, 1], [half, half, 0], [-half, 0, -half]]
     np.testing.assert_allclose(model.directions, expected, atol=1e-15)
     assert (model.name, model.max_range, model.azimuth_count) == ("rosette", 30.0, 1)
-
-
-NOWHERE = [
-    ("directions", []),
-    ("directions", [1.0, 2.0, 3.0]),
-    ("directions", [[1.0, 2.0]]),
-    ("directions", [[1, 0, 0], [0, 0, 0]]),
-    ("directions", [[math.inf, 0, 0], [0, 0, 0]]),
-    ("directions", [[1, 0, 0], [0, math.nan, 1]]),
-]
 
 
 def test_beams_that_point_nowhere_are_refused():
@@ -156,7 +171,8 @@ def test_beams_ask_which_part_stops_them():
 
 def test_the_part_that_stops_most_comes_first():
     """The left wall stops both channels, the one ahead the level one only."""
-    ahead, left = shapes.box((3, -1, -1), (3.1, 1, 0.1)), shapes.box((-1, 3, -1), (1, 3.1, 2))
+    ahead = shapes.box((3, -1, -1), (3.1, 1, 0.1))
+    left = shapes.box((-1, 3, -1), (1, 3.1, 2))
     vehicle = pe.Vehicle(np.concatenate([ahead, left]), np.repeat([0, 1], 12), ("ahead", "left"))
     field = pe.beam_field(at(lidar((0.0, 20.0))), vehicle)
     assert list(field.occluded_count(("ahead", "left")).items()) == [("left", 2), ("ahead", 1)]
@@ -210,7 +226,8 @@ def test_pixel_areas_by_hand(center, area):
 def test_how_far_inside_the_frustum():
     """Its sides lean by 45 degrees, its top by atan(1 / 2): distances along their normals."""
     depth, left, up = np.array([[10.0, 0.0, 0.0], [10.0, -9.0, 0.0], [10.0, 0.0, 7.0]]).T
-    root2, root5 = math.sqrt(2.0), math.sqrt(5.0)
+    root2 = math.sqrt(2.0)
+    root5 = math.sqrt(5.0)
     expected = [10.0 / root5, 1.0 / root2, (10.0 - 14.0) / root5]
     assert frustum_distance(camera(), depth, left, up).tolist() == pytest.approx(expected)
 
@@ -221,9 +238,10 @@ def test_from_afar_a_sample_takes_faces_for_flat_patches():
     At (20, 3, -2): a = 19.5 + 2.5 + 1.5, so 100^2 (23.5 + 1.5) / (8000 - 10). At (14, 0, 0), nearer
     than 15 sides, and at the picture's border it is the exact area.
     """
-    pose, model = pe.Pose((0.0, 0.0, 0.0)), camera()
+    pose = pe.Pose((0.0, 0.0, 0.0))
+    model = camera()
     centers = np.array([[20.0, 3.0, -2.0], [14.0, 0.0, 0.0], [20.0, 19.5, 0.0]])
-    found = pixel_areas(model, pose, centers, 1.0, None)
+    found = pixel_areas(model, pose, centers, side=1.0, seen=None)
     exact = pe.measure(pe.Sensor("s", model, pose), centers, 1.0)
     assert found[0] == pytest.approx(1e4 * 25.0 / 7990.0, rel=1e-12)
     assert found[0] != exact[0] and abs(found[0] / exact[0] - 1.0) < 0.003
@@ -232,8 +250,10 @@ def test_from_afar_a_sample_takes_faces_for_flat_patches():
 
 def test_a_camera_on_its_side_sees_high_and_narrow():
     """Rolled by 90 degrees, 45 degrees up and down are in the picture, to the sides 26.6 only."""
-    upright, rolled = at(camera()), at(camera(), rotation=(90.0, 0.0, 0.0))
-    high, wide = [10.0, 0.0, 8.0], [10.0, 8.0, 0.0]
+    upright = at(camera())
+    rolled = at(camera(), rotation=(90.0, 0.0, 0.0))
+    high = [10.0, 0.0, 8.0]
+    wide = [10.0, 8.0, 0.0]
     assert (pe.measure(upright, [high, wide], 1.0) > 0).tolist() == [False, True]
     assert (pe.measure(rolled, [high, wide], 1.0) > 0).tolist() == [True, False]
     turned = at(camera(), (1.0, 2.0, 3.0), (0.0, 0.0, 90.0))
@@ -268,10 +288,6 @@ def test_what_kinds_of_sensors_have_in_common():
     assert kind_of(ahead).summary(ahead) == "250 channels, 120 x 20 deg, 230 m"
 
 
-LIDAR = {"kind": "lidar", "elevations_deg": [-10, 0.5], "azimuth_step_deg": 0.7, "max_range_m": 80}
-CAMERA = {"kind": "camera", "width": 200, "height": 100, "hfov_deg": 90}
-
-
 def test_tables_say_what_they_said():
     """360 / 0.7 = 514.29 azimuths: 514."""
     model = pe.catalog.from_table("mine", LIDAR)
@@ -291,24 +307,6 @@ def test_tables_say_what_they_said():
     assert table["horizontal_fov_deg"] == [-60.0, 45.0]
     assert pe.catalog.to_table(pe.catalog.from_table("mine", CAMERA)) == CAMERA
     assert LIDAR_KIND.read("mine", LIDAR | {"azimuth_count": 12}, None).azimuth_count == 12
-
-
-WRONG_TABLES = [
-    ("horizontal_fov_deg", LIDAR | {"horizontal_fov_deg": [1, 2, 3]}),
-    ("horizontal_fov_deg", LIDAR | {"horizontal_fov_deg": 90}),
-    ("horizontal_fov_deg", LIDAR | {"horizontal_fov_deg": [0, "x"]}),
-    ("azimuth_step_deg", LIDAR | {"azimuth_step_deg": 0}),
-    ("azimuth_step_deg", LIDAR | {"azimuth_step_deg": 361}),
-    ("azimuth_step_deg", LIDAR | {"azimuth_step_deg": True}),
-    ("elevations_deg", LIDAR | {"elevations_deg": []}),
-    ("elevations_deg", LIDAR | {"elevations_deg": 3}),
-    ("elevations_deg", LIDAR | {"elevations_deg": [1, None]}),
-    ("angles", LIDAR | {"angles": ""}),
-    ("angles", LIDAR | {"angles": "x.csv"}),
-    ("max_range_m", LIDAR | {"max_range_m": None}),
-    ("width", CAMERA | {"width": "wide"}),
-    ("hfov_deg", CAMERA | {"hfov_deg": None}),
-]
 
 
 def test_wrong_tables_are_refused():

@@ -35,20 +35,39 @@ LEFT_OUT = {
 RIG = {
     "carla": {"rgb_front": "camera", "radar_front": "radar", "lidar": "lidar"},
     "driveworks": {
-        **{"radar:front": "radar", "lidar:top": "lidar", "ultrasonic:left": "ultrasonic"},
+        "radar:front": "radar",
+        "lidar:top": "lidar",
+        "ultrasonic:left": "ultrasonic",
         "camera:front": "camera",
     },
     "nuscenes": {"RADAR_FRONT": "radar", "LIDAR_TOP": "lidar", "RADAR_BACK": "radar"},
     "csv": {"roof": "lidar", "corner": "radar"},
     "autoware": {
-        **{"camera0": "camera", "hesai_top": "lidar", "hesai_left": "lidar"},
-        **{"front_center": "radar", "rear_left": "radar"},
+        "camera0": "camera",
+        "hesai_top": "lidar",
+        "hesai_left": "lidar",
+        "front_center": "radar",
+        "rear_left": "radar",
     },
     "urdf": {"roof": "lidar", "eye": "camera"},
     "ros": {"lidar_top": "lidar", "eye": "camera"},
     "osi": {"lidar_4": "lidar", "radar_7": "radar", "sensor_9": "lidar"},
 }
 NEW = pe.Sensor("added", pe.catalog.load("KITTI cam2"), pe.Pose((0.4, 0.1, 2.2), (0.0, 0.2, 0.3)))
+STAYS = {
+    "carla": ("collision", "lane_invasion"),
+    "driveworks": ("device=can0", "rle16"),
+    "nuscenes": ("RADAR_BACK",),
+    "csv": ("# Measured by hand in May.", "beam,odd,sonar,S1,2.1,0.7,0.4,0,0,45"),
+    "autoware": ("gnss_link: # behind", "# A kit, as tier4's"),
+    "urdf": ("<!-- the mast is", "package://cart/body.dae", 'type="sonar"', "<!-- A cart"),
+    "ros": ("base_link old", "lidar_node", "front_sonar"),
+    "osi": ("version_major", "smell", "rx_antenna_diagram"),
+}
+"""Texts of each file that no rig has."""
+SDF = """<sdf version="1.9"><model name="m"><link name="l"><sensor name="s" type="lidar"/></link>
+</model></sdf>"""
+POSE = pe.Pose((0.5, 0.0, 1.9), (0.0, 0.1, 0.2))
 
 
 def copied(folder, name):
@@ -94,7 +113,8 @@ def test_a_file_is_what_it_was_after_its_rig_went_into_it(name, tmp_path, capsys
     """By the command, through a study: no number, name or comment is another."""
     path = copied(tmp_path / "in", name)
     before = data_of(path)
-    study, out = tmp_path / "study.toml", tmp_path / "out" / path.name
+    study = tmp_path / "study.toml"
+    out = tmp_path / "out" / path.name
     assert main(["import", str(path), "--from", name, "-o", str(study), *OPTION]) == 0
     told = capsys.readouterr().err
     assert all(f"{each}" in told for each in LEFT_OUT[name])
@@ -113,7 +133,8 @@ def test_a_file_is_what_it_was_after_its_rig_went_into_it(name, tmp_path, capsys
 def test_each_sensor_moves_alone(name, tmp_path):
     """The others stay where they were, also those on the link of the one that moved."""
     path = copied(tmp_path / "in", name)
-    rig, before = import_rig(path, name, AXLE).rig, data_of(path)
+    rig = import_rig(path, name, AXLE).rig
+    before = data_of(path)
     for moved in rig:
         x, y, z = moved.pose.position
         pose = pe.Pose((x + 0.25, y - 0.125, z), (0.0, *moved.pose.rpy[1:]))
@@ -155,19 +176,6 @@ def test_a_sensor_is_added_another_leaves_and_a_third_is_of_another_model(name, 
         assert any(text in line for line in lines_of(data_of(path))), text
 
 
-STAYS = {
-    "carla": ("collision", "lane_invasion"),
-    "driveworks": ("device=can0", "rle16"),
-    "nuscenes": ("RADAR_BACK",),
-    "csv": ("# Measured by hand in May.", "beam,odd,sonar,S1,2.1,0.7,0.4,0,0,45"),
-    "autoware": ("gnss_link: # behind", "# A kit, as tier4's"),
-    "urdf": ("<!-- the mast is", "package://cart/body.dae", 'type="sonar"', "<!-- A cart"),
-    "ros": ("base_link old", "lidar_node", "front_sonar"),
-    "osi": ("version_major", "smell", "rx_antenna_diagram"),
-}
-"""Texts of each file that no rig has."""
-
-
 def test_a_robot_s_sensor_on_a_link_keeps_what_gazebo_was_told_of_it(tmp_path):
     path = copied(tmp_path / "in", "urdf")
     rig = import_rig(path).rig
@@ -204,10 +212,6 @@ def test_files_that_cannot_be_gone_into_are_refused(name, file, field, tmp_path)
     assert caught.value.field == field
 
 
-SDF = """<sdf version="1.9"><model name="m"><link name="l"><sensor name="s" type="lidar"/></link>
-</model></sdf>"""
-
-
 def test_an_export_needs_a_place(tmp_path, capsys):
     pe.save_study(pe.Study(pe.Rig([NEW])), tmp_path / "study.toml")
     with pytest.raises(SystemExit):
@@ -240,6 +244,3 @@ def test_an_export_over_the_last_one_is_the_same(name, tmp_path):
         paths, _ = pt.export_rig(rig, name, tmp_path / "out", AXLE, replace=True)
         written.append([path.read_bytes() for path in paths])
     assert written[0] == written[1]
-
-
-POSE = pe.Pose((0.5, 0.0, 1.9), (0.0, 0.1, 0.2))

@@ -26,6 +26,16 @@ TURNS = {  # of (forward, left, up): what a program's axes x, y, z are
     "Z forward, Y up": (lambda x, y, z: (y, z, x)),
     "-Y forward, Z up": (lambda x, y, z: (y, -x, z)),
 }
+QUADS = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+CORNER = np.vstack([np.zeros(3), np.eye(3)])[[(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]]
+"""The triangles of a cube's corner: none of its halves is like the other."""
+PROFILES = {
+    # Length and height of the corners of a side view from the front on [m].
+    "pickup": [(0.0, 1.15), (1.3, 1.2), (2.2, 1.9), (3.5, 1.9), (3.55, 0.85), (5.6, 0.85)],
+    "sedan": [(0.0, 0.75), (1.2, 0.9), (2.0, 1.4), (3.2, 1.42), (4.0, 1.05), (4.7, 1.0)],
+    "hatchback": [(0.0, 0.8), (1.0, 0.95), (1.7, 1.45), (3.7, 1.45), (3.9, 0.9)],
+    "rear engine": [(0.0, 0.65), (1.2, 0.85), (1.9, 1.3), (2.3, 1.3), (4.2, 1.0), (4.4, 0.9)],
+}
 
 
 def corners(box):
@@ -33,9 +43,6 @@ def corners(box):
     return np.array(
         [(ends[i, 0], ends[j, 1], ends[k, 2]) for i in (0, 1) for j in (0, 1) for k in (0, 1)]
     )
-
-
-QUADS = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 
 
 def car(turn, names=tuple(BOXES)):
@@ -63,7 +70,8 @@ def triangles_of(turn):
 
 def is_upright(mesh):
     corners = mesh.triangles.reshape(-1, 3)
-    low, high = corners.min(axis=0), corners.max(axis=0)
+    low = corners.min(axis=0)
+    high = corners.max(axis=0)
     np.testing.assert_allclose([low, high], [(-2.0, -0.9, 0.0), (2.0, 0.9, 1.5)], atol=1e-6)
     return True
 
@@ -164,10 +172,6 @@ def slab(low, high):
     return corners(np.array((low, high)))
 
 
-CORNER = np.vstack([np.zeros(3), np.eye(3)])[[(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]]
-"""The triangles of a cube's corner: none of its halves is like the other."""
-
-
 @pytest.mark.parametrize(
     ("low", "mirrored", "up"),
     [
@@ -212,15 +216,6 @@ def test_a_car_s_hood_tells_its_front_and_a_lorry_s_load_does_not(tmp_path, heig
     assert told in mesh.axes
 
 
-PROFILES = {
-    # Length and height of the corners of a side view from the front on [m].
-    "pickup": [(0.0, 1.15), (1.3, 1.2), (2.2, 1.9), (3.5, 1.9), (3.55, 0.85), (5.6, 0.85)],
-    "sedan": [(0.0, 0.75), (1.2, 0.9), (2.0, 1.4), (3.2, 1.42), (4.0, 1.05), (4.7, 1.0)],
-    "hatchback": [(0.0, 0.8), (1.0, 0.95), (1.7, 1.45), (3.7, 1.45), (3.9, 0.9)],
-    "rear engine": [(0.0, 0.65), (1.2, 0.85), (1.9, 1.3), (2.3, 1.3), (4.2, 1.0), (4.4, 0.9)],
-}
-
-
 @pytest.mark.parametrize("way", [1.0, -1.0])
 @pytest.mark.parametrize("kind", PROFILES)
 def test_a_pickup_s_bed_is_not_its_hood(kind, way, tmp_path):
@@ -229,7 +224,8 @@ def test_a_pickup_s_bed_is_not_its_hood(kind, way, tmp_path):
     middle = PROFILES[kind][-1][0] / 2.0
     side = [(way * (middle - x), z) for x, z in ends]
     points = [(half, y, z) for half in (-1.0, 1.0) for y, z in side]
-    count, lines = len(side), [f"v {x} {y} {z}" for x, y, z in points]
+    count = len(side)
+    lines = [f"v {x} {y} {z}" for x, y, z in points]
     for k in range(count):
         after = (k + 1) % count
         corners = (k, after, after + count, k + count)

@@ -30,6 +30,26 @@ DAE = """<?xml version="1.0"?>
 </node></visual_scene></library_visual_scenes>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>
 """
+POLYLIST = DAE[DAE.index("<polylist") : DAE.index("</mesh>")]
+INPUT = '<input semantic="VERTEX" source="#v" offset="0"/>'
+HOLED = (
+    "0 0 0 100 0 0 100 0 40 0 0 40 10 0 10 20 0 10 20 0 30 10 0 30",
+    f"<polygons count='1'>{INPUT}<ph><p>0 1 2 3</p><h>4 5 6 7</h></ph></polygons>",
+)
+AREAS = {  # square inches
+    "a dart": ("0 0 0 100 0 0 10 0 10 0 0 100", POLYLIST, 1000.0),
+    "polygons": (HOLED[0], f"<polygons count='1'>{INPUT}<p>0 1 2 3</p></polygons>", 4000.0),
+    "a hole": (*HOLED, 3800.0),
+    "a hole, and none": (HOLED[0], HOLED[1].replace("<ph>", "<p>4 5 6</p><ph>"), 3900.0),
+    "a fan": (HOLED[0], f"<trifans count='1'>{INPUT}<p>0 1 2 3</p></trifans>", 4000.0),
+    "lines": (HOLED[0], f"<linestrips>{INPUT}<p>0 1</p></linestrips>{POLYLIST}", 4000.0),
+}
+MISSING_IMAGE = """<library_effects><effect id="e"><profile_COMMON><newparam sid="s">
+<surface type="2D"><init_from>none.png</init_from></surface></newparam>
+<technique sid="t"><lambert><diffuse>
+<texture texture="s" texcoord="c"/></diffuse></lambert></technique></profile_COMMON></effect>
+</library_effects><library_materials><material id="m"><instance_effect url="#e"/></material>
+</library_materials>"""
 
 
 def install(monkeypatch, value):
@@ -128,22 +148,6 @@ def test_collada_s_unit_up_axis_polygons_and_nodes(monkeypatch, tmp_path):
     assert mesh.axes == "faces +x (study), up is +y (file)"
 
 
-POLYLIST = DAE[DAE.index("<polylist") : DAE.index("</mesh>")]
-INPUT = '<input semantic="VERTEX" source="#v" offset="0"/>'
-HOLED = (
-    "0 0 0 100 0 0 100 0 40 0 0 40 10 0 10 20 0 10 20 0 30 10 0 30",
-    f"<polygons count='1'>{INPUT}<ph><p>0 1 2 3</p><h>4 5 6 7</h></ph></polygons>",
-)
-AREAS = {  # square inches
-    "a dart": ("0 0 0 100 0 0 10 0 10 0 0 100", POLYLIST, 1000.0),
-    "polygons": (HOLED[0], f"<polygons count='1'>{INPUT}<p>0 1 2 3</p></polygons>", 4000.0),
-    "a hole": (*HOLED, 3800.0),
-    "a hole, and none": (HOLED[0], HOLED[1].replace("<ph>", "<p>4 5 6</p><ph>"), 3900.0),
-    "a fan": (HOLED[0], f"<trifans count='1'>{INPUT}<p>0 1 2 3</p></trifans>", 4000.0),
-    "lines": (HOLED[0], f"<linestrips>{INPUT}<p>0 1</p></linestrips>{POLYLIST}", 4000.0),
-}
-
-
 def dae(points, primitives):
     """The file with other points (3 N numbers) and primitives."""
     numbers = points.split()
@@ -161,14 +165,6 @@ def test_collada_s_polygons_have_the_shoelace_area(monkeypatch, tmp_path, name):
     area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2.0
     assert area == pytest.approx(right * 0.0254**2, rel=1e-6)
     assert mesh.notes == (("left out: 1 set of lines",) if name == "lines" else ())
-
-
-MISSING_IMAGE = """<library_effects><effect id="e"><profile_COMMON><newparam sid="s">
-<surface type="2D"><init_from>none.png</init_from></surface></newparam>
-<technique sid="t"><lambert><diffuse>
-<texture texture="s" texcoord="c"/></diffuse></lambert></technique></profile_COMMON></effect>
-</library_effects><library_materials><material id="m"><instance_effect url="#e"/></material>
-</library_materials>"""
 
 
 def test_collada_with_a_missing_image_is_read(monkeypatch, tmp_path):

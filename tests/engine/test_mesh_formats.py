@@ -52,6 +52,42 @@ BOXES = {
     "glb, 32-bit indices": ("x.glb", glb_file(*gltf(code="I"))),
     "glb, no indices": ("x.glb", glb_file(*gltf(points=BOX, indices=None))),
 }
+UNWRITABLE = {
+    "suffix": ("box.stl", Mesh(BOX, ZEROS, ("box",)), "suffix"),
+    "folder": ("none/box.npz", Mesh(BOX, ZEROS, ("box",)), "file"),
+    "nan": ("box.obj", Mesh(BOX * np.nan, ZEROS, ("box",)), "triangles[0]"),
+    "empty": ("box.obj", Mesh(BOX[:0], ZEROS[:0], ("box",)), "triangles"),
+    "flat": ("box.obj", Mesh(BOX[0], ZEROS[:3], ("box",)), "triangles"),
+    "parts too few": ("box.npz", Mesh(BOX, ZEROS[1:], ("box",)), "parts"),
+    "part without a name": ("box.npz", Mesh(BOX, ZEROS + 1, ("box",)), "parts[0]"),
+    "two lines": ("box.obj", Mesh(BOX, ZEROS, ("a\nb",)), "part_names"),
+    "no name": ("box.obj", Mesh(BOX, ZEROS, ("",)), "part_names"),
+    "no unicode": ("box.obj", Mesh(BOX, ZEROS, ("\udc80",)), "part_names"),
+}
+BINARY: dict[str, Callable[[], bytes]] = {
+    "box.npz": lambda: npz_bytes(triangles=BOX),
+    "box.stl": stl_binary,
+    "box.ply": lambda: ply_binary("<"),
+    "x.glb": lambda: glb_file(*gltf()),
+}
+LONG = "x" * 300
+CAR = np.array([4.5, 1.8, 1.5])
+ROBOTS = {  # longest side first, as their makers print them [m]
+    "TurtleBot3 Burger": (0.138, 0.178, 0.192),
+    "Jackal": (0.508, 0.430, 0.250),
+    "ANYmal": (0.93, 0.53, 0.89),
+    "T 284 mining truck": (15.7, 9.7, 8.0),
+    "bi-articulated bus": (30.0, 2.55, 3.3),
+    "road train": (53.5, 2.5, 4.6),
+}
+CORNERS = "v 0 0 0\nv 1 0 0\nv 1 1 0\n"
+FACE = "f 1 2 3\n"
+PARTS = {
+    "o wins over g": (f"g a\no b\n{FACE}g c\n{FACE}o d\n{FACE}", ["b", "b", "d"]),
+    "before the first name": (f"{FACE}o\ta\nf 1 2 \\\n3\n", ["car", "a"]),
+    "a name with spaces and #": (f"  o\t  front #1  left \n{FACE}", ["front #1  left"]),
+    "Latin-1": (f"o Räder\n{FACE}", ["Räder"]),
+}
 
 
 @pytest.mark.parametrize(("name", "data"), BOXES.values(), ids=BOXES.keys())
@@ -88,20 +124,6 @@ def test_written_archives_read_back_exactly(tmp_path: Path, labels: list[int]) -
     assert back.part_names == mesh.part_names
 
 
-UNWRITABLE = {
-    "suffix": ("box.stl", Mesh(BOX, ZEROS, ("box",)), "suffix"),
-    "folder": ("none/box.npz", Mesh(BOX, ZEROS, ("box",)), "file"),
-    "nan": ("box.obj", Mesh(BOX * np.nan, ZEROS, ("box",)), "triangles[0]"),
-    "empty": ("box.obj", Mesh(BOX[:0], ZEROS[:0], ("box",)), "triangles"),
-    "flat": ("box.obj", Mesh(BOX[0], ZEROS[:3], ("box",)), "triangles"),
-    "parts too few": ("box.npz", Mesh(BOX, ZEROS[1:], ("box",)), "parts"),
-    "part without a name": ("box.npz", Mesh(BOX, ZEROS + 1, ("box",)), "parts[0]"),
-    "two lines": ("box.obj", Mesh(BOX, ZEROS, ("a\nb",)), "part_names"),
-    "no name": ("box.obj", Mesh(BOX, ZEROS, ("",)), "part_names"),
-    "no unicode": ("box.obj", Mesh(BOX, ZEROS, ("\udc80",)), "part_names"),
-}
-
-
 @pytest.mark.parametrize(("name", "mesh", "field"), UNWRITABLE.values(), ids=UNWRITABLE.keys())
 def test_what_could_not_be_read_back_is_not_written(
     tmp_path: Path, name: str, mesh: Mesh, field: str
@@ -111,17 +133,6 @@ def test_what_could_not_be_read_back_is_not_written(
         write_mesh(tmp_path / name, mesh)
     assert str(caught.value).startswith(f"{tmp_path / name}: {field}: expected ")
     assert not list(tmp_path.iterdir())
-
-
-BINARY: dict[str, Callable[[], bytes]] = {
-    "box.npz": lambda: npz_bytes(triangles=BOX),
-    "box.stl": stl_binary,
-    "box.ply": lambda: ply_binary("<"),
-    "x.glb": lambda: glb_file(*gltf()),
-}
-
-
-LONG = "x" * 300
 
 
 @pytest.mark.parametrize(
@@ -148,26 +159,18 @@ def test_a_file_s_own_name_as_a_part_s(tmp_path: Path, stem: str) -> None:
     assert read(tmp_path, f"{stem}.npz", npz_bytes(triangles=BOX)).part_names == ("a?b",)
 
 
-CAR = np.array([4.5, 1.8, 1.5])
-ROBOTS = {  # longest side first, as their makers print them [m]
-    "TurtleBot3 Burger": (0.138, 0.178, 0.192),
-    "Jackal": (0.508, 0.430, 0.250),
-    "ANYmal": (0.93, 0.53, 0.89),
-    "T 284 mining truck": (15.7, 9.7, 8.0),
-    "bi-articulated bus": (30.0, 2.55, 3.3),
-    "road train": (53.5, 2.5, 4.6),
-}
-
-
 def body(size, floor=None):
     """A study of a box of this size on the ground, perhaps on a floor so long."""
-    low, high = np.array([-0.5, -0.5, 0.0]) * size, np.array([0.5, 0.5, 1.0]) * size
+    low = np.array([-0.5, -0.5, 0.0]) * size
+    high = np.array([0.5, 0.5, 1.0]) * size
     triangles = shapes.box(low, high)
-    parts, names = np.zeros(len(triangles), np.int32), ["body"]
+    parts = np.zeros(len(triangles), np.int32)
+    names = ["body"]
     if floor is not None:
         ground = shapes.box((-floor / 2, -floor / 2, -0.1), (floor / 2, floor / 2, 0.0))
         triangles = np.concatenate([triangles, ground])
-        parts, names = np.append(parts, np.ones(len(ground), np.int32)), ["body", "floor"]
+        parts = np.append(parts, np.ones(len(ground), np.int32))
+        names = ["body", "floor"]
     rig = pe.Rig([shapes.lidar_on_roof()])
     return pe.Study(rig, pe.Vehicle(triangles, parts, names), mesh="body.npz")
 
@@ -221,16 +224,6 @@ def test_glb_surfaces_of_one_mesh_are_one_part(tmp_path: Path) -> None:
     primitives += [primitives[0], *({"attributes": {"POSITION": 0}, "mode": m} for m in (0, 1))]
     mesh = read(tmp_path, "x.glb", glb_file(root, binary))
     assert len(mesh.triangles) == 24 and mesh.part_names == ("box",)
-
-
-CORNERS = "v 0 0 0\nv 1 0 0\nv 1 1 0\n"
-FACE = "f 1 2 3\n"
-PARTS = {
-    "o wins over g": (f"g a\no b\n{FACE}g c\n{FACE}o d\n{FACE}", ["b", "b", "d"]),
-    "before the first name": (f"{FACE}o\ta\nf 1 2 \\\n3\n", ["car", "a"]),
-    "a name with spaces and #": (f"  o\t  front #1  left \n{FACE}", ["front #1  left"]),
-    "Latin-1": (f"o Räder\n{FACE}", ["Räder"]),
-}
 
 
 @pytest.mark.parametrize(("text", "names"), PARTS.values(), ids=PARTS.keys())

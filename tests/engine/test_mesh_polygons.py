@@ -25,6 +25,8 @@ from tests.engine.mesh_files import (
 from tests.thorough import tries
 
 TRIALS = tries(20, 300)
+DART = np.array([(1.0, 2.0, 0.0), (0.0, 0.5, 0.0), (-1.0, 2.0, 0.0), (0.0, 0.0, 0.0)])
+FACE = obj_bytes(POINTS, [(0, 1, 3, 2)])
 
 
 def shoelace(ring):
@@ -54,14 +56,14 @@ def arches(side=1.0):
     """A panel of 4 x 1.1 m with two half-octagons of 0.4 m radius cut out of its lower edge."""
     turn = np.radians(180.0 - 22.5 * np.arange(1, 8))
     arc = np.stack([0.4 * np.cos(turn), 0.4 * np.sin(turn)], axis=1)
-    rear, front = arc - np.array([1.2, 0.0]), arc + np.array([1.2, 0.0])
+    rear = arc - np.array([1.2, 0.0])
+    front = arc + np.array([1.2, 0.0])
     low = [(-2.0, 0.0), (-1.6, 0.0), *rear, (-0.8, 0.0)]
     low += [(0.8, 0.0), *front, (1.6, 0.0), (2.0, 0.0)]
     flat = np.array([*low, (2.0, 1.1), (-2.0, 1.1)])
     return np.column_stack([flat[:, 0], np.full(len(flat), side), flat[:, 1]])
 
 
-DART = np.array([(1.0, 2.0, 0.0), (0.0, 0.5, 0.0), (-1.0, 2.0, 0.0), (0.0, 0.0, 0.0)])
 CHANGES = {
     "as it is": lambda ring, _: ring,
     "reversed": lambda ring, _: ring[::-1],
@@ -147,7 +149,8 @@ RINGS = {"arches": arches(), "dart": DART}
 )
 def test_concave_faces_have_the_shoelace_area_in_each_format(tmp_path, name, suffix, written):
     """Two wheel arches in a panel: 3.91 m2 for the 6.04 of a fan."""
-    ring, face = RINGS[name], list(range(len(RINGS[name])))
+    ring = RINGS[name]
+    face = list(range(len(ring)))
     mesh = read(tmp_path, f"a.{suffix}", written(ring, face), up="+z", forward="+x")
     more = shoelace(ring[:3]) if len(mesh.triangles) > len(ring) - 2 else 0.0
     assert area(mesh.triangles) == pytest.approx(shoelace(ring) + more, rel=1e-6)
@@ -188,7 +191,6 @@ def lines_and_points():
     return glb_file(root, binary)
 
 
-FACE = obj_bytes(POINTS, [(0, 1, 3, 2)])
 LEFT_OUT = [
     ("a.obj", FACE + b"\nl 1 2\nl 2 3\np 1\nf 1 2\n", ("2 lines", "1 point", "1 face of fewer")),
     ("a.ply", strips(POINTS), ("1 edge", "1 set of triangle strips")),

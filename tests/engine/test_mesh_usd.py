@@ -15,6 +15,33 @@ int[] faceVertexCounts = [3]
 int[] faceVertexIndices = [0, 1, 2]
 }
 """
+POSTS = """def PointInstancer "posts" (%s) {
+int[] protoIndices = [0, 1, 0]
+point3f[] positions = [(-1, 0, 1.4), (1, 0, 1.4), (5, 0, 0)]
+int64[] invisibleIds = [2]
+rel prototypes = [</a/posts/post>, </a/posts/twin>]
+def Mesh "post" {
+double3 xformOp:translate = (0, 0, 0.5)
+uniform token[] xformOpOrder = ["xformOp:translate"]
+int[] faceVertexCounts = [4]
+int[] faceVertexIndices = [0, 1, 2, 3]
+point3f[] points = [(0, -0.5, 0), (0, 0.5, 0), (0, 0.5, 1), (0, -0.5, 1)]
+}
+def Xform "twin" {
+def Cube "cube" {
+double size = 0.2
+}
+}
+}
+"""
+SOLIDS = [
+    ("Cube", "double size = 2", 24.0),
+    ("Sphere", "double radius = 1", 4 * np.pi),
+    ("Cylinder", "double radius = 1\ndouble height = 2", 6 * np.pi),
+    ("Cone", "double radius = 1\ndouble height = 2", np.pi * (1 + 5**0.5)),
+    ("Capsule", "double radius = 0.5\ndouble height = 1", 2 * np.pi),
+    ("Plane", "double width = 2\ndouble length = 3", 6.0),
+]
 
 
 def layer(folder, name, inside):
@@ -60,27 +87,6 @@ def area(mesh):
     return np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2.0
 
 
-POSTS = """def PointInstancer "posts" (%s) {
-int[] protoIndices = [0, 1, 0]
-point3f[] positions = [(-1, 0, 1.4), (1, 0, 1.4), (5, 0, 0)]
-int64[] invisibleIds = [2]
-rel prototypes = [</a/posts/post>, </a/posts/twin>]
-def Mesh "post" {
-double3 xformOp:translate = (0, 0, 0.5)
-uniform token[] xformOpOrder = ["xformOp:translate"]
-int[] faceVertexCounts = [4]
-int[] faceVertexIndices = [0, 1, 2, 3]
-point3f[] points = [(0, -0.5, 0), (0, 0.5, 0), (0, 0.5, 1), (0, -0.5, 1)]
-}
-def Xform "twin" {
-def Cube "cube" {
-double size = 0.2
-}
-}
-}
-"""
-
-
 def test_instances_are_where_the_instancer_places_them(tmp_path):
     """A post 0.5 m above its own place, a cube, and a third that is not visible."""
     mesh = pt.read_mesh(layer(tmp_path, "main", POSTS % ""), AS_SAID)
@@ -102,16 +108,6 @@ def test_a_solid_along_no_axis_is_refused(tmp_path):
     wrong = 'def Cone "m" {\nuniform token axis = "Q"\n}\n'
     with pytest.raises(pe.InputError, match="/m, axis"):
         pt.read_mesh(layer(tmp_path, "main", wrong))
-
-
-SOLIDS = [
-    ("Cube", "double size = 2", 24.0),
-    ("Sphere", "double radius = 1", 4 * np.pi),
-    ("Cylinder", "double radius = 1\ndouble height = 2", 6 * np.pi),
-    ("Cone", "double radius = 1\ndouble height = 2", np.pi * (1 + 5**0.5)),
-    ("Capsule", "double radius = 0.5\ndouble height = 1", 2 * np.pi),
-    ("Plane", "double width = 2\ndouble length = 3", 6.0),
-]
 
 
 @pytest.mark.parametrize(("kind", "measures", "right"), SOLIDS)

@@ -17,11 +17,13 @@ from tests.engine.mounting import can, roof
 from tests.engine.recording import Recorder, distance_to
 
 SPACE = shapes.small_space()
+PHASE = Phase(0, 1000)
 
 
 def fingerprint(steps):
     """Number of steps, and a digest of all that they told before methods had names."""
-    digest, count = hashlib.sha256(), 0
+    digest = hashlib.sha256()
+    count = 0
     for s in steps:
         told = (s.entropy, s.evaluations, s.fraction, s.round, s.improved)
         digest.update(repr((*told, [(own.name, own.pose) for own in s.best])).encode())
@@ -31,7 +33,8 @@ def fingerprint(steps):
 
 def on_the_box_car():
     """Rig, search space and evaluator of one LiDAR on a box."""
-    rig, car = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))]), shapes.box_car()
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
+    car = shapes.box_car()
     evaluator = pe.Evaluator(SPACE, pe.Prior.road(), car, samples=4096)
     return evaluator, rig, pe.SearchSpace.on_vehicle(rig, car)
 
@@ -40,16 +43,18 @@ def on_the_box_car():
 @pytest.mark.parametrize(("seed", "digest"), [(0, "bc8462015e6638ea"), (1, "89dcdee0663b4dbd")])
 def test_algorithm_1_takes_the_steps_it_always_took(seed, digest, executor):
     """Digests are of the search as it was before there were methods."""
-    asked = (*on_the_box_car(), seed, pe.Schedule(candidates=10))
-    steps = pe.optimize(*asked, method="random", executor=executor)
+    steps = pe.optimize(
+        *on_the_box_car(), seed, pe.Schedule(candidates=10), method="random", executor=executor
+    )
     assert fingerprint(steps) == (71, digest)
 
 
 def test_algorithm_1_on_a_roof_with_a_no_go_area_takes_the_steps_it_always_took():
     limits = pe.Constraints(no_go=[pe.NoGo("hatch", x=(-0.2, 3.0))])
     rig, space = mounting.space(can(), mount={"roof": roof()}, constraints=limits)
-    landscape, schedule = Recorder(distance_to({"x": 1.0})), pe.Schedule(candidates=30)
-    steps = pe.optimize(landscape, rig, space, 3, schedule, method="random")
+    landscape = Recorder(distance_to({"x": 1.0}))
+    schedule = pe.Schedule(candidates=30)
+    steps = pe.optimize(landscape, rig, space, seed=3, schedule=schedule, method="random")
     assert fingerprint(steps) == (211, "e533652c3e57f69b")
 
 
@@ -101,7 +106,7 @@ def test_a_schedule_chooses_no_method():
         pe.Search(schedule=schedule)
     with pytest.raises(pe.InputError, match="method: expected 'random' named with a schedule"):
         rig, space = mounting.space(can())
-        next(pe.optimize(None, rig, space, 0, schedule))
+        next(pe.optimize(objective=None, rig=rig, search_space=space, seed=0, schedule=schedule))
 
 
 def test_on_another_level_the_best_so_far_is_evaluated_anew(monkeypatch):
@@ -114,10 +119,8 @@ def test_on_another_level_the_best_so_far_is_evaluated_anew(monkeypatch):
         yield Question((better,), level=1, total=2, round=1)
 
     monkeypatch.setitem(METHODS, "twice", pe.Method("Twice", "for a test", ask))
-    coarse, fine = (
-        Recorder(distance_to({"x": 0.5})),
-        Recorder(lambda rig: 7 + rig["roof"].pose.position[0]),
-    )
+    coarse = Recorder(distance_to({"x": 0.5}))
+    fine = Recorder(lambda rig: 7 + rig["roof"].pose.position[0])
     steps = list(pe.optimize([coarse, fine], rig, space, method="twice"))
     assert [(s.level, s.entropy, s.improved) for s in steps[1:]] == [
         (0, 0.0, True),
@@ -136,7 +139,8 @@ def test_what_a_method_asks_follows_from_its_answers_alone():
         asked = []
         for _ in range(2):
             given = Given(coding, coding.start, 1.0, seed=4, evaluations=60)
-            asking, questions = method.ask(given), []
+            asking = method.ask(given)
+            questions = []
             question = next(asking)
             for number in range(8):
                 questions.append([c and c.vector for c in question.candidates])
@@ -144,9 +148,6 @@ def test_what_a_method_asks_follows_from_its_answers_alone():
                 question = asking.send(values)
             asked.append(questions)
         assert asked[0] == asked[1]
-
-
-PHASE = Phase(0, 1000)
 
 
 @pytest.fixture(scope="module")
@@ -166,7 +167,8 @@ def answered(asking, value):
 
 
 def test_a_corner_that_is_worse_than_the_start_is_left(coding):
-    given, incumbent = Given(coding, coding.start, 3.0), Incumbent(coding.start, 3.0)
+    given = Given(coding, coding.start, 3.0)
+    incumbent = Incumbent(coding.start, 3.0)
     answered(to_best_corners(given, incumbent, PHASE), lambda c: 4.0)
     assert (incumbent.best, incumbent.entropy) == (given.start, 3.0) and incumbent.count > 0
     answered(to_best_corners(given, incumbent, PHASE), lambda c: 2.0 + c.vector[0] / 10.0)

@@ -13,6 +13,29 @@ from tests.engine.mounting import BASE, CENTER, TOP
 FRONT_HALF = (0.0, 0.8)
 """Of the roof, which the area is [m along x]."""
 START = (0.4, 0.0, TOP + BASE + CENTER)
+BAD = {
+    "a file that is not there": (
+        {"area": {"file": "none.npz"}},
+        "study.toml: none.npz: no such file",
+    ),
+    "a part that is none": (
+        {"area": {"file": "areas.npz", "parts": ["upper"]}},
+        "area.parts: expected one of front half, lower in areas.npz, found 'upper'",
+    ),
+    "no name": ({"area": {"file": ""}}, "optimize.mount[0].area.file: expected the name of a file"),
+    "an area and slots": (
+        {"area": {"file": "areas.npz"}, "slot": [{"name": "a", "position": [0, 0, 2]}]},
+        "optimize.mount[0].slot: expected one of area",
+    ),
+    "faces that are none": (
+        {"area": {"file": "flat.npz"}},
+        "mount 'area': area: expected faces, found none in the area",
+    ),
+    "what is no mesh": (
+        {"area": {"file": "text.npz"}},
+        "text.npz: file: expected a complete NumPy .npz archive",
+    ),
+}
 
 
 def painted():
@@ -28,7 +51,8 @@ def area_mount(standoff=BASE, orientation="upright"):
 
 @pytest.fixture
 def folder(tmp_path):
-    car, faces = mounting.car(), painted()
+    car = mounting.car()
+    faces = painted()
     pt.write_mesh(tmp_path / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
     parts = np.repeat(np.arange(2, dtype=np.int32), len(faces))
     both = np.concatenate([faces, faces - [0.0, 0.0, 0.3]])
@@ -87,35 +111,11 @@ def run(study):
 
 def test_a_study_whose_areas_are_in_no_file_is_not_saved_alone(tmp_path):
     rig, space = mounting.space(mounting.can(START), mount={"roof": area_mount()})
-    car, search = mounting.car(), pe.Search(mounting=space.mounting)
+    car = mounting.car()
+    search = pe.Search(mounting=space.mounting)
     pt.write_mesh(tmp_path / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
     with pytest.raises(pe.InputError, match="mount 'roof': area: expected a file beside"):
         pe.save_study(pe.Study(rig, car, search=search, mesh="car.npz"), tmp_path / "a.toml")
-
-
-BAD = {
-    "a file that is not there": (
-        {"area": {"file": "none.npz"}},
-        "study.toml: none.npz: no such file",
-    ),
-    "a part that is none": (
-        {"area": {"file": "areas.npz", "parts": ["upper"]}},
-        "area.parts: expected one of front half, lower in areas.npz, found 'upper'",
-    ),
-    "no name": ({"area": {"file": ""}}, "optimize.mount[0].area.file: expected the name of a file"),
-    "an area and slots": (
-        {"area": {"file": "areas.npz"}, "slot": [{"name": "a", "position": [0, 0, 2]}]},
-        "optimize.mount[0].slot: expected one of area",
-    ),
-    "faces that are none": (
-        {"area": {"file": "flat.npz"}},
-        "mount 'area': area: expected faces, found none in the area",
-    ),
-    "what is no mesh": (
-        {"area": {"file": "text.npz"}},
-        "text.npz: file: expected a complete NumPy .npz archive",
-    ),
-}
 
 
 @pytest.mark.parametrize("name", BAD)

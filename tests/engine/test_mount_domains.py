@@ -13,6 +13,18 @@ from tests.engine.mounting import BASE, CENTER, ON_ROOF, RADIUS, TOP, can, roof
 
 RNG_SEED = 3
 LEVEL = ("x", "y", "z")
+SLOTS = pe.SlotMount(
+    [
+        pe.Slot("left", pe.Pose.from_degrees((0.0, 0.4, 1.6), (0.0, 5.0, 90.0))),
+        pe.Slot("middle", pe.Pose.from_degrees(ON_ROOF)),
+        pe.Slot("right", pe.Pose.from_degrees((0.0, -0.4, 1.6), (0.0, 5.0, -90.0))),
+    ]
+)
+SLAB = (
+    shapes.box((-2.0, -0.9, 0.2), (2.0, 0.9, 1.2)),
+    shapes.box((-1.2, -0.7, 1.3), (0.8, 0.7, 1.4)),
+)
+"""A body, and a roof 0.1 m thick that floats 0.1 m above it."""
 
 
 def coded(*sensors, **options):
@@ -47,7 +59,8 @@ def test_bounds_of_angles_hold_modulo_a_turn(name, mount, turns, middle):
     """A rear camera at -180 degrees is within [160, 200]: the same start, and the same range."""
     axis = ("roll", "pitch", "yaw").index(name)
     rotation = [middle if axis == k else 0.0 for k in range(3)]
-    sensor, bounds = can(rotation=rotation), np.radians([middle - 20.0, middle + 20.0])
+    sensor = can(rotation=rotation)
+    bounds = np.radians([middle - 20.0, middle + 20.0])
     limits = {"roof": {name: bounds + math.radians(turns)}}
     coding = coded(sensor, mount=mount, free=(name,), limits=limits)
     start = coding.candidate(coding.start.vector).rig["roof"].pose
@@ -153,15 +166,6 @@ def test_a_surface_s_outside_does_not_depend_on_how_its_corners_turn():
         assert rig["roof"].pose.position[2] == pytest.approx(TOP + BASE + CENTER, abs=1e-5)
 
 
-SLOTS = pe.SlotMount(
-    [
-        pe.Slot("left", pe.Pose.from_degrees((0.0, 0.4, 1.6), (0.0, 5.0, 90.0))),
-        pe.Slot("middle", pe.Pose.from_degrees(ON_ROOF)),
-        pe.Slot("right", pe.Pose.from_degrees((0.0, -0.4, 1.6), (0.0, 5.0, -90.0))),
-    ]
-)
-
-
 def test_slots_are_taken_whole_and_no_other_place_is():
     coding = coded(can(), mount={"roof": SLOTS})
     poses = [slot.pose for slot in SLOTS.slots]
@@ -176,7 +180,8 @@ def test_a_pair_is_its_own_mirror_image():
     coding = coded(left, right, pairs=[("left", "right")], free=("x", "y", "roll", "yaw"))
     assert len(coding.variables) == 4
     for rig in drawn(coding, 20):
-        (x, y, z), (roll, pitch, yaw) = rig["left"].pose.position, rig["left"].pose.rotation_deg
+        x, y, z = rig["left"].pose.position
+        roll, pitch, yaw = rig["left"].pose.rotation_deg
         assert rig["right"].pose.position == (x, -y, z)
         assert rig["right"].pose.rotation_deg == (-roll, pitch, -yaw)
 
@@ -186,7 +191,8 @@ def test_a_group_keeps_its_relative_pose():
     other = can((0.3, 0.1, 1.7), "other", (0.0, 5.0, 50.0))
 
     def between(rig):
-        lead, other = rig["lead"].pose, rig["other"].pose
+        lead = rig["lead"].pose
+        other = rig["other"].pose
         back = lead.ground_from_sensor.T
         away = np.array(other.position) - np.array(lead.position)
         return np.concatenate([back @ away, (back @ other.ground_from_sensor).ravel()])
@@ -224,13 +230,6 @@ def test_of_two_slots_with_one_pose_the_start_is_in_the_first():
     poses = [pe.Pose((1.0, 0.0, 1.6)), pe.Pose.from_degrees(ON_ROOF), pe.Pose.from_degrees(ON_ROOF)]
     slots = pe.SlotMount([pe.Slot(name, pose) for name, pose in zip("abc", poses, strict=True)])
     assert coded(can(), mount={"roof": slots}).start.vector == (0.5,)
-
-
-SLAB = (
-    shapes.box((-2.0, -0.9, 0.2), (2.0, 0.9, 1.2)),
-    shapes.box((-1.2, -0.7, 1.3), (0.8, 0.7, 1.4)),
-)
-"""A body, and a roof 0.1 m thick that floats 0.1 m above it."""
 
 
 def slab(turned):

@@ -18,11 +18,15 @@ ROOT = Path(__file__).parents[2]
 AREA = {"name": "area", "parts": ["roof"], "standoff": 0.04}
 SLOT = {"name": "here", "position": [0.0, 0.0, 1.9], "rotation": [0.0, 0.0, 0.0]}
 RACK = {"name": "rack", "slot": [SLOT, SLOT | {"name": "there", "position": [0.5, 0.0, 1.9]}]}
+CAMERA = {"name": "right", "model": "Camera 60 deg", "position": [0.0, -0.5, 2.5]}
+PAIR = {"pairs": [["left", "right"]]}
+GROUP = {"groups": [["left", "right"]]}
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    folder, car = tmp_path_factory.mktemp("mounts"), mounting.car()
+    folder = tmp_path_factory.mktemp("mounts")
+    car = mounting.car()
     pt.write_mesh(folder / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
     return folder
 
@@ -92,10 +96,8 @@ def test_the_example_of_the_page_is_a_study(folder):
     assert coding.allowed(study.rig), coding.broken(study.rig)
 
 
-LEFT, RIGHT = sensor("left", (0.0, 0.5, 2.5)), sensor("right", (0.0, -0.5, 2.5))
-CAMERA = {"name": "right", "model": "Camera 60 deg", "position": [0.0, -0.5, 2.5]}
-PAIR = {"pairs": [["left", "right"]]}
-GROUP = {"groups": [["left", "right"]]}
+LEFT = sensor("left", (0.0, 0.5, 2.5))
+RIGHT = sensor("right", (0.0, -0.5, 2.5))
 ON = sensor(mount="area")
 
 BAD = [

@@ -30,7 +30,8 @@ def limited(*sensors, **limits):
 
 def test_greatest_height_is_of_the_housing_s_top():
     top = 2.0 + HEIGHT - CENTER
-    low, high = top - 1e-4, top + 1e-4
+    low = top - 1e-4
+    high = top + 1e-4
     assert limited(can((0, 0, 2.0)), height=high) == []
     assert limited(can((0, 0, 2.0)), height=low) == ["limits.height of 'roof'"]
     eye = shapes.camera(position=(0, 0, 2.0), name="eye")  # of no known size
@@ -110,10 +111,8 @@ def test_housings_keep_out_of_each_other_where_that_is_asked_for():
 
 def test_a_surface_that_is_hollow_keeps_its_stand_off_all_round():
     """In the corner of an L, a sensor on its floor would be too near to its wall."""
-    floor, wall = (
-        shapes.box((-1.0, -1.0, 0.0), (1.0, 1.0, 0.1)),
-        shapes.box((0.9, -1.0, 0.1), (1.0, 1.0, 1.0)),
-    )
+    floor = shapes.box((-1.0, -1.0, 0.0), (1.0, 1.0, 0.1))
+    wall = shapes.box((0.9, -1.0, 0.1), (1.0, 1.0, 1.0))
     vehicle = pe.Vehicle(np.concatenate([floor, wall]))
     eye = shapes.camera(position=(0.0, 0.0, 0.4), name="eye")
     mount = {"eye": pe.SurfaceMount(["vehicle"], 0.3)}
@@ -149,7 +148,8 @@ def test_bounds_of_a_sensor_on_a_surface_hold_where_the_surface_leads():
 
 def test_what_does_not_move_is_nobody_s_fault():
     """A fixed sensor in the body is as it is; only what comes between it and others counts."""
-    fixed, moving = can((0.0, 0.0, 1.1), "fixed"), can((0.0, 0.0, FLYING), "moving")
+    fixed = can((0.0, 0.0, 1.1), "fixed")
+    moving = can((0.0, 0.0, FLYING), "moving")
     rig = pe.Rig([fixed, moving])
     limits = pe.Limits(height=0.5, width=0.01, distance=2.0)
     clear = pe.Mounting(constraints=pe.Constraints(clear_housings=True))
@@ -163,7 +163,8 @@ def test_what_does_not_move_is_nobody_s_fault():
 
 
 def test_mirror_images_keep_to_the_rules_themselves():
-    left, right = can((0.0, 0.5, FLYING), "left"), can((0.0, -0.5, FLYING), "right")
+    left = can((0.0, 0.5, FLYING), "left")
+    right = can((0.0, -0.5, FLYING), "right")
     area = pe.Constraints(no_go=[pe.NoGo("filler", y=(-0.6, -0.4))])
     assert broken(left, right, pairs=[("left", "right")], constraints=area) == [
         "no_go 'filler' for 'right'"

@@ -47,7 +47,7 @@ def searched(landscape, *sensors, candidates=30, seed=0, **options):
     rig, space = mounting.space(*sensors, **options)
     recorder = Recorder(landscape)
     schedule = pe.Schedule(candidates=candidates)
-    steps = list(pe.optimize(recorder, rig, space, seed, schedule, method="random"))
+    steps = list(pe.optimize(recorder, rig, space, seed, schedule=schedule, method="random"))
     return Parametrization(rig, space), recorder, steps
 
 
@@ -102,7 +102,8 @@ def outcome_of(study):
 @pytest.mark.usefixtures("few_errors", "no_key_figures")
 def test_a_start_that_breaks_a_rule_is_not_returned_though_it_is_the_best():
     """Under a low ceiling the roof hides much: all that is allowed is worse than the start."""
-    free, under = outcome_of(study()), outcome_of(study(height=1.5))
+    free = outcome_of(study())
+    under = outcome_of(study(height=1.5))
     assert free.after.entropy <= free.before.entropy < under.after.entropy
     assert under.study.rig["roof"].pose.position[2] <= 1.5
     assert all(row.rig["roof"].pose.position[2] <= 1.5 for row in under.history)
@@ -125,7 +126,8 @@ def sedan(tmp_path_factory):
 def test_the_sedan_s_roof_lidar_stands_on_the_roof_on_a_base_of_40_mm(sedan):
     """From its base, 40 mm along the roof's normal is the roof, and the housing cuts nothing."""
     _, found = sedan
-    pose, housing = found.rig["roof"].pose, pe.catalog.housing("Pandar64")
+    pose = found.rig["roof"].pose
+    housing = pe.catalog.housing("Pandar64")
     assert pe.cuts_body(pose, housing, found.vehicle) == ()
     assert pose.position != (-0.429, 0.0, 1.534)
     base = np.array(pose.position) - pose.ground_from_sensor @ housing.optical_center

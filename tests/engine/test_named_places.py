@@ -63,7 +63,8 @@ def test_a_template_is_a_study_named_and_coloured_by_place(key, tmp_path, capsys
     mesh = str(ROOT / "blend_assets" / "sedan.npz")
     assert main(["new", mesh, "--rig", key, "-o", str(tmp_path / "study.toml")]) == 0
     rig = pe.load_study(tmp_path / "study.toml").rig
-    places, template = named_places(vehicle()), catalog.templates()[key]
+    places = named_places(vehicle())
+    template = catalog.templates()[key]
     assert len(rig) == len(template.sensors)
     for sensor, (place, model, _yaw, pitch) in zip(rig, template.sensors, strict=True):
         assert sensor.name.endswith(f" {place}") and sensor.model is catalog.load(model)
@@ -76,10 +77,12 @@ def test_a_template_is_a_study_named_and_coloured_by_place(key, tmp_path, capsys
 
 
 def test_a_known_rig_goes_to_the_nearest_places_one_each(tmp_path):
-    mesh, output = str(ROOT / "blend_assets" / "sedan.npz"), str(tmp_path / "study.toml")
+    mesh = str(ROOT / "blend_assets" / "sedan.npz")
+    output = str(tmp_path / "study.toml")
     line = ["new", mesh, "--rig", "nuscenes", "--placement", "places", "-o", output]
     assert main(line) == 0
-    rig, places = pe.load_study(output).rig, named_places(vehicle())
+    rig = pe.load_study(output).rig
+    places = named_places(vehicle())
     assert rig["LIDAR_TOP"].pose.position == places["roof"].beside(0.15)
     assert rig["CAM_BACK"].pose.rotation_deg[2] == pytest.approx(179.857)
     assert len({sensor.pose.position for sensor in rig}) == len(rig)

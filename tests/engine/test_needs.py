@@ -13,7 +13,8 @@ SPACE = pe.PerceptionSpace((-24.0, 24.0), (-12.0, 12.0), (0.0, 4.0), 0.2)
 
 def study(lidars, cameras):
     """Sensors over a car, in a grid of 576,000 voxels."""
-    lidar, camera = shapes.small_lidar(16, 360), pe.Camera("eye", 640, 480, 1.2)
+    lidar = shapes.small_lidar(16, 360)
+    camera = pe.Camera("eye", 640, 480, 1.2)
     places = [(0.5 * k - 1.0, 0.0, 1.7) for k in range(max(lidars, cameras))]
     rig = [pe.Sensor(f"l{k}", lidar, pe.Pose(p)) for k, p in enumerate(places[:lidars])]
     rig += [pe.Sensor(f"c{k}", camera, pe.Pose(p)) for k, p in enumerate(places[:cameras])]
@@ -38,7 +39,8 @@ def test_estimates_are_near_what_is_taken(lidars, cameras):
 @pytest.mark.parametrize(("lidars", "cameras"), [(1, 0), (6, 6)])
 def test_an_estimate_of_samples_is_not_below_what_is_taken(lidars, cameras):
     """Nor more than the factor above it: drawn, and all that a score tells of one or twelve."""
-    ours, samples = study(lidars, cameras), 65_536
+    ours = study(lidars, cameras)
+    samples = 65_536
     tracemalloc.start()
     try:
         ours.evaluator(samples).score(ours.rig)

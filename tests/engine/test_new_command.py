@@ -17,6 +17,15 @@ from tests.engine.test_mesh_axes import car, obj, triangles_of
 
 ASSETS = ROOT / "blend_assets"
 CHEAP = ["--samples", "1024"]
+VEHICLES_M = {
+    "car": (4.5, 1.8, 1.45),
+    "sports car": (4.4, 1.9, 1.1),
+    "van": (4.3, 1.7, 1.8),
+    "ambulance": (7.5, 2.2, 2.7),
+    "city bus": (12.0, 2.55, 3.1),
+    "lorry": (16.5, 2.6, 4.0),
+}
+"""Length, width and height."""
 
 
 def new(mesh, study, *more):
@@ -89,17 +98,6 @@ def test_axes_and_units_of_every_format_are_found_and_written(tmp_path, capsys):
         found = capsys.readouterr().err
         assert ("taken as millimetres" in found) == (study.axes.scale == 0.001)
     assert "scale = 0.001" in (tmp_path / "millimetres.stl.toml").read_text()
-
-
-VEHICLES_M = {
-    "car": (4.5, 1.8, 1.45),
-    "sports car": (4.4, 1.9, 1.1),
-    "van": (4.3, 1.7, 1.8),
-    "ambulance": (7.5, 2.2, 2.7),
-    "city bus": (12.0, 2.55, 3.1),
-    "lorry": (16.5, 2.6, 4.0),
-}
-"""Length, width and height."""
 
 
 @pytest.mark.parametrize("unit", SMALLER_UNITS)

@@ -54,7 +54,8 @@ def test_a_grid_and_a_function_give_the_share_of_each_voxel():
 def test_a_grid_is_read_at_the_centres_of_another_space_and_takes_focus_weights():
     prior = pe.Prior.from_function(bump, SPACE)
     finer = pe.PerceptionSpace((-4, 30), (-3, 3), (0, 3), 0.25)
-    found, own = voxels(prior, finer), voxels(prior)
+    found = voxels(prior, finer)
+    own = voxels(prior)
     inside = found[:56, :, :8].reshape(28, 2, 12, 2, 4, 2)
     assert np.allclose(inside.max(axis=(1, 3, 5)), inside.min(axis=(1, 3, 5)))
     wanted = own[12:, 6:18]
@@ -134,19 +135,28 @@ def values():
     field = pe.beam_field(one.rig["roof"], one.vehicle)
     maps = pe.Evaluator(SPACE, one.prior, one.vehicle).score(one.rig).ground_map
     return [
-        *(
-            one,
-            one.rig,
-            one.rig["roof"],
-            one.vehicle,
-            one.prior,
-            grid,
-            grid.grid,
-            boxes,
-            one.search,
-        ),
-        *(score, score.scatter, one.evaluator().summary(one.rig), outcome, step, *seen, area),
-        *(LIDAR, pe.catalog.load("Camera 60 deg"), field, maps, one.search_space(), one.model),
+        one,
+        one.rig,
+        one.rig["roof"],
+        one.vehicle,
+        one.prior,
+        grid,
+        grid.grid,
+        boxes,
+        one.search,
+        score,
+        score.scatter,
+        one.evaluator().summary(one.rig),
+        outcome,
+        step,
+        *seen,
+        area,
+        LIDAR,
+        pe.catalog.load("Camera 60 deg"),
+        field,
+        maps,
+        one.search_space(),
+        one.model,
     ]
 
 
@@ -165,10 +175,15 @@ def test_public_dataclasses_that_hold_arrays_are_short():
 def test_tables_are_html_and_data_frames(values):
     tabular = [value for value in values if isinstance(value, Tabular)]
     assert {type(value).__name__ for value in tabular} == {
-        *("Study", "Rig", "Vehicle", "Score", "Outcome")
+        "Study",
+        "Rig",
+        "Vehicle",
+        "Score",
+        "Outcome",
     }
     for value in tabular:
-        html, frame = value._repr_html_(), value.to_pandas()
+        html = value._repr_html_()
+        frame = value.to_pandas()
         assert html.count("<tr>") == len(frame) + 1 and html.count("<table>") == 1
         assert len(html) < 20_000
     score = next(value for value in values if isinstance(value, pe.Score))

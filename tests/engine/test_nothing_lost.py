@@ -21,6 +21,7 @@ if sys.platform == "win32":
 pytestmark = pytest.mark.usefixtures("heeded_signals")
 ENDLESS = ("--set", "optimize.candidates=100000")
 SHORT = ("--set", "optimize.candidates=4")
+SIGNALS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 
 
 def result(folder):
@@ -36,9 +37,6 @@ def result(folder):
 def entropy_of(path):
     study = pe.load_study(path)
     return study.evaluator().entropy(study.rig)
-
-
-SIGNALS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 
 
 def test_the_first_signal_evaluates_keeps_and_analyses_the_best(study, out):

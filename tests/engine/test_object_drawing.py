@@ -21,6 +21,13 @@ from tests.engine import shapes
 SPACE = pe.PerceptionSpace()
 ROAD = pe.Prior.road()
 FEW = TargetRule("objects", True, 64)
+BOXES = [
+    ("car", 10.0, 1.0, 0.8, 4.0, 2.0, 1.5, 0.3),
+    ("car", -20.0, 3.0, 0.8, 4.2, 2.0, 1.6, 0.0),
+    ("car", 0.5, 0.2, 0.8, 4.2, 2.0, 1.6, 0.0),
+    ("tram", 500.0, 3.0, 2.0, 15.0, 2.5, 4.0, 0.0),
+    ("pedestrian", 5.0, -3.0, 0.9, 0.6, 0.7, 1.8, 1.0),
+]
 
 
 def drawn(prior=ROAD, vehicle=None, targets=FEW, space=SPACE, **more):
@@ -125,15 +132,6 @@ def test_classes_share_alike_however_many_there_are_and_focus_multiplies():
     assert shares[0] == pytest.approx(2.0 * shares[1], rel=0.05)
 
 
-BOXES = [
-    ("car", 10.0, 1.0, 0.8, 4.0, 2.0, 1.5, 0.3),
-    ("car", -20.0, 3.0, 0.8, 4.2, 2.0, 1.6, 0.0),
-    ("car", 0.5, 0.2, 0.8, 4.2, 2.0, 1.6, 0.0),
-    ("tram", 500.0, 3.0, 2.0, 15.0, 2.5, 4.0, 0.0),
-    ("pedestrian", 5.0, -3.0, 0.9, 0.6, 0.7, 1.8, 1.0),
-]
-
-
 def test_labelled_boxes_are_taken_as_they_are_each_once():
     """But for the one in the vehicle's place, and the one outside the space."""
     found = drawn(pe.Prior.from_boxes(BOXES), targets=TargetRule("objects")).objects
@@ -188,14 +186,23 @@ def test_a_prior_without_weight_on_the_objects_is_reported():
     with pytest.raises(pe.InputError, match="a number of 'ufo' in the space at once"):
         drawn(boxes)
     with pytest.raises(pe.InputError, match="size: expected three finite lengths above 0"):
-        pe.ObjectClass("flat", (4.0, 0.0, 1.5), 0.2, 30.0, 1.0, 0.5, 0.0)
+        pe.ObjectClass(
+            "flat",
+            (4.0, 0.0, 1.5),
+            height_spread=0.2,
+            decay_x=30.0,
+            laplace_y=1.0,
+            gauss_y=0.5,
+            laplace_share=0.0,
+        )
 
 
 @pytest.mark.parametrize("shift", [0.0, 0.31, 0.5, 0.77])
 def test_which_scenes_have_one_more_of_a_class_says_nothing_of_another_class(shift):
     """Counts of classes are not correlated; truck and cone, alike in number, least of all."""
     found = drawn(targets=TargetRule("objects", True, 256), shift=shift)
-    objects, classes = found.objects, range(len(found.objects.class_names))
+    objects = found.objects
+    classes = range(len(found.objects.class_names))
     counts = [np.bincount(objects.scenes[objects.labels == c], minlength=256) for c in classes]
     uneven = [each for each in counts if np.ptp(each) == 1]
     assert len(uneven) == 4 and all(np.ptp(each) <= 1 for each in counts)

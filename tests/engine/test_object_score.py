@@ -25,6 +25,16 @@ SPACE = pe.PerceptionSpace()
 FEW = pe.TargetRule("objects", scenes=16)
 ROAD = pe.Prior.road()
 SENSOR = {"name": "roof", "model": "Pandar64", "position": [0, 0, 2]}
+GOLDEN = (9.218613081, 0.205050669)
+TRAM = pe.ObjectClass(
+    "tram",
+    (15.0, 2.5, 3.6),
+    height_spread=0.3,
+    decay_x=50.0,
+    laplace_y=5.0,
+    gauss_y=2.0,
+    laplace_share=0.5,
+)
 
 
 def rig(*more):
@@ -51,7 +61,14 @@ def entropy_by_hand(a, b, m):
 def test_two_boxes_by_hand():
     """A wall of 2 by 2 m that ends 10 m ahead meets beams at +-5.7 deg; one behind meets none."""
     elevations = np.radians([-4.0, -2.0, 0.0, 2.0, 4.0])
-    ahead = pe.Lidar("ahead", elevations, 360, 50.0, None, (-math.pi / 2, math.pi / 2))
+    ahead = pe.Lidar(
+        "ahead",
+        elevations,
+        azimuth_count=360,
+        max_range=50.0,
+        azimuth_offsets=None,
+        horizontal_fov=(-math.pi / 2, math.pi / 2),
+    )
     boxes = [("car", 11.0, 0.0, 1.0, 2.0, 2.0, 2.0, 0.0), ("car", -9.0, 0.0, 1.0, 2.0, 2.0, 2.0, 0)]
     one = pe.Rig([pe.Sensor("eye", ahead, pe.Pose((0.0, 0.0, 1.0)))])
     score = scorer(pe.Prior.from_boxes(boxes)).score(one)
@@ -69,7 +86,8 @@ def test_two_boxes_by_hand():
 def test_a_score_is_the_equations_on_every_object(whole):
     """Against eqs. 4 to 9 written out, from m by its definition."""
     evaluator, score = whole
-    objects, weights = evaluator.drawn.objects, evaluator.drawn.weights
+    objects = evaluator.drawn.objects
+    weights = evaluator.drawn.weights
     both = rig(shapes.camera())
     m = {s.kind: measure_objects(s, objects) for s in both}
     floor = 999.0**-2
@@ -139,10 +157,10 @@ def test_traffic_hides_and_a_lone_object_is_hidden_by_none():
 @pytest.mark.parametrize("traffic", [False, True])
 def test_sight_tells_the_same_reach_as_the_score(traffic):
     """Maps, views and tables of a study on objects have one reach; of one on voxels another."""
-    targets, both = replace(FEW, traffic=traffic), rig(shapes.camera())
+    targets = replace(FEW, traffic=traffic)
+    both = rig(shapes.camera())
     score = scorer(targets=targets).score(both)
-    asked = (SPACE, ROAD, None)
-    view = pe.Sight(*asked, targets=targets)
+    view = pe.Sight(SPACE, ROAD, None, targets=targets)
     for name, own in score.objects.per_class.items():
         reach = view.reach(both, name)
         assert reach.distance.tolist() == list(own.reach.values())
@@ -154,7 +172,7 @@ def test_sight_tells_the_same_reach_as_the_score(traffic):
     alone = view.reach(pe.Rig([both["roof"]]), "car").distance
     assert view.reach(both, "car").per_sensor["roof"].tolist() == alone.tolist()
     assert (view.reach(both, "car", ap=0.7).distance <= view.reach(both, "car").distance).all()
-    assert pe.Sight(*asked).reach(both, "car").sector == 0.0
+    assert pe.Sight(SPACE, ROAD, None).reach(both, "car").sector == 0.0
 
 
 def test_the_standard_error_is_honest():
@@ -172,7 +190,7 @@ def test_the_standard_error_by_hand():
     Off that by weight: -1 - 0.5 and 1.5; the root of 2 / (2 - 1) times the squares' sum 4.5 is 3.
     """
     ones = np.ones((3, 3))
-    objects = pe.Objects(ones, ones, np.zeros(3), [0, 0, 0], ["car"], [0, 0, 1])
+    objects = pe.Objects(ones, ones, np.zeros(3), [0, 0, 0], class_names=["car"], scenes=[0, 0, 1])
     sums = ObjectSums(SampledObjects(objects, np.array([0.25, 0.25, 0.5]), 2))
     assert sums.standard_error(np.array([1.0, 3.0, 8.0]), 1) == pytest.approx(3.0)
 
@@ -181,9 +199,6 @@ def test_a_golden_case():
     """Figures of November 2026; they move only where a definition does."""
     score = scorer(targets=replace(FEW, traffic=True)).score(rig())
     assert (score.entropy, score.objects.ap) == pytest.approx(GOLDEN, abs=1e-8)
-
-
-GOLDEN = (9.218613081, 0.205050669)
 
 
 def test_objects_that_are_all_alike_leave_something_to_doubt():
@@ -221,15 +236,13 @@ def test_shipped_curves_are_those_that_fit_finds(name):
 
 def test_a_curve_carried_over_is_the_voxel_s_where_the_object_has_its_share():
     """A car's silhouette is 552.5 times a voxel's, so m = 552.5 k has the AP of k on a voxel."""
-    voxel, car = pe.ApCurve(0.055, 0.155), KINDS["camera"].object_curves["car"]
+    voxel = pe.ApCurve(0.055, 0.155)
+    car = KINDS["camera"].object_curves["car"]
     for k in (2.0, 30.0):
         ap = car.a * math.log(552.5 * k) + car.b
         assert ap == pytest.approx(voxel.a * math.log(k) + voxel.b)
     assert derived_object_curve(voxel, (0.1, 0.1, 0.1)) == voxel
     assert {c.name: c.size for c in ROAD.classes} == SIZES
-
-
-TRAM = pe.ObjectClass("tram", (15.0, 2.5, 3.6), 0.3, 50.0, 5.0, 2.0, 0.5)
 
 
 def test_a_class_without_a_curve_is_reported_unless_it_weighs_nothing():
@@ -277,7 +290,9 @@ def test_reach_by_hand():
     Its ring is 10 to 15 m away; the next has no object, and 0: 0.5 is 3/8 of the way there.
     """
     ones = np.ones((2, 3))
-    objects = pe.Objects(ones, ones, np.zeros(2), [0, 1], ["car", "cone"], [0, 0])
+    objects = pe.Objects(
+        ones, ones, np.zeros(2), [0, 1], class_names=["car", "cone"], scenes=[0, 0]
+    )
     rings = RingObjects(objects, np.array([0, (8 + 0) * RINGS + 2]))
     found = reach_by_direction(rings, 1, np.array([0.9, 0.8]))
     assert found == {name: 0.0 for name in SECTORS} | {"front": 5.0 * (2.5 + 0.3 / 0.8)}

@@ -16,7 +16,9 @@ def objects(centers=((10.0, 0.0, 0.5),), size=(1.0, 1.0, 1.0), yaw=0.0, scenes=N
     """Boxes of one size and heading."""
     count = len(centers)
     own = np.zeros(count, int)
-    return pe.Objects(centers, [size] * count, [yaw] * count, own, ("box",), scenes)
+    return pe.Objects(
+        centers, [size] * count, [yaw] * count, own, class_names=("box",), scenes=scenes
+    )
 
 
 def test_objects_cannot_be_changed_and_are_sent_whole():
@@ -73,7 +75,8 @@ def test_an_object_hides_what_is_behind_it_in_its_scene_alone():
 
 
 def test_an_object_that_holds_the_sensor_is_met_at_once_by_every_beam():
-    inside, behind = (0.0, 0.0, 1.0), (20.0, 0.0, 1.0)
+    inside = (0.0, 0.0, 1.0)
+    behind = (20.0, 0.0, 1.0)
     both = objects([inside, behind], (2.0, 2.0, 2.0), scenes=[0, 0])
     assert pe.measure_objects(level_lidar(), both, traffic=True).tolist() == [1080.0, 0.0]
     near = level_lidar(min_range=0.5)

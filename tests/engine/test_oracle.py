@@ -9,6 +9,12 @@ import pe_core as pe
 from tests.engine import oracle, shapes
 
 SIDE = 0.1
+LIDARS = {
+    "regular": {},
+    "offsets": {"azimuth_offsets": np.radians(np.linspace(-5, 5, 16))},
+    "limited": {"horizontal_fov": (math.radians(-60), math.radians(45))},
+    "short": {"max_range": 7.3},
+}
 
 
 def azimuths_of(lidar):
@@ -21,26 +27,19 @@ def azimuths_of(lidar):
 
 
 def oracle_beams(sensor, centers, vehicle):
-    origin, lidar = np.array(sensor.pose.position), sensor.model
+    origin = np.array(sensor.pose.position)
+    lidar = sensor.model
     directions = oracle.beam_directions(lidar.elevations, azimuths_of(lidar), sensor.pose.rpy)
     ends = np.full(len(directions), lidar.max_range)
     if vehicle is not None:
         ends = np.minimum(ends, oracle.first_hits(origin, directions, vehicle.triangles)[0])
-    return [oracle.count_beams(origin, directions, ends, c, SIDE) for c in centers]
+    return [oracle.count_beams(origin, directions, ends, c, side=SIDE) for c in centers]
 
 
 def random_pose(rng, steep=True):
     reach = (180, 90, 180) if steep else (10, 10, 180)
     position = rng.uniform((-2.5, -1.2, 1.6), (2.5, 1.2, 2.3))
     return pe.Pose.from_degrees(position, rng.uniform(-1, 1, 3) * reach)
-
-
-LIDARS = {
-    "regular": {},
-    "offsets": {"azimuth_offsets": np.radians(np.linspace(-5, 5, 16))},
-    "limited": {"horizontal_fov": (math.radians(-60), math.radians(45))},
-    "short": {"max_range": 7.3},
-}
 
 
 @pytest.mark.parametrize("kind", LIDARS)
@@ -78,7 +77,12 @@ def test_pixel_areas_equal_the_clipped_hull(hfov):
         area = pe.measure(sensor, centers, SIDE)
         expected = [
             oracle.pixel_area(
-                (1920, 1080), math.radians(hfov), sensor.pose.position, sensor.pose.rpy, c, SIDE
+                (1920, 1080),
+                math.radians(hfov),
+                sensor.pose.position,
+                sensor.pose.rpy,
+                center=c,
+                side=SIDE,
             )
             for c in centers
         ]

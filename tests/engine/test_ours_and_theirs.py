@@ -83,7 +83,8 @@ def test_the_folder_of_the_study_is_refused(tmp_path, capsys, monkeypatch, no_wo
 
 
 def test_an_export_replaces_what_was_chosen_and_not_its_neighbours(tmp_path):
-    path, mesh = tmp_path / "car.toml", tmp_path / "car.npz"
+    path = tmp_path / "car.toml"
+    mesh = tmp_path / "car.npz"
     path.write_text("mine")
     with pytest.raises(pe.InputError, match=r"car\.toml: output: expected no file"):
         pt.export_study(a_study(), path)
@@ -105,7 +106,8 @@ def test_killed_between_two_files_all_of_them_are_still_ours(tmp_path, stops_at,
     with FileSet(tmp_path) as files:
         files.add("a", b"1")
         files.add("b", b"1")
-    replace, done = jobs.folder.os.replace, []
+    replace = jobs.folder.os.replace
+    done = []
 
     def replace_some(source, target):
         if not str(target).endswith(LISTING):

@@ -53,7 +53,8 @@ def searched(objective, **search):
 def test_a_search_minimises_the_function_and_reports_it_beside_the_entropy(objective):
     steps, job = searched(objective)
     value = objective if callable(objective) else objective.entropy
-    own, found = job.outcome.own, job.outcome
+    own = job.outcome.own
+    found = job.outcome
     assert (own.before, own.after) == (value(found.start.rig), value(found.study.rig))
     assert own.after < own.before
     told = [job.figure.to_figure(row.entropy) for row in found.history]

@@ -40,7 +40,8 @@ def answered(part, landscape):
 
 def descended(landscape, rig, space, evaluations, seed=0):
     """Descend by steps from the start; return where it ended, and the rigs it asked for."""
-    asked, coding = [], Parametrization(rig, space)
+    asked = []
+    coding = Parametrization(rig, space)
 
     def noted(rig):
         asked.append(rig)
@@ -114,7 +115,8 @@ def test_sensors_of_one_model_are_tried_beside_the_mirror_image_of_each_other():
         assert len(sizes) == (2 if each is rig else 0)
     for tried in asked:
         moved, kept = ("roof", "b") if tried["b"].pose == rig["b"].pose else ("b", "roof")
-        at, other = pose_values(tried[moved].pose), pose_values(rig[kept].pose)
+        at = pose_values(tried[moved].pose)
+        other = pose_values(rig[kept].pose)
         image = {**other, "y": -other["y"]}
         apart = [axis for axis in ("x", "y", "z", "pitch") if abs(at[axis] - image[axis]) > 1e-9]
         assert len(apart) == 1, apart
@@ -178,7 +180,7 @@ def test_sensors_in_slots_exchange_them_and_move_two_at_a_time():
 
 def test_the_first_survey_is_the_same_for_every_seed_and_the_second_is_not():
     rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"))
-    asked = [searched(flat, rig, space, 60, seed)[0].rigs for seed in (0, 1)]
+    asked = [searched(flat, rig, space, evaluations=60, seed=seed)[0].rigs for seed in (0, 1)]
     first, second = (
         [[s.pose for s in rig] for rig in rigs[: 1 + 4 * portfolio.SURVEYED]] for rigs in asked
     )
@@ -209,7 +211,9 @@ def rugged(rig):
 
 def test_among_small_valleys_a_descent_goes_on():
     rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"), free=("x", "y"))
-    ends = [descended(rugged, rig, space, 200, seed)[0].entropy for seed in range(5)]
+    ends = [
+        descended(rugged, rig, space, evaluations=200, seed=seed)[0].entropy for seed in range(5)
+    ]
     assert np.median(ends) < 0.12 < rugged(rig) / 10.0
 
 

@@ -11,6 +11,9 @@ from pe_core.scoring.sampling import draw, scrambled_sobol
 from tests.engine import shapes
 
 SPACE = shapes.small_space()
+DENSITY_SPACE = pe.PerceptionSpace((-60.0, 60.0), (-30.0, 30.0), (0.0, 5.0), 0.5)
+FINE = 4000
+"""Points to a box of the numerical integrals."""
 
 
 def total(densities):
@@ -69,11 +72,6 @@ def test_azimuth_and_height_are_a_net(shift):
         assert len(np.unique(cells, axis=0)) == 4096
 
 
-DENSITY_SPACE = pe.PerceptionSpace((-60.0, 60.0), (-30.0, 30.0), (0.0, 5.0), 0.5)
-FINE = 4000
-"""Points to a box of the numerical integrals."""
-
-
 def centre_density(cls, x, y):
     """``exp(-|x| / L) * mean over lanes of (w Laplace(y) + (1 - w) N(y))``, as documented."""
     along = np.exp(-np.abs(x) / cls.decay_x)
@@ -122,14 +120,25 @@ def test_a_road_s_car_by_hand():
     """Beyond half a car's length the mass falls as exp(-x / 39.4): over 20 m to exp(-0.50761)."""
     ground = pe.Prior.road().densities(DENSITY_SPACE)[0].ground
     along = ground.sum(axis=1)
-    i, j = 120 + 20, 120 + 60  # centres at 10.25 and 30.25 m ahead
+    # centres at 10.25 and 30.25 m ahead
+    i = 120 + 20
+    j = 120 + 60
     assert along[j] / along[i] == pytest.approx(math.exp(-20.0 / 39.4), rel=1e-9)
     assert along[j] == pytest.approx(along[239 - j], rel=1e-9)  # as often behind as ahead
 
 
 def test_lopsided_lanes_stay_where_they_are():
     """y is to the left: a lane at +10 m is met at +10 m, one named twice twice as often."""
-    cls = pe.ObjectClass("x", (4.0, 2.0, 1.5), 0.2, 30.0, 1.0, 0.5, 0.0, (10.0, 10.0, -20.0))
+    cls = pe.ObjectClass(
+        name="x",
+        size=(4.0, 2.0, 1.5),
+        height_spread=0.2,
+        decay_x=30.0,
+        laplace_y=1.0,
+        gauss_y=0.5,
+        laplace_share=0.0,
+        lanes=(10.0, 10.0, -20.0),
+    )
     across = pe.Prior("road", (cls,)).densities(DENSITY_SPACE)[0].ground.sum(axis=0)
     y = DENSITY_SPACE.centers(1)
     assert across[abs(y - 10.0) < 4.0].sum() == pytest.approx(2 / 3, abs=1e-6)

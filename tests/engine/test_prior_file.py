@@ -57,7 +57,17 @@ def test_a_class_of_the_road_can_be_changed(prior_of):
 
 def test_a_class_can_be_added(prior_of):
     prior = prior_of(TRAM + "share = 0.5\nlanes = [-3, 3]\n")
-    tram = pe.ObjectClass("tram", (15.0, 2.5, 3.6), 0.3, 50.0, 5.0, 2.0, 0.5, (-3.0, 3.0), 0.5)
+    tram = pe.ObjectClass(
+        name="tram",
+        size=(15.0, 2.5, 3.6),
+        height_spread=0.3,
+        decay_x=50.0,
+        laplace_y=5.0,
+        gauss_y=2.0,
+        laplace_share=0.5,
+        lanes=(-3.0, 3.0),
+        share=0.5,
+    )
     assert prior.classes == (*pe.Prior.road().classes, tram)
     (table,) = saved(prior)["class"]
     assert table["name"] == "tram" and table["lanes"] == [-3.0, 3.0] and len(table) == 9

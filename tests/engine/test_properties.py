@@ -27,14 +27,16 @@ def on_grid(scene):
 
 def on_sample(scene):
     """The same as the kernels of samples have it, asked for every voxel."""
-    index, shape = every_voxel(scene.space).index, scene.space.shape
+    index = every_voxel(scene.space).index
+    shape = scene.space.shape
     found = (kernels.on_sample(s, scene.space, index, scene.vehicle) for s in scene.rig)
     return [m.reshape(shape) for m in found]
 
 
 def defined(scene):
     """The same by the definition."""
-    centers, side = every_voxel(scene.space).centers, scene.space.interval
+    centers = every_voxel(scene.space).centers
+    side = scene.space.interval
     found = [pe.measure(s, centers, side, scene.vehicle) for s in scene.rig]
     return [m.reshape(scene.space.shape) for m in found]
 
@@ -63,7 +65,8 @@ def entropy(scene):
 @each_rig
 def test_grid_and_sample_equal_the_definition(number):
     scene = round_scene(number)
-    grid, by_definition = on_grid(scene), defined(scene)
+    grid = on_grid(scene)
+    by_definition = defined(scene)
     assert_alike(grid, by_definition, FLAT)
     assert_alike(on_sample(scene), by_definition, FLAT)
 

@@ -17,7 +17,8 @@ from docs_site import notebook, python_names
 
 PAGE = (ROOT / "docs" / notebook.PAGE).read_text("utf-8")
 PUBLIC = {f"pe.{name}" for name in pe.__all__} | {f"pt.{name}" for name in pt.__all__}
-ALIKE, OTHER = 0.01, 0.02
+ALIKE = 0.01
+OTHER = 0.02
 """Mean difference of two pictures, 0 to 1: of the same plot by another matplotlib; of another."""
 
 
@@ -47,9 +48,12 @@ def test_examples_of_public_names_hold(tmp_path, monkeypatch):
     text = python_names.EXAMPLES.read_text("utf-8")
     blocks = re.findall(r"(?:^### (\S+)\n\n)?^```pycon\n(.*?)^```\n", text, re.M | re.S)
     assert len(blocks) == len(PUBLIC) + 1
-    names, wrong, parser = {}, {}, doctest.DocTestParser()
+    names = {}
+    wrong = {}
+    parser = doctest.DocTestParser()
     for name, block in blocks:
-        runner, said = doctest.DocTestRunner(verbose=False), io.StringIO()
+        runner = doctest.DocTestRunner(verbose=False)
+        said = io.StringIO()
         test = parser.get_doctest(block, names, name or "first", str(python_names.EXAMPLES), 0)
         assert test.examples, name
         if runner.run(test, out=said.write, clear_globs=False).failed:

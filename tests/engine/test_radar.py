@@ -32,6 +32,14 @@ MODE = {
 }
 TABLE = {"kind": "radar", "mode": [MODE], "list_length": 400}
 SIZES = {"car": (4.6, 1.9, 1.7), "pedestrian": (0.8, 0.7, 1.75), "truck": (7.5, 2.55, 3.0)}
+EDGES = {
+    "side": ({"azimuth_deg": [-20, 20]}, lambda u: (8.0, 2.91 + u)),
+    "other side": ({"azimuth_deg": [-20, 35]}, lambda u: (7.0, -2.55 + u)),
+    "top": ({"elevation_deg": [-80, 5]}, lambda u: (10.0 + 4.0 * u, 0.3)),
+    "bottom": ({"elevation_deg": [-7, 60]}, lambda u: (7.0 + 3.0 * u, -0.7)),
+    "far": ({"max_range_m": 30.0}, lambda u: (30.0 + u, 1.0)),
+    "near": ({"min_range_m": 6.0}, lambda u: (6.0 + u, -0.5)),
+}
 
 
 def radar(table=TABLE, position=(2.6, 0.1, 0.55), rotation=(0, 0, 0), name="front"):
@@ -43,9 +51,10 @@ def objects(seed=3, count=60, names=tuple(SIZES), ground=30.0):
     rng = np.random.default_rng(seed)
     labels = rng.integers(0, len(names), count)
     sizes = np.array([SIZES[names[k]] for k in labels]) * rng.uniform(0.9, 1.1, (count, 3))
-    x, y = rng.uniform(6, 6 + 2 * ground, count), rng.uniform(-ground, ground, count)
+    x = rng.uniform(6, 6 + 2 * ground, count)
+    y = rng.uniform(-ground, ground, count)
     centers = np.column_stack([x, y, sizes[:, 2] / 2])
-    return pe.Objects(centers, sizes, rng.uniform(-3, 3, count), labels, names)
+    return pe.Objects(centers, sizes, rng.uniform(-3, 3, count), labels, class_names=names)
 
 
 def test_a_requirement_takes_the_rcs_that_nearly_all_bodies_exceed():
@@ -53,13 +62,21 @@ def test_a_requirement_takes_the_rcs_that_nearly_all_bodies_exceed():
 
     What the user states is taken where it is less; a body without a class sends no echo.
     """
-    far, model = 250.0 * 10 ** ((-20.7 - 10.0) / 40.0), catalog.load(ARS)
+    far = 250.0 * 10 ** ((-20.7 - 10.0) / 40.0)
+    model = catalog.load(ARS)
     assert far == pytest.approx(42.7, abs=0.01)
 
     def seen(x, model=model, body="adult"):
         body = body if isinstance(body, Body) else BODIES[body]
         sensor = radar(model, position=(0.0, 0.0, 0.85))
-        return sees(sensor, body, (x + body.size[0] / 2.0, 0.0, 0.0), 0.0, None, Criterion())
+        return sees(
+            sensor,
+            body,
+            (x + body.size[0] / 2.0, 0.0, 0.0),
+            heading=0.0,
+            vehicle=None,
+            criterion=Criterion(),
+        )
 
     assert seen(far - 0.05) and not seen(far + 0.05)
     strong = replace(model, rcs={"pedestrian": Reflectivity((0.0,))})
@@ -88,7 +105,7 @@ def test_each_class_has_the_rcs_of_its_weak_bodies(body, low_dbsm):
 
     def seen(front):
         foot = (front + found.size[0] / 2.0, 0.0, 0.0)
-        return sees(sensor, found, foot, 0.0, None, Criterion())
+        return sees(sensor, found, foot, heading=0.0, vehicle=None, criterion=Criterion())
 
     assert seen(far - 0.3) and not seen(far + 0.3)
     mild = catalog.from_table("own", {"kind": "radar", "mode": [mode], "rcs_dbsm": {"car": 9.0}})
@@ -100,26 +117,28 @@ def test_rare_detections_in_many_cells_are_no_point():
     mode = {"name": "a", "azimuth_deg": [-9, 9], "range_m": 100, "elevation_deg": [-9, 9]}
     mode |= {"range_resolution_m": 0.5, "max_range_m": 300}
     sensor = radar({"kind": "radar", "mode": [mode]}, position=(0.0, 0.0, 0.65))
-    snr, count = snr_for(0.9, 1e-6) * 10 ** ((-2.6 - 10.0) / 10.0), 4.1 / 0.5
-    seen, sure, expected = [], [], []
+    snr = snr_for(0.9, 1e-6) * 10 ** ((-2.6 - 10.0) / 10.0)
+    count = 4.1 / 0.5
+    seen = []
+    sure = []
+    expected = []
     for x in np.arange(30.0, 120.0, 0.5):
-        seen.append(sees(sensor, BODIES["car"], (x, 0.0, 0.0), 0.0, None, Criterion()))
+        seen.append(
+            sees(
+                sensor,
+                BODIES["car"],
+                (x, 0.0, 0.0),
+                heading=0.0,
+                vehicle=None,
+                criterion=Criterion(),
+            )
+        )
         pd = detection_probability(snr / count * (100.0 / (x - 2.05)) ** 4, 1e-6)
         pd = pd * (pd >= 0.1)
         sure.append(1.0 - (1.0 - pd) ** count >= 0.9)
         expected.append(count * pd >= 0.9)
     assert all(truth for is_seen, truth in zip(seen, sure, strict=True) if is_seen)
     assert 0 <= sum(sure) - sum(seen) <= 5 and sum(seen) + 10 < sum(expected) < len(seen)
-
-
-EDGES = {
-    "side": ({"azimuth_deg": [-20, 20]}, lambda u: (8.0, 2.91 + u)),
-    "other side": ({"azimuth_deg": [-20, 35]}, lambda u: (7.0, -2.55 + u)),
-    "top": ({"elevation_deg": [-80, 5]}, lambda u: (10.0 + 4.0 * u, 0.3)),
-    "bottom": ({"elevation_deg": [-7, 60]}, lambda u: (7.0 + 3.0 * u, -0.7)),
-    "far": ({"max_range_m": 30.0}, lambda u: (30.0 + u, 1.0)),
-    "near": ({"min_range_m": 6.0}, lambda u: (6.0 + u, -0.5)),
-}
 
 
 @pytest.mark.parametrize("name", EDGES)
@@ -134,18 +153,23 @@ def test_what_an_edge_of_the_field_cuts_is_detected_with_its_probability(name):
     mode |= {"range_resolution_m": 50, "azimuth_resolution_deg": 90, "elevation_resolution_deg": 90}
     mode |= own
     table = {"kind": "radar", "mode": [mode], "rcs_dbsm": {"post": 7.0}}
-    sensor, rng = radar(table, position=(0.0, 0.0, 0.7)), np.random.default_rng(4)
+    sensor = radar(table, position=(0.0, 0.0, 0.7))
+    rng = np.random.default_rng(4)
     found = []
     for _ in range(8):
         body = Body("post", tuple(rng.uniform((0.3, 0.3, 0.8), (3.0, 1.2, 1.8)).tolist()))
         yaw = float(rng.uniform(-3.0, 3.0))
         feet = [(*place(u), 0.0) for u in np.linspace(-1.6, 1.6, 81)]
-        met = np.array([sees(sensor, body, at, yaw, None, Criterion()) for at in feet])
+        met = np.array(
+            [sees(sensor, body, at, yaw, vehicle=None, criterion=Criterion()) for at in feet]
+        )
         for k in np.flatnonzero(met[1:] != met[:-1]):
             x, y, _ = feet[k + 1 if met[k + 1] else k]
-            box = pe.Objects([[x, y, body.size[2] / 2.0]], [body.size], [yaw], [0], ("car",))
-            given = {"mode": [mode]}, sensor.pose, box  # a car of the oracle has 7 dBsm
-            found.append(expected_detections(*given)[0])
+            box = pe.Objects(
+                [[x, y, body.size[2] / 2.0]], [body.size], [yaw], [0], class_names=("car",)
+            )
+            # a car of the oracle has 7 dBsm
+            found.append(expected_detections({"mode": [mode]}, sensor.pose, box)[0])
     assert len(found) > 5 and min(found) >= 0.896, sorted(found)
     assert max(found) < 1.0 and min(found) < 0.99  # some are cut
 
@@ -169,10 +193,12 @@ def test_a_reference_target_is_detected_with_its_probability_at_its_range():
     mode = {k: v for k, v in mode.items() if "resolution" not in k and k != "elevation_scale"}
     table = {"kind": "radar", "mode": [mode], "rcs_dbsm": {"ball": 10.0}}
     sensor = radar(table, (0, 0, 1))
-    ball = pe.Objects([[80.05, 0, 1.0]], [[0.1, 0.1, 0.1]], [0], [0], ("ball",))
+    ball = pe.Objects([[80.05, 0, 1.0]], [[0.1, 0.1, 0.1]], [0], [0], class_names=("ball",))
     assert kinds.measure_objects(sensor, ball)[0] == pytest.approx(0.9, abs=1e-4)
     covered = radar({**table, "cover_loss_db": 2.0}, (0, 0, 1))
-    near = pe.Objects([[80 / 10**0.1 + 0.05, 0, 1.0]], [[0.1, 0.1, 0.1]], [0], [0], ("ball",))
+    near = pe.Objects(
+        [[80 / 10**0.1 + 0.05, 0, 1.0]], [[0.1, 0.1, 0.1]], [0], [0], class_names=("ball",)
+    )
     assert kinds.measure_objects(covered, near)[0] == pytest.approx(0.9, abs=1e-4)
 
 
@@ -194,7 +220,8 @@ def test_objects_are_those_of_the_oracle():
 
 def test_the_body_hides_as_rays_of_the_oracle_do():
     sensor = radar(position=(1.0, 1.1, 0.6), rotation=(0, 0, -20))
-    some, car = objects(ground=12.0, count=40), shapes.box_car()
+    some = objects(ground=12.0, count=40)
+    car = shapes.box_car()
     found = kinds.measure_objects(sensor, some, car)
     expected = expected_detections(tomllib_of(TABLE), sensor.pose, some, car.triangles)
     assert_close_but_at_edges(found, expected)
@@ -221,7 +248,8 @@ def test_traffic_hides():
 
 
 def test_a_sensor_beside_the_body_has_rays_that_end_on_it():
-    space, car = pe.PerceptionSpace((-4, 36), (-20, 20), (0, 3), 0.5), shapes.box_car()
+    space = pe.PerceptionSpace((-4, 36), (-20, 20), (0, 3), 0.5)
+    car = shapes.box_car()
     sample = kinds.KINDS["radar"].on_sample(every_voxel(space), car, 1)
     inside = radar(position=(1.0, 1.1, 0.6), rotation=(0, 0, -20))
     occlusion = sample.occlusion(sample.measure(inside))
@@ -229,12 +257,13 @@ def test_a_sensor_beside_the_body_has_rays_that_end_on_it():
 
 
 def test_a_cover_takes_decibels_and_a_bumper_blocks():
-    wall, body = _wall(1.0), _wall(-2.0)
+    wall = _wall(1.0)
+    body = _wall(-2.0)
     triangles = np.concatenate([wall, body])
     parts = np.repeat([0, 1], [len(wall), len(body)])
     names = ("bumper", "body")
     sensor = radar(catalog.load(ARS), (0.0, 0.0, 0.6))
-    target = pe.Objects([[30, 0, 0.85]], [SIZES["car"]], [0], [0], ("car",))
+    target = pe.Objects([[30, 0, 0.85]], [SIZES["car"]], [0], [0], class_names=("car",))
     plain = pe.Vehicle(triangles, parts, names)
     covered = pe.Vehicle(triangles, parts, names, covers={"bumper": 2.0})
     free = kinds.measure_objects(sensor, target)[0]

@@ -22,6 +22,16 @@ from tests.engine import oracle, shapes
 from tests.engine.requirement_scene import AHEAD, check, rig, van
 from tests.thorough import tries
 
+RING = BODIES["pole_ring"]
+RING_SHIFTS = np.arange(-40, 41) * 2e-3
+"""How far a ring is moved across what cuts it [m]."""
+LOW_LIDARS = {
+    "upright": shapes.lidar_on_roof(
+        shapes.small_lidar(20, 367), (2.6, 0.107, 0.433), (0, 0, 0), "l"
+    ),
+    "tilted": shapes.lidar_on_roof(shapes.small_lidar(17, 367), (2.6, 0.107, 1.9), (4, 38, 3), "l"),
+}
+
 
 def test_verdicts_are_those_of_the_definition():
     """Samples, bodies and headings, by `sees` and `body_met`; every lost sensor, too.
@@ -30,18 +40,25 @@ def test_verdicts_are_those_of_the_definition():
     """
     bodies = (BODIES["child"], BODIES["cyclist"], BODIES["pole_ring"])
     requirements = [
-        Requirement("k", AHEAD, bodies[:2], Criterion(sensors=2), Under(one_lost=True)),
+        Requirement("k", AHEAD, bodies[:2], Criterion(sensors=2), under=Under(one_lost=True)),
         Requirement("kinds", AHEAD, bodies[:1], Criterion(kinds=2, points=4, pixels=4000.0)),
         Requirement("share", AHEAD, (BODIES["cylinder"],), Criterion(share=0.6)),
         Requirement("ring", AHEAD, bodies[2:], Criterion(share=1.0, of=("camera",))),
     ]
-    vehicle, whole, every = van(), rig(), tries(3, 1)
+    vehicle = van()
+    whole = rig()
+    every = tries(3, 1)
     some = 0
     for requirement, verdict in zip(requirements, check(*requirements), strict=True):
         passed = []
         for x, y in verdict.samples.points[::every]:
             seen = [
-                {s.name: sees(s, b, (x, y, 0.0), h, vehicle, requirement.criterion) for s in whole}
+                {
+                    s.name: sees(
+                        s, b, (x, y, 0.0), h, vehicle=vehicle, criterion=requirement.criterion
+                    )
+                    for s in whole
+                }
                 for b in requirement.bodies
                 for h in b.headings
             ]
@@ -58,8 +75,10 @@ def test_verdicts_are_those_of_the_definition():
 
 def cylinder_hits(start, way, foot, radius, low, high):
     """Distance (B,) at which lines meet an upright cylinder, mantle or top; inf: they do not."""
-    flat, offset = way[:, :2], start[:2] - foot
-    a, b = (flat**2).sum(axis=1), (flat * offset).sum(axis=1)
+    flat = way[:, :2]
+    offset = start[:2] - foot
+    a = (flat**2).sum(axis=1)
+    b = (flat * offset).sum(axis=1)
     root = b * b - a * ((offset**2).sum() - radius**2)
     with np.errstate(divide="ignore", invalid="ignore"):
         t = (-b - np.sqrt(np.maximum(root, 0.0))) / a
@@ -93,7 +112,8 @@ def camera_points(sensor, foot, radius, high, vehicle, low=0.0):
 
 def test_a_cylinder_that_is_seen_is_seen_by_rays_too():
     """The oracle knows real cylinders, lines and triangles. Verdicts err to the safe side only."""
-    vehicle, whole = van(), rig()
+    vehicle = van()
+    whole = rig()
     zone = Zone(polygon=((-4.3, 0.3), ("front + 1.9", 0.3), (4.4, 2.7), (-4.3, 2.7)), step=0.45)
     body = Body("cylinder", (0.3, 0.3, 0.8), is_round=True)
     names = [s.name for s in whole]
@@ -106,17 +126,22 @@ def test_a_cylinder_that_is_seen_is_seen_by_rays_too():
     start = np.array(lidar.pose.position)
     way = lidar.model.directions @ oracle.rotation(*lidar.pose.rpy).T
     ends = oracle.first_hits(start, way, vehicle.triangles)[0]
-    wrong, missed = [], []
+    wrong = []
+    missed = []
     for k, foot in enumerate(points):
         for name in names:
             if name == "top":
-                truth = (cylinder_hits(start, way, foot, 0.15, 0.0, 0.8) < ends).any()
-                surely = (cylinder_hits(start, way, foot, 0.1, 0.01, 0.79) < ends).any()
+                truth = (
+                    cylinder_hits(start, way, foot, radius=0.15, low=0.0, high=0.8) < ends
+                ).any()
+                surely = (
+                    cylinder_hits(start, way, foot, radius=0.1, low=0.01, high=0.79) < ends
+                ).any()
             else:
-                share = camera_points(whole[name], foot, 0.15, 0.8, vehicle)
-                truth, surely = (
-                    share > 0.0,
-                    camera_points(whole[name], foot, 0.1, 0.8, vehicle) > 0.1,
+                share = camera_points(whole[name], foot, radius=0.15, high=0.8, vehicle=vehicle)
+                truth = share > 0.0
+                surely = (
+                    camera_points(whole[name], foot, radius=0.1, high=0.8, vehicle=vehicle) > 0.1
                 )
             if seen[name].passed[k] and not truth:
                 wrong.append((name, *foot))
@@ -142,20 +167,19 @@ def test_a_share_of_a_cylinder_is_never_too_high():
         *(Requirement(f"{s}", zone, (body,), Criterion(share=s)) for s in shares),
         of=pe.Rig([camera]),
     )
-    vehicle, touched = van(), verdicts[0].passed
+    vehicle = van()
+    touched = verdicts[0].passed
     truth = np.array(
-        [camera_points(camera, p, 0.15, 0.7, vehicle, 0.1) for p in verdicts[0].samples.points]
+        [
+            camera_points(camera, p, radius=0.15, high=0.7, vehicle=vehicle, low=0.1)
+            for p in verdicts[0].samples.points
+        ]
     )
     for share, verdict in zip(shares, verdicts[1:], strict=True):
         assert not (verdict.passed & (truth < share)).any()
         assert (verdict.passed & verdict.samples.inside).sum() > 20
     assert (touched & (truth < 0.8)).sum() > 5  # cut at the side, which a point would not tell
     assert (verdicts[1].passed & ~verdicts[2].passed).any()
-
-
-RING = BODIES["pole_ring"]
-RING_SHIFTS = np.arange(-40, 41) * 2e-3
-"""How far a ring is moved across what cuts it [m]."""
 
 
 def ring_is_whole(shown):
@@ -187,10 +211,18 @@ def test_a_ring_that_a_side_of_the_picture_cuts_is_not_whole(rotation):
                 inside = abs(own[:, 1] / own[:, 0]) * focal <= 960.0
                 return inside & (abs(own[:, 2] / own[:, 0]) * focal <= 540.0)
 
-            met = sees(camera, RING, tuple(place), 0.0, None, Criterion(share=1.0))
+            met = sees(
+                camera,
+                RING,
+                tuple(place),
+                heading=0.0,
+                vehicle=None,
+                criterion=Criterion(share=1.0),
+            )
             truth = ring_is_whole(shown)
             assert truth or not met, (side, shift)
-            whole, cut = whole + met, cut + (not truth)
+            whole = whole + met
+            cut = cut + (not truth)
             further = place + 0.012 * across
             assert met or not ring_is_whole(lambda p, at=further: shown(p, at)), (side, shift)
     assert whole > 40 and cut > 40
@@ -202,9 +234,12 @@ def test_a_ring_that_a_part_of_the_vehicle_cuts_is_not_whole(wide_m):
     camera = shapes.camera(60.0, (0.0, 0.0, 0.905), (0, 0, 0), "front")
     whole = cut = 0
     for shift in np.arange(-70, 71) * 2e-3:
-        low, high = (1.5, shift - wide_m / 2.0, 0.5), (1.51, shift + wide_m / 2.0, 1.4)
+        low = (1.5, shift - wide_m / 2.0, 0.5)
+        high = (1.51, shift + wide_m / 2.0, 1.4)
         bar = pe.Vehicle(shapes.box(low, high))
-        met = sees(camera, RING, (3.0, 0.0, 0.0), 0.0, bar, Criterion(share=1.0))
+        met = sees(
+            camera, RING, (3.0, 0.0, 0.0), heading=0.0, vehicle=bar, criterion=Criterion(share=1.0)
+        )
 
         def shown(points, low=low, high=high):
             ways = points[:, 1] / (points[:, 0] + 3.0)
@@ -213,26 +248,21 @@ def test_a_ring_that_a_part_of_the_vehicle_cuts_is_not_whole(wide_m):
 
         truth = ring_is_whole(shown)
         assert truth or not met, shift
-        whole, cut = whole + met, cut + (not truth)
+        whole = whole + met
+        cut = cut + (not truth)
     assert whole > 20 and cut > 10
 
 
 def box_entries(start, way, foot, heading, low, high):
     """Distance (B,) at which lines enter a box turned by a heading; inf: they do not."""
     turn = oracle.rotation(0.0, 0.0, heading)
-    own, offset = way @ turn, (start - [*foot, 0.0]) @ turn
+    own = way @ turn
+    offset = (start - [*foot, 0.0]) @ turn
     with np.errstate(divide="ignore"):
         t = np.sort([(np.array(s) - offset) / own for s in (low, high)], axis=0)
-    enter, leave = np.maximum(t[0].max(axis=1), 0.0), t[1].min(axis=1)
+    enter = np.maximum(t[0].max(axis=1), 0.0)
+    leave = t[1].min(axis=1)
     return np.where(enter < leave, enter, np.inf)
-
-
-LOW_LIDARS = {
-    "upright": shapes.lidar_on_roof(
-        shapes.small_lidar(20, 367), (2.6, 0.107, 0.433), (0, 0, 0), "l"
-    ),
-    "tilted": shapes.lidar_on_roof(shapes.small_lidar(17, 367), (2.6, 0.107, 1.9), (4, 38, 3), "l"),
-}
 
 
 @pytest.mark.parametrize("lidar", LOW_LIDARS.values(), ids=LOW_LIDARS)
@@ -242,7 +272,8 @@ def test_beams_are_shared_out_among_bands_by_where_they_end(lidar):
     A beam that ends in one band and would enter the next is not in that; so the bands' beams are
     together those of the box, where it has one column.
     """
-    vehicle, start = van(), np.array(lidar.pose.position)
+    vehicle = van()
+    start = np.array(lidar.pose.position)
     way = lidar.model.directions @ oracle.rotation(*lidar.pose.rpy).T
     ends = np.minimum(oracle.first_hits(start, way, vehicle.triangles)[0], lidar.model.max_range)
     feet = [(3.312, 0.413, 0.0), (4.127, -0.731, 0.0), (5.618, 2.239, 0.0)]
@@ -250,13 +281,16 @@ def test_beams_are_shared_out_among_bands_by_where_they_end(lidar):
     for body in (Body("bin", (0.45, 0.3, 0.9)), BODIES["car"]):
         away = (0.0, 0.0, 0.0) if body.size[0] < 1.0 else (2.5, 0.0, 0.0)
         places = [tuple(np.add(foot, away)) for foot in feet]
-        parts, headings = parts_of(body, places, (0.0, 0.6)), (0.0, 0.6)
+        parts = parts_of(body, places, (0.0, 0.6))
+        headings = (0.0, 0.6)
         found = kind_of(lidar).measure_parts(lidar, parts, vehicle)
         kernel = ObjectMeasurementCache(parts, vehicle).measure([lidar])["l"]
         assert kernel.tolist() == found.tolist()
-        (bands, posts), (centers, sizes) = body.cell_bands(), body.boxes(True)
+        bands, posts = body.cell_bands()
+        centers, sizes = body.boxes(True)
         found = found.reshape(len(places), 2, -1)
-        half, tall = np.array(body.size) / 2.0, body.size[2] / body.bands
+        half = np.array(body.size) / 2.0
+        tall = body.size[2] / body.bands
         for place, heading in np.ndindex(len(places), 2):
             at = places[place][:2], headings[heading]
             enter = box_entries(start, way, *at, [*-half[:2], 0.0], [*half[:2], body.size[2]])
@@ -264,7 +298,8 @@ def test_beams_are_shared_out_among_bands_by_where_they_end(lidar):
             z = start[2] + enter[hit] * way[hit, 2]
             end = np.clip(np.floor(z / tall).astype(int), 0, body.bands - 1)
             for cell in np.flatnonzero(~posts):
-                low, high = centers[cell] - sizes[cell] / 2.0, centers[cell] + sizes[cell] / 2.0
+                low = centers[cell] - sizes[cell] / 2.0
+                high = centers[cell] + sizes[cell] / 2.0
                 meets = np.isfinite(box_entries(start, way[hit], *at, low, high))
                 assert found[place, heading, cell] == (meets & (end == bands[cell])).sum()
                 passed_on += int((meets & (end != bands[cell])).sum())
@@ -277,8 +312,10 @@ def test_beams_are_shared_out_among_bands_by_where_they_end(lidar):
 def test_a_share_by_a_lidar_is_never_too_high(lidar):
     """Bands of real cylinders on which a beam ends, by lines: no verdict counts another."""
     zone = Zone(x=("front + 0.4", "front + 3"), y=(-1.0, 1.2), step=0.2)
-    body, shares = Body("cylinder", (0.3, 0.3, 0.8), is_round=True), (0.2, 0.5, 1.0)
-    vehicle, start = van(), np.array(lidar.pose.position)
+    body = Body("cylinder", (0.3, 0.3, 0.8), is_round=True)
+    shares = (0.2, 0.5, 1.0)
+    vehicle = van()
+    start = np.array(lidar.pose.position)
     verdicts = check(
         *(Requirement(f"{s}", zone, (body,), Criterion(share=s)) for s in shares),
         of=pe.Rig([lidar]),
@@ -287,7 +324,7 @@ def test_a_share_by_a_lidar_is_never_too_high(lidar):
     ends = oracle.first_hits(start, way, vehicle.triangles)[0]
     truth = []
     for foot in verdicts[0].samples.points:
-        t = cylinder_hits(start, way, foot, 0.15, 0.0, 0.8)
+        t = cylinder_hits(start, way, foot, radius=0.15, low=0.0, high=0.8)
         z = start[2] + t[t < ends] * way[t < ends, 2]
         truth.append(len(np.unique(np.clip(np.floor(z / 0.1), 0, 7))) / 8.0)
     for share, verdict in zip(shares, verdicts, strict=True):

@@ -28,6 +28,39 @@ from tests.engine import shapes
 from tests.engine.requirement_scene import AHEAD, check, rig, van
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
+ARS = "Continental ARS408-21"
+TABLE = {"name": "a", "body": "child", "zone": {"x": ["front", "front + 1"], "y": [-1, 1]}}
+BAD = {
+    "no zone": ({"zone": {}}, "zone"),
+    "two shapes": ({"zone": {"x": [0, 1], "y": [0, 1], "ring": [0, 1]}}, "one of x and y"),
+    "no extent": ({"zone": {"x": [4, 4], "y": [0, 1]}}, "some extent"),
+    "inside": ({"zone": {"x": [-1, 1], "y": [-0.5, 0.5]}}, "inside the vehicle"),
+    "outside": ({"zone": {"x": [500, 501], "y": [0, 1]}}, "in the space"),
+    "step": ({"zone": {"x": [0, 90], "y": [2, 40], "step": 0.02}}, "at most 20,000 samples"),
+    "class": ({"body": {"size": [0.3, 0.3, 1], "class": "pedestrain"}}, "one of "),
+    "5000 digits": ({"zone": {"x": ["front", f"front + {'1' * 5000}"], "y": [-1, 1]}}, "an offset"),
+    "anchor": ({"zone": {"x": ["bow", 1], "y": [0, 1]}}, "planes front"),
+    "door": ({"zone": {"x": ["door", 9], "y": [2, 3]}}, "word door"),
+    "axle": ({"zone": {"x": ["front_axle", 9], "y": [2, 3]}}, "named wheel"),
+    "narrow": ({"body": "car"}, "not larger than the zone"),
+    "body": ({"body": "dragon"}, "one of cylinder"),
+    "kinds": ({"criterion": {"kinds": 3}}, "the number of kinds"),
+    "of": ({"criterion": {"of": ["lidar", "sonar"]}}, "sonar"),
+    "lacking": ({"criterion": {"of": ["camera"]}}, "that the rig has (lidar)"),
+    "share": ({"criterion": {"of": ["radar"], "share": 1.0}}, "that the rig has (lidar)"),
+    "of ground": ({"criterion": {"blind_m2": 1.0, "share": 0.5}}, "of ground"),
+    "beyond": (
+        {"criterion": {"blind_m2": 1.0}, "zone": {"ring": [0.0, 99.0]}},
+        "no other is searched",
+    ),
+    "no share": ({"criterion": {"share": 0}}, "above 0"),
+    "key": ({"zone": {"x": [3, 4], "y": [0, 1], "stepp": 1}}, "unknown key"),
+    "preset": ({"preset": "r000"}, "26 names, such as r15"),
+    "ap": ({"body": "pole_ring", "criterion": {"ap": 0.5}}, "a class"),
+    "twice": ({}, "each name once"),
+    "mounting": ({"under": {"mounting": True}}, "tolerance"),
+    "heading": ({"headings": "north"}, "angles"),
+}
 
 
 def test_presets_have_sources_and_come_back_from_a_file_the_same():
@@ -44,7 +77,6 @@ def test_presets_have_sources_and_come_back_from_a_file_the_same():
     assert not found and len(presets()) > 20
 
 
-ARS = "Continental ARS408-21"
 SIGHT = {"r159_annex3", "r158_camera", "fmvss111_rear", "r46_class_I", "r46_class_III"}
 SIGHT |= {"iso5006_ring", "perceptor_ground"}
 
@@ -168,7 +200,7 @@ def test_a_requirement_of_ones_own_comes_back_from_a_file_the_same():
             Body("bin", (0.4, 0.4, 1.1), is_round=True, low=0.1, headings=BODIES["car"].headings),
         ),
         Criterion(kinds=2, points=5, share=0.5, ap=None, zone_share=0.9),
-        Under(one_lost=True),
+        under=Under(one_lost=True),
     )
     study = pe.Study(rig(), van(), requirements=(own, replace(own, name="two", zone=AHEAD)))
     odd = replace(BODIES["child"], headings=(as_in_file(math.radians(33.3)), as_in_file(-1.234567)))
@@ -179,40 +211,6 @@ def test_a_requirement_of_ones_own_comes_back_from_a_file_the_same():
         study.requirements
     )
     assert dumps(data).count("[[requirement]]") == 2
-
-
-TABLE = {"name": "a", "body": "child", "zone": {"x": ["front", "front + 1"], "y": [-1, 1]}}
-BAD = {
-    "no zone": ({"zone": {}}, "zone"),
-    "two shapes": ({"zone": {"x": [0, 1], "y": [0, 1], "ring": [0, 1]}}, "one of x and y"),
-    "no extent": ({"zone": {"x": [4, 4], "y": [0, 1]}}, "some extent"),
-    "inside": ({"zone": {"x": [-1, 1], "y": [-0.5, 0.5]}}, "inside the vehicle"),
-    "outside": ({"zone": {"x": [500, 501], "y": [0, 1]}}, "in the space"),
-    "step": ({"zone": {"x": [0, 90], "y": [2, 40], "step": 0.02}}, "at most 20,000 samples"),
-    "class": ({"body": {"size": [0.3, 0.3, 1], "class": "pedestrain"}}, "one of "),
-    "5000 digits": ({"zone": {"x": ["front", f"front + {'1' * 5000}"], "y": [-1, 1]}}, "an offset"),
-    "anchor": ({"zone": {"x": ["bow", 1], "y": [0, 1]}}, "planes front"),
-    "door": ({"zone": {"x": ["door", 9], "y": [2, 3]}}, "word door"),
-    "axle": ({"zone": {"x": ["front_axle", 9], "y": [2, 3]}}, "named wheel"),
-    "narrow": ({"body": "car"}, "not larger than the zone"),
-    "body": ({"body": "dragon"}, "one of cylinder"),
-    "kinds": ({"criterion": {"kinds": 3}}, "the number of kinds"),
-    "of": ({"criterion": {"of": ["lidar", "sonar"]}}, "sonar"),
-    "lacking": ({"criterion": {"of": ["camera"]}}, "that the rig has (lidar)"),
-    "share": ({"criterion": {"of": ["radar"], "share": 1.0}}, "that the rig has (lidar)"),
-    "of ground": ({"criterion": {"blind_m2": 1.0, "share": 0.5}}, "of ground"),
-    "beyond": (
-        {"criterion": {"blind_m2": 1.0}, "zone": {"ring": [0.0, 99.0]}},
-        "no other is searched",
-    ),
-    "no share": ({"criterion": {"share": 0}}, "above 0"),
-    "key": ({"zone": {"x": [3, 4], "y": [0, 1], "stepp": 1}}, "unknown key"),
-    "preset": ({"preset": "r000"}, "26 names, such as r15"),
-    "ap": ({"body": "pole_ring", "criterion": {"ap": 0.5}}, "a class"),
-    "twice": ({}, "each name once"),
-    "mounting": ({"under": {"mounting": True}}, "tolerance"),
-    "heading": ({"headings": "north"}, "angles"),
-}
 
 
 def test_bad_input_is_one_line_that_names_it(tmp_path):

@@ -32,6 +32,7 @@ from tests.engine.processes import finished
 BEHIND = Zone(x=("rear + 0.6", "rear + 1.6"), y=(-0.6, 0.6), step=0.3)
 AHEAD = replace(BEHIND, x=("front + 0.6", "front + 1.6"))
 LEFT = Zone(x=(-1, 1), y=("left + 0.7", "left + 1.6"), step=0.3)
+BLIND = ("blind_ground",)
 
 
 def study(**search):
@@ -147,7 +148,8 @@ def test_one_more_sensor_meets_what_no_move_meets():
     assert met["ahead"] and met["left"]
     new = own.rig[own.moved[0]]
     assert new.model in [each.model for each in start.rig]
-    evaluator, sight = start.evaluator(SAMPLES), start.sight()
+    evaluator = start.evaluator(SAMPLES)
+    sight = start.sight()
     for effect, rig in ((own.before, start.rig), (own.after, own.rig)):
         assert effect.entropy == evaluator.entropy(rig)
         assert effect.blind_m2 == pytest.approx(sight.blind_area(rig, BLIND_TO_M))
@@ -157,7 +159,8 @@ def test_one_more_sensor_meets_what_no_move_meets():
 
 def test_a_blind_place_is_mended_and_what_is_seen_needs_nothing():
     """The place is blind before, and not after; the study's requirements tell what breaks."""
-    start, place = study(), (0.0, 1.6)
+    start = study()
+    place = (0.0, 1.6)
     found = mended(with_blind_spot(start, *place), (BLIND_SPOT,))[BLIND_SPOT]
     assert [each.added for each in found] in ([False, True], [True])
     sight = start.sight()
@@ -197,12 +200,21 @@ def test_shortfalls_are_zero_exactly_where_a_verdict_says_met():
     """And a placement that meets all has its entropy as its value, whichever others there are."""
     own = study()
     strict = (
-        Requirement("two", AHEAD, (BODIES["child"],), Criterion(kinds=2), Under(one_lost=True)),
-        Requirement("ground", AHEAD, (), Criterion(blind_m2=0.3, blind_height=0.5), Under(True)),
+        Requirement(
+            "two", AHEAD, (BODIES["child"],), Criterion(kinds=2), under=Under(one_lost=True)
+        ),
+        Requirement(
+            "ground",
+            AHEAD,
+            bodies=(),
+            criterion=Criterion(blind_m2=0.3, blind_height=0.5),
+            under=Under(True),
+        ),
         Requirement("most", BEHIND, (BODIES["cyclist"],), Criterion(zone_share=0.4)),
     )
     checker = RequirementChecker((*own.requirements, *strict), own.vehicle, space=own.space)
-    rng, found = np.random.default_rng(3), []
+    rng = np.random.default_rng(3)
+    found = []
     for _ in range(4):
         poses = [
             pe.Pose(s.pose.position, (0.0, float(rng.uniform(-0.6, 0.9)), s.pose.rpy[2]))
@@ -221,9 +233,6 @@ def test_shortfalls_are_zero_exactly_where_a_verdict_says_met():
     free = replace(own, search=replace(own.search, requirements=None))
     kept = feasible_first(evaluator, constraints_of(free))
     assert kept is evaluator and objective.entropy(own.rig) > INFEASIBLE
-
-
-BLIND = ("blind_ground",)
 
 
 def tilted(keep=(), method="portfolio", **limits):
@@ -290,7 +299,9 @@ def test_after_a_violation_that_is_enough_no_further_cost_is_computed(monkeypatc
     (limit,) = constraints_of(given)
     objective = feasible_first(given.evaluator(), (limit,))
     level = given.rig.with_poses([pe.Pose((2.6, 0.0, 1.0), (0.0, 0.0, 0.0))])
-    whole, asked, sectors = limit.violation(level), [], Sight.blind_sectors
+    whole = limit.violation(level)
+    asked = []
+    sectors = Sight.blind_sectors
     monkeypatch.setattr(Sight, "blind_sectors", lambda *of: asked.append(of) or sectors(*of))
     assert value_below(objective, level, INFEASIBLE + whole + 0.1) == INFEASIBLE + whole
     assert len(asked) == 1

@@ -11,6 +11,20 @@ from pe_core.scoring.requirements import VehiclePlanes, Zone, margin_of, signed_
 from tests.engine import shapes
 from tests.engine.requirement_scene import van
 
+LEFT = ((0.2, 0.97, 0.4), (1.3, 1.0, 2.0))
+DOORS = {
+    "driver's": ({"door_front_left": LEFT}, 0.2),
+    "the foremost": (
+        {"door_rear_left": ((-0.9, 0.97, 0.4), (0.15, 1.0, 2.0)), "door_l": LEFT},
+        0.2,
+    ),
+    "both sides in one part": ({"doors_front": ((0.2, -1.0, 0.4), (1.3, 1.0, 2.0))}, 0.2),
+    "passengers' side": ({"door_front": ((0.2, -1.0, 0.4), (1.3, -0.97, 2.0))}, None),
+    "at the rear": ({"trailer_door_left": ((-2.5, 0.1, 0.5), (-2.45, 1.0, 2.3))}, None),
+    "behind the axle": ({"door_side": ((-2.4, 0.97, 0.4), (-1.5, 1.0, 2.0))}, None),
+    "all in one part": ({"doors_left": ((-1.0, 0.97, 0.4), (1.3, 1.0, 2.0))}, None),
+}
+
 
 def test_planes_leave_out_mirrors_and_what_is_above():
     """The widths are those of the body; a plane says how it was found."""
@@ -30,7 +44,8 @@ def test_planes_leave_out_mirrors_and_what_is_above():
 
 def nameless(*, welded=False, tyres=True):
     """A car in one part: body, four tyres of 12 sides, and two mirrors that stick out by 0.2 m."""
-    low, high = np.array([-2.2, -0.9, 0.2]), np.array([2.2, 0.9, 1.5])
+    low = np.array([-2.2, -0.9, 0.2])
+    high = np.array([2.2, 0.9, 1.5])
     pieces = [shapes.box(low, high)]
     for side in (1.0, -1.0):
         start = np.array([0.6, side * (0.88 if welded else 0.91), 1.0])
@@ -43,10 +58,8 @@ def nameless(*, welded=False, tyres=True):
         for x in (-1.3, 1.4) if tyres else ():
             turn = np.linspace(0.0, 2.0 * np.pi, 13)
             rim = np.stack([x + 0.3 * np.sin(turn), turn, 0.3 - 0.3 * np.cos(turn)], axis=1)
-            inner, outer = (
-                rim * (1, 0, 1) + (0, side * 0.65, 0),
-                rim * (1, 0, 1) + (0, side * 0.85, 0),
-            )
+            inner = rim * (1, 0, 1) + (0, side * 0.65, 0)
+            outer = rim * (1, 0, 1) + (0, side * 0.85, 0)
             pieces.append(np.stack([inner[:-1], inner[1:], outer[:-1]], axis=1))
             pieces.append(np.stack([outer[:-1], inner[1:], outer[1:]], axis=1))
     return pe.Vehicle(np.concatenate(pieces))
@@ -92,21 +105,6 @@ def with_doors(doors, axles=True):
     return vehicle, pe.Reference(-1.4, 0.3, 2.8) if axles else None
 
 
-LEFT = ((0.2, 0.97, 0.4), (1.3, 1.0, 2.0))
-DOORS = {
-    "driver's": ({"door_front_left": LEFT}, 0.2),
-    "the foremost": (
-        {"door_rear_left": ((-0.9, 0.97, 0.4), (0.15, 1.0, 2.0)), "door_l": LEFT},
-        0.2,
-    ),
-    "both sides in one part": ({"doors_front": ((0.2, -1.0, 0.4), (1.3, 1.0, 2.0))}, 0.2),
-    "passengers' side": ({"door_front": ((0.2, -1.0, 0.4), (1.3, -0.97, 2.0))}, None),
-    "at the rear": ({"trailer_door_left": ((-2.5, 0.1, 0.5), (-2.45, 1.0, 2.3))}, None),
-    "behind the axle": ({"door_side": ((-2.4, 0.97, 0.4), (-1.5, 1.0, 2.0))}, None),
-    "all in one part": ({"doors_left": ((-1.0, 0.97, 0.4), (1.3, 1.0, 2.0))}, None),
-}
-
-
 @pytest.mark.parametrize("name", DOORS)
 def test_the_door_is_the_drivers(name):
     """A side door on his side, ahead of the rear axle; else what is needed is said."""
@@ -128,16 +126,18 @@ def test_the_door_is_the_drivers(name):
 def test_places_are_measured_outwards_from_outer_planes():
     planes = VehiclePlanes.of(van(), eyes=1.2)
     at = [
-        planes.coordinate(axis, place, "right", "test", "x")
+        planes.coordinate(axis, place, "right", "test", field="x")
         for axis, place in (
-            *(
-                (0, "front + 0.8"),
-                (0, "rear + 0.3"),
-                (0, "front - 6"),
-                (0, "25 %"),
-                (0, "eyes - 4"),
-            ),
-            *((1, "left + 0.5"), (1, "near + 0.9"), (1, "off + 1"), (1, "75 % + 0.1"), (1, -1.5)),
+            (0, "front + 0.8"),
+            (0, "rear + 0.3"),
+            (0, "front - 6"),
+            (0, "25 %"),
+            (0, "eyes - 4"),
+            (1, "left + 0.5"),
+            (1, "near + 0.9"),
+            (1, "off + 1"),
+            (1, "75 % + 0.1"),
+            (1, -1.5),
         )
     ]
     assert at == [3.3, -2.8, -3.5, -1.25, -2.8, 1.5, -1.9, 2.0, 0.6, -1.5]
@@ -193,8 +193,15 @@ def test_margins_by_hand():
         (1, 0, 1, 1, 1, 1): (-0.2, False),
         (0, 1, 1, 1, 1, 1): (-0.3, False),  # nothing is left of it
     }
-    found = {row: margin_of(distance, np.array(row, bool), 1.0, 0.1, 0.6) for row in rows}
+    found = {
+        row: margin_of(distance, np.array(row, bool), wanted=1.0, step=0.1, looked=0.6)
+        for row in rows
+    }
     assert found == rows
     # half of the samples is enough: up to 0.2 m there are 3 of 5, all six are 3 of 6
-    assert margin_of(distance, np.array([1, 1, 1, 0, 0, 0], bool), 0.5, 0.1, 0.6) == (0.6, True)
-    assert margin_of(distance, np.array([1, 1, 1, 0, 0, 0], bool), 0.6, 0.1, 0.6) == (0.2, False)
+    assert margin_of(
+        distance, np.array([1, 1, 1, 0, 0, 0], bool), wanted=0.5, step=0.1, looked=0.6
+    ) == (0.6, True)
+    assert margin_of(
+        distance, np.array([1, 1, 1, 0, 0, 0], bool), wanted=0.6, step=0.1, looked=0.6
+    ) == (0.2, False)

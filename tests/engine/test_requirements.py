@@ -27,11 +27,28 @@ from pe_tools.wording import margin_text, reason_text, unseen_text, verdict_text
 from tests.engine import shapes
 from tests.engine.requirement_scene import AHEAD, MIDDLE, check, rig, van
 
+GROWN = {
+    "one": {},
+    "two": {"criterion": Criterion(sensors=2)},
+    "most": {"criterion": Criterion(kinds=2, zone_share=0.8)},
+    "cameras": {"criterion": Criterion(of=("camera",), zone_share=0.95)},
+    "in part": {"criterion": Criterion(share=0.3, zone_share=0.9)},
+    "one lost": {"under": Under(one_lost=True)},
+    "mounted off": {"under": Under(mounting=True), "criterion": Criterion(zone_share=0.97)},
+    "by AP": {"criterion": Criterion(ap=0.5)},
+}
+
 
 def test_blind_ground_of_a_zone_is_that_of_sight():
     """The squares in the zone, of `Sight.blind` on the same grid; a lost sensor blinds more."""
     zone = Zone(x=("front", "front + 2"), y=(-1, 1))
-    own = Requirement("ground", zone, (), Criterion(blind_m2=1.0, blind_height=0.4), Under(True))
+    own = Requirement(
+        "ground",
+        zone,
+        bodies=(),
+        criterion=Criterion(blind_m2=1.0, blind_height=0.4),
+        under=Under(True),
+    )
     space = pe.PerceptionSpace((-10, 10), (-8, 8), (0, 3), 0.1)
     (verdict,) = RequirementChecker([own], van(), space=space).check(rig())
     whole = Sight(space, pe.Prior.uniform(), van()).blind(rig(), 0.4, within=4.0)
@@ -55,10 +72,8 @@ def test_blind_ground_is_searched_in_all_of_a_zone_with_voxels_of_any_size():
 
 def test_blind_ground_counts_the_kinds_that_are_asked_for():
     """`of` is of ground, too; a radar sees neither flat ground nor what is lower than a child."""
-    zone, space = (
-        Zone(x=("front + 1", "front + 4"), y=(-1, 1)),
-        pe.PerceptionSpace((-9, 9), (-6, 6)),
-    )
+    zone = Zone(x=("front + 1", "front + 4"), y=(-1, 1))
+    space = pe.PerceptionSpace((-9, 9), (-6, 6))
     radar = pe.Sensor("radar", pe.catalog.load("Continental ARS408-21"), pe.Pose((2.55, 0, 0.6)))
     whole = pe.Rig([*rig(), radar])
 
@@ -78,12 +93,12 @@ def test_blind_ground_counts_the_kinds_that_are_asked_for():
 
 def test_blind_ground_with_the_only_sensor_lost_is_all_of_it():
     """As of bodies; with two sensors the one that is left counts."""
-    zone, space = (
-        Zone(x=("front + 1", "front + 3"), y=(-1, 1)),
-        pe.PerceptionSpace((-9, 9), (-6, 6)),
-    )
+    zone = Zone(x=("front + 1", "front + 3"), y=(-1, 1))
+    space = pe.PerceptionSpace((-9, 9), (-6, 6))
     for under in (Under(), Under(one_lost=True)):
-        own = Requirement("g", zone, (), Criterion(blind_m2=0.5, blind_height=0.8), under)
+        own = Requirement(
+            "g", zone, bodies=(), criterion=Criterion(blind_m2=0.5, blind_height=0.8), under=under
+        )
         checker = RequirementChecker([own], van(), space=space)
         (found,) = checker.check(pe.Rig([rig()["front"]]))
         assert found.met_whole and found.breaks_without == ("front",)
@@ -93,10 +108,8 @@ def test_blind_ground_with_the_only_sensor_lost_is_all_of_it():
 
 def test_blind_ground_is_as_far_out_from_the_vehicle_as_drawn_in_every_state():
     """Of a vehicle that an open door makes wider the same ground is no nearer."""
-    zone, space = (
-        Zone(x=(-1, 1), y=("left + 0.5", "left + 3")),
-        pe.PerceptionSpace((-9, 9), (-6, 6)),
-    )
+    zone = Zone(x=(-1, 1), y=("left + 0.5", "left + 3"))
+    space = pe.PerceptionSpace((-9, 9), (-6, 6))
     own = Requirement("g", zone, (), Criterion(blind_out=0.5, blind_height=0.8))
     door = shapes.box((0.9, 1.0, 0.9), (1.0, 3.0, 2.0))
     opened = pe.Vehicle(np.concatenate([van().triangles, door]), clearance=0.0, drawn=van())
@@ -118,13 +131,15 @@ def test_ap_is_fused_from_the_kinds_that_are_asked_for():
 
 def test_margins_beyond_the_first_samples_are_those_of_zones_that_are_larger():
     """A zone grown by its margin is met, and one grown a step beyond what fails is not."""
-    body, step = (BODIES["adult"],), 0.3
+    body = (BODIES["adult"],)
+    step = 0.3
     zone = Zone(x=("front + 3", "front + 3.6"), y=(-0.3, 0.3), step=step)
     (far,) = check(Requirement("far", zone, body, Criterion(of=("lidar",))))
     assert far.met and not far.at_least and far.margin > 0.6
 
     def grown(by):
-        low, high = f"front + {max(3.0 - by, 0.0):.6f}", f"front + {3.6 + by:.6f}"
+        low = f"front + {max(3.0 - by, 0.0):.6f}"
+        high = f"front + {3.6 + by:.6f}"
         wide = replace(zone, x=(low, high), y=(-0.3 - by, 0.3 + by))
         return check(Requirement("grown", wide, body, Criterion(of=("lidar",))))[0]
 
@@ -145,7 +160,8 @@ def test_margins_of_blind_ground_are_those_of_its_squares():
     assert found.met and found.margin > 0.0 and not found.at_least
     assert found.ground.spare_m2 == pytest.approx(0.2 - found.blind_m2, abs=0.011)
     by = found.margin
-    low, high = f"front + {max(1.0 - by, 0.0):.6f}", f"front + {1.5 + by:.6f}"
+    low = f"front + {max(1.0 - by, 0.0):.6f}"
+    high = f"front + {1.5 + by:.6f}"
     larger = replace(zone, x=(low, high), y=(-0.5 - by, 0.5 + by))
     assert verdict(larger).met
     beside = verdict(replace(zone, x=(-2.0, 2.0), y=("left + 0.2", "left + 2")))
@@ -203,7 +219,7 @@ def test_a_stricter_requirement_is_never_easier():
     loose, *others = check(
         Requirement("base", AHEAD, body, base),
         *(Requirement(f"s{k}", AHEAD, body, c) for k, c in enumerate(strict)),
-        Requirement("lost", AHEAD, body, base, Under(one_lost=True)),
+        Requirement("lost", AHEAD, body, base, under=Under(one_lost=True)),
     )
     assert all(not (v.passed & ~loose.passed).any() for v in others)
     assert any((loose.passed & ~v.passed).any() for v in others)
@@ -218,18 +234,6 @@ def test_mounting_errors_count_where_they_are_asked_for():
     blind = pe.Rig([replace(s, pose=pe.Pose((0.0, 0.0, 1.0))) for s in rig()])  # inside the body
     as_built, off = check(*two, cases=[blind])
     assert as_built.met and not off.met and off.met_whole
-
-
-GROWN = {
-    "one": {},
-    "two": {"criterion": Criterion(sensors=2)},
-    "most": {"criterion": Criterion(kinds=2, zone_share=0.8)},
-    "cameras": {"criterion": Criterion(of=("camera",), zone_share=0.95)},
-    "in part": {"criterion": Criterion(share=0.3, zone_share=0.9)},
-    "one lost": {"under": Under(one_lost=True)},
-    "mounted off": {"under": Under(mounting=True), "criterion": Criterion(zone_share=0.97)},
-    "by AP": {"criterion": Criterion(ap=0.5)},
-}
 
 
 @pytest.mark.parametrize("name", GROWN)
@@ -254,16 +258,18 @@ def _plain_margin(own, one, cases):
     """`margin_of` all samples of rings that are grown as far as the zone does not fail."""
     placed = own.zone.placed(van(), None, own.name)
     points, distance = placed.samples()
-    looked, passed = placed.grow, None
+    looked = placed.grow
+    passed = None
     while True:
         checks = BodyChecks(
             [(own, Samples(placed, points, distance))], pe.PerceptionModel(), SceneCaches(van())
         )
         passed = checks.results(one, cases)[0].passed
-        margin = margin_of(distance, passed, own.criterion.zone_share, own.zone.step, looked)
+        margin = margin_of(distance, passed, own.criterion.zone_share, own.zone.step, looked=looked)
         if not margin[1] or looked >= 10.0:
             return margin
         wider = min(2.0 * looked, 10.0)
         ring, away = placed.ring_of_samples(looked, wider, 30_000)
-        points, distance = np.concatenate([points, ring]), np.concatenate([distance, away])
+        points = np.concatenate([points, ring])
+        distance = np.concatenate([distance, away])
         looked = wider

@@ -24,13 +24,38 @@ pytestmark = pytest.mark.usefixtures("few_errors")
 CANDIDATES = 12
 MOMENTS = (1, 17, 40, 70)
 """Candidates after which a search is broken off: in the first round, and later ones."""
+ENDING_ITSELF = """
+import os, signal, sys
+from pe_tools.cli import run_job
+told, replaced, replace = [], [], os.replace
+
+class Told(run_job.Reporter):
+    def report(self, progress):
+        print(progress.evaluations, file=sys.stderr, flush=True)
+        if {moment} == ("told", progress.evaluations) and not told:
+            told.append(True)
+            os.kill(os.getpid(), signal.{signal})
+
+def replace_and_end(*paths):
+    replaced.append(paths)
+    if {moment} == ("replaced", len(replaced)):
+        os.kill(os.getpid(), signal.{signal})
+    replace(*paths)
+
+os.replace, run_job.Reporter = replace_and_end, Told
+from pe_tools.__main__ import main
+main()
+"""
+"""A search that is sent a real signal after so many placements, or in the middle of writing."""
 
 
 def a_study(method="random"):
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 90))])
     schedule = pe.Schedule(candidates=CANDIDATES)
     more = {"method": method, "evaluations": 90}
-    search = pe.Search({"roof": ("x", "z", "pitch")}, {}, 3, 1024, schedule, **more)
+    search = pe.Search(
+        {"roof": ("x", "z", "pitch")}, limits={}, seed=3, samples=1024, schedule=schedule, **more
+    )
     return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search, samples=1024)
 
 
@@ -66,15 +91,22 @@ def test_every_method_goes_on_to_the_bits_of_an_unbroken_search(method):
         known = job.journal.entries
         assert len(known) >= steps
     end = outcome_of(pt.OptimizeJob(study, 1, journal=Journal(known)))
-    data, expected = pt.result_dict(end), pt.result_dict(whole)
+    data = pt.result_dict(end)
+    expected = pt.result_dict(whole)
     del data["run"], expected["run"]
     assert data == expected
     assert end.evaluated == whole.evaluated
 
 
 def search(study, objectives):
-    given = (study.rig, study.search_space(), study.search.seed, study.search.schedule)
-    return pe.optimize(objectives, *given, method=study.search.method)
+    return pe.optimize(
+        objectives,
+        study.rig,
+        study.search_space(),
+        study.search.seed,
+        schedule=study.search.schedule,
+        method=study.search.method,
+    )
 
 
 def test_a_journal_of_other_placements_is_refused():
@@ -85,31 +117,6 @@ def test_a_journal_of_other_placements_is_refused():
     again = Journal(journal.entries, "out/search.json")
     with pytest.raises(pe.InputError, match=r"evaluated\[1\]: expected the placements"):
         list(search(other, again.wrap([Recorder(distance_to({"x": 0.1}))])))
-
-
-ENDING_ITSELF = """
-import os, signal, sys
-from pe_tools.cli import run_job
-told, replaced, replace = [], [], os.replace
-
-class Told(run_job.Reporter):
-    def report(self, progress):
-        print(progress.evaluations, file=sys.stderr, flush=True)
-        if {moment} == ("told", progress.evaluations) and not told:
-            told.append(True)
-            os.kill(os.getpid(), signal.{signal})
-
-def replace_and_end(*paths):
-    replaced.append(paths)
-    if {moment} == ("replaced", len(replaced)):
-        os.kill(os.getpid(), signal.{signal})
-    replace(*paths)
-
-os.replace, run_job.Reporter = replace_and_end, Told
-from pe_tools.__main__ import main
-main()
-"""
-"""A search that is sent a real signal after so many placements, or in the middle of writing."""
 
 
 def broken_off(signum, moment, *arguments):

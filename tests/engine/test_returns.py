@@ -17,7 +17,8 @@ from pe_core.sensors.lidar.returns import ANY, SPREAD, SURFACES, return_probabil
 from pe_core.sensors.weather import Weather, with_returns
 
 PUCK = catalog.load("Velodyne VLP-16 Puck")
-UPRIGHT, TILTED = (0.0, 0.0, 0.2), (0.04, -0.03, 0.5)
+UPRIGHT = (0.0, 0.0, 0.2)
+TILTED = (0.04, -0.03, 0.5)
 SMALL = pe.PerceptionSpace((-4.0, 8.0), (-4.0, 4.0), (0.0, 2.0), 0.5)
 
 
@@ -33,8 +34,16 @@ def boxes(*distances, names=("car", "pedestrian"), labels=None):
     count = len(distances)
     centers = [(d, 0.0, 0.9) for d in distances]
     labels = np.zeros(count, int) if labels is None else labels
-    sizes, scenes = [(0.5, 2.0, 1.8)] * count, np.zeros(count, int)
-    return Objects(np.array(centers), np.array(sizes), np.zeros(count), labels, names, scenes)
+    sizes = [(0.5, 2.0, 1.8)] * count
+    scenes = np.zeros(count, int)
+    return Objects(
+        np.array(centers),
+        np.array(sizes),
+        np.zeros(count),
+        labels,
+        class_names=names,
+        scenes=scenes,
+    )
 
 
 def measured(objects, rig, traffic=True):
@@ -50,10 +59,8 @@ def test_the_share_that_returns_is_that_of_the_lidar_equation():
 
 def test_an_open_body_takes_its_share_and_lets_the_rest_through():
     objects = boxes(20.0, 30.0, labels=np.array([0, 1]))
-    alone, behind = (
-        measured(objects, lidars("road", UPRIGHT), traffic=False)[1],
-        measured(objects, lidars("road", UPRIGHT)),
-    )
+    alone = measured(objects, lidars("road", UPRIGHT), traffic=False)[1]
+    behind = measured(objects, lidars("road", UPRIGHT))
     beams = measured(objects, lidars("all", UPRIGHT), traffic=False)
     fill, half = SURFACES["car"]
     expected = beams[0] * fill * return_probability(np.array([20.0]), half)[0]
@@ -104,7 +111,8 @@ def test_all_voxels_and_a_sample_have_the_m_of_the_definition():
 
 
 def test_cells_of_bodies_have_the_points_of_their_class():
-    cells, zeros = boxes(12.0, 30.0, labels=np.array([0, 1])), np.zeros(2, int)
+    cells = boxes(12.0, 30.0, labels=np.array([0, 1]))
+    zeros = np.zeros(2, int)
     parts = BodyParts(replace(cells, scenes=np.arange(2)), None, zeros, zeros)
     found, beams = (
         ObjectMeasurementCache(parts).measure(lidars(returns, UPRIGHT))["lidar 0"]

@@ -41,7 +41,8 @@ def outcome():
 
 
 def test_it_tells_the_mean_and_the_worst_of_errors_that_the_search_has_not_seen(outcome):
-    evaluator, found = study().evaluator(1024), outcome.robustness
+    evaluator = study().evaluator(1024)
+    found = outcome.robustness
     for rig, stands in ((study().rig, found.before), (outcome.study.rig, found.after)):
         off = [evaluator.entropy(each) for each in mounted_off(rig, OFF, 0, FRESH)]
         assert stands.mounted_off == pytest.approx(np.mean(off), abs=1e-9)
@@ -54,7 +55,8 @@ def test_it_tells_the_mean_and_the_worst_of_errors_that_the_search_has_not_seen(
 
 
 def test_it_tells_the_loss_of_each_sensor(outcome):
-    lost, rig = outcome.robustness.before, outcome.start.rig
+    lost = outcome.robustness.before
+    rig = outcome.start.rig
     evaluator = study().evaluator(1024)
     each = {s.name: evaluator.entropy(pe.Rig([o for o in rig if o is not s])) for s in rig}
     assert lost.failed == pytest.approx(sum(each.values()) / 2, abs=1e-9)
@@ -66,14 +68,17 @@ def test_it_tells_the_loss_of_each_sensor(outcome):
 
 
 def test_a_study_without_mounting_errors_is_reported_of_a_careful_workshop_s():
-    evaluator, rig = study().evaluator(1024), study().rig
+    evaluator = study().evaluator(1024)
+    rig = study().rig
     told = robustness(evaluator, rig, rig, pe.Tolerance(failures=True))
     assert told.errors == pe.Tolerance(0.01, math.radians(0.3), 6)
 
 
 def test_the_standard_error_covers_what_other_seeds_tell():
-    evaluator, rig, off = study().evaluator(1024), study().rig, replace(OFF, draws=6)
-    told = [robustness(evaluator, rig, rig, off, seed).after for seed in range(5)]
+    evaluator = study().evaluator(1024)
+    rig = study().rig
+    off = replace(OFF, draws=6)
+    told = [robustness(evaluator, rig, rig, off, seed=seed).after for seed in range(5)]
     scatter = np.std([each.mounted_off for each in told], ddof=1)
     errors = np.sqrt(np.mean([each.stderr**2 for each in told]))
     assert 0.5 * scatter < errors < 4.0 * scatter
@@ -82,7 +87,8 @@ def test_the_standard_error_covers_what_other_seeds_tell():
 def test_result_json_and_the_terminal_say_it(outcome):
     told = json.loads(json.dumps(pt.result_dict(outcome)))["robustness"]
     assert (told["position"], told["angle"], told["draws"], told["samples"]) == (0.02, 0.5, 4, 1024)
-    before, after = outcome.robustness.before, outcome.robustness.after
+    before = outcome.robustness.before
+    after = outcome.robustness.after
     for when, stands in (("before", before), ("after", after)):
         assert told[when]["mounted_off"] == stands.mounted_off
         assert told[when]["missed"] == stands.missed

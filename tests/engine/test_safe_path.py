@@ -55,6 +55,12 @@ assert workers is not None
 assert workers.submit(os.getcwd).result() == os.getcwd()
 workers.shutdown()
 """
+EXECUTOR = """
+from concurrent.futures import ThreadPoolExecutor
+def pool():
+    import wave
+    return ThreadPoolExecutor(1)
+"""
 
 
 @pytest.fixture
@@ -135,14 +141,6 @@ def test_the_variable_is_as_before_after_a_start(trapped, script_elsewhere):
     script = STARTS_WORKERS + "assert 'PYTHONSAFEPATH' not in os.environ\n"
     status, said = run_in(trapped, sys.executable, script_elsewhere(script))
     assert status == 0, said
-
-
-EXECUTOR = """
-from concurrent.futures import ThreadPoolExecutor
-def pool():
-    import wave
-    return ThreadPoolExecutor(1)
-"""
 
 
 def test_a_module_that_a_user_names_is_taken_from_there_and_no_other(trapped):

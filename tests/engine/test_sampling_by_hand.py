@@ -26,6 +26,15 @@ SOBOL = [
     (3, 3, 5),
     (7, 7, 1),
 ]
+INSIDE = ("x", "y", "zones")
+SPACE = pe.PerceptionSpace((0.0, 3.0), (0.0, 1.0), (0.0, 4.0), 1.0)
+"""Three columns of four voxels, their centres at heights 0.5, 1.5, 2.5, 3.5."""
+BOXES = [
+    # class, x, y, z, length, width, height, yaw: low ones in the first two columns, a tall one
+    ("car", 0.5, 0.5, 1.0, 1.0, 1.0, 2.0, 0.0),
+    ("car", 1.5, 0.5, 1.0, 1.0, 1.0, 2.0, 0.0),
+    ("truck", 2.5, 0.5, 2.0, 1.0, 1.0, 4.0, 0.0),
+]
 
 
 def mirrored(word):
@@ -73,9 +82,6 @@ def test_a_longer_sequence_begins_like_a_shorter_one():
     assert (scrambled_sobol(1000, (0.5,) * 3) == scrambled_sobol(3000, (0.5,) * 3)[:1000]).all()
 
 
-INSIDE = ("x", "y", "zones")
-
-
 @pytest.mark.parametrize(
     INSIDE,
     [
@@ -103,16 +109,6 @@ def test_zones_of_columns():
     assert masks["left"].tolist() == [[False, True, True]] * 2
 
 
-SPACE = pe.PerceptionSpace((0.0, 3.0), (0.0, 1.0), (0.0, 4.0), 1.0)
-"""Three columns of four voxels, their centres at heights 0.5, 1.5, 2.5, 3.5."""
-BOXES = [
-    # class, x, y, z, length, width, height, yaw: low ones in the first two columns, a tall one
-    ("car", 0.5, 0.5, 1.0, 1.0, 1.0, 2.0, 0.0),
-    ("car", 1.5, 0.5, 1.0, 1.0, 1.0, 2.0, 0.0),
-    ("truck", 2.5, 0.5, 2.0, 1.0, 1.0, 4.0, 0.0),
-]
-
-
 def roof(height):
     """A plate over the first column."""
     return pe.Vehicle(shapes.box((0.0, 0.0, height - 0.1), (1.0, 1.0, height)))
@@ -135,7 +131,8 @@ def test_what_lies_outside_the_vehicle():
 def test_a_voxel_whose_centre_is_on_the_roof_counts(height):
     """Of 8 units, cars 2 x 2 of 1, the truck 4 of 1: the first column keeps one or none."""
     kept = 1 if height == 1.5 else 0
-    prior, vehicle = pe.Prior.from_boxes(BOXES), roof(height)
+    prior = pe.Prior.from_boxes(BOXES)
+    vehicle = roof(height)
     rig = pe.Rig([pe.Sensor("s", shapes.small_lidar(), pe.Pose((1.5, 0.5, 9.0)))])
     grid = pe.Evaluator(SPACE, prior, vehicle).score(rig)
     assert grid.per_class["car"].share == pytest.approx((2 + kept) / (6 + kept))

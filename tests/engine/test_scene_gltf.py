@@ -30,7 +30,9 @@ def document_of(data):
 def turned(quaternion):
     """(3, 3) rotation of a quaternion (x, y, z, w)."""
     x, y, z, w = quaternion
-    a, b, c = np.array([x, y, z]), np.eye(3), np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    a = np.array([x, y, z])
+    b = np.eye(3)
+    c = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return (w * w - a @ a) * b + 2.0 * np.outer(a, a) + 2.0 * w * c
 
 

@@ -15,7 +15,8 @@ METRES = (1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125, 0.015625)
 DEGREES = (30.0, 15.0, 7.5, 3.75, 1.875, 0.9375, 0.46875)
 """Half widths of the paper's neighbourhoods, round by round: the next, 0.0078125 m and 0.234375
 degrees, would be at or below its 0.01 m and 0.3 degrees."""
-ROUNDED_M, ROUNDED_DEG = 0.5e-5, 0.5e-4
+ROUNDED_M = 0.5e-5
+ROUNDED_DEG = 0.5e-4
 """What rounding a placement to 0.01 mm and 0.0001 degrees may add."""
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 WIDE = dict.fromkeys("xyz", (-50.0, 50.0)) | dict.fromkeys(("roll", "pitch", "yaw"), (-9.0, 9.0))
@@ -33,7 +34,7 @@ def searched(landscape, bounds, rig=None, seed=0, **schedule):
     schedule = pe.Schedule(**({"candidates": 40} | schedule))
     rig = rig or rig_of(*bounds)
     steps = list(
-        pe.optimize(recorder, rig, pe.SearchSpace(bounds), seed, schedule, method="random")
+        pe.optimize(recorder, rig, pe.SearchSpace(bounds), seed, schedule=schedule, method="random")
     )
     return recorder, steps
 
@@ -154,7 +155,8 @@ def test_metres_and_radians_have_each_their_reach():
 def test_where_a_sensor_may_go_when_nobody_says():
     """With a vehicle its outline, from 0.2 m above ground to 0.75 m above its top; without one
     1 m from the start; angles all round, pitch from straight up to straight down."""
-    rig, pi = rig_of("a"), math.pi
+    rig = rig_of("a")
+    pi = math.pi
     on_car = pe.SearchSpace.on_vehicle(rig, shapes.box_car(), AXES).bounds["a"]
     turns = {"roll": (-pi, pi), "pitch": (-pi / 2, pi / 2), "yaw": (-pi, pi)}
     car = {"x": (-2.3, 2.3), "y": (-0.9, 0.9), "z": (0.2, 2.15)}
@@ -211,11 +213,13 @@ def test_a_sensor_that_is_not_in_the_rig_is_one_line():
 
 def on_the_car(seed=0, position=(-0.43, 0.0, 1.8), **options):
     """The steps of a short search of a LiDAR on the box car."""
-    car, space = shapes.box_car(), shapes.small_space()
+    car = shapes.box_car()
+    space = shapes.small_space()
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180), position)])
     bounds = pe.SearchSpace.on_vehicle(rig, car, **options)
-    evaluator, schedule = pe.Evaluator(space, pe.Prior.road(), car, samples=1024), pe.Schedule(10)
-    return list(pe.optimize(evaluator, rig, bounds, seed, schedule, method="random"))
+    evaluator = pe.Evaluator(space, pe.Prior.road(), car, samples=1024)
+    schedule = pe.Schedule(10)
+    return list(pe.optimize(evaluator, rig, bounds, seed, schedule=schedule, method="random"))
 
 
 def test_the_roof_is_found_unprompted():

@@ -39,15 +39,6 @@ z = [1.5, 2.0]
 [optimize]
 stop = { gain = 0.1 } # rule
 """
-
-
-@pytest.fixture
-def path(tmp_path):
-    files_of_a_reader(tmp_path, "")
-    (tmp_path / "study.toml").write_text(COMMENTED, "utf-8")
-    return tmp_path / "study.toml"
-
-
 CHANGES = {
     "samples=2048": [("samples = 1024   # few", "samples = 2048   # few")],
     "sensor.roof.model=Pandar64": [
@@ -64,6 +55,13 @@ CHANGES = {
     "space.y=[-10,12]": [("y = [\n  -12, # right\n  12,\n]          #", "y = [-10, 12] #")],
     "prior.model=highway": [("# rule\n", '*\n[prior]\nmodel = "highway"\n')],
 }
+
+
+@pytest.fixture
+def path(tmp_path):
+    files_of_a_reader(tmp_path, "")
+    (tmp_path / "study.toml").write_text(COMMENTED, "utf-8")
+    return tmp_path / "study.toml"
 
 
 @pytest.mark.parametrize("change", CHANGES)

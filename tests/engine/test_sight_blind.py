@@ -25,6 +25,7 @@ from tests.engine import shapes
 
 SPACE = pe.PerceptionSpace((-15, 15), (-15, 15), (0, 2), 0.1)
 BOX = pe.Vehicle(shapes.box((-2.0, -0.5, 0.0), (2.0, 0.5, 1.0)))
+X = Y = np.linspace(-5.0, 5.0, 101)
 
 
 def cone_lidar(lowest_deg=-45.0, height=2.0, position=(0.013, 0.017)):
@@ -56,7 +57,8 @@ def test_under_a_lidar_is_a_circle_as_wide_as_arithmetic_has_it(height):
 
 def test_of_what_is_taller_less_is_blind_without_steps():
     """Area shrinks evenly with height: no layer of voxels shows."""
-    own, rig = Sight(SPACE, pe.Prior.road()), pe.Rig([cone_lidar()])
+    own = Sight(SPACE, pe.Prior.road())
+    rig = pe.Rig([cone_lidar()])
     areas = [own.blind(rig, height=h, within=2.0).area for h in np.arange(0.3, 1.3, 0.04)]
     assert (np.diff(areas) < 0.0).all()
     exact = [math.pi * (2.0 - h) ** 2 for h in np.arange(0.3, 1.3, 0.04)]
@@ -115,7 +117,7 @@ def test_a_speck_along_the_body_is_no_blind_ground_to_a_side(rows, zone):
     cells = GroundCells.of(SPACE, 0.05)
     blind = np.zeros((len(cells.x), len(cells.y)), bool)
     blind[(cells.x > 2.0) & (cells.x < 2.0 + 0.05 * rows)] = True
-    found = blind_ground(cells, blind, ((-2.0, 2.0), (-0.5, 0.5)), 0.5, 15.0)
+    found = blind_ground(cells, blind, ((-2.0, 2.0), (-0.5, 0.5)), height=0.5, within=15.0)
     assert (found.zone["front"], found.seen_from["front"]) == (zone, zone)
     assert (found.nearest["front"] is None) == (zone == 0.0)
 
@@ -125,7 +127,7 @@ def test_of_two_nearest_places_the_one_nearer_to_the_middle_is_told():
     cells = GroundCells.of(pe.PerceptionSpace((-4, 4), (-4, 4), (0, 1), 1.0), 1.0)
     blind = np.zeros((8, 8), bool)
     blind[5, [2, 4]] = True  # centres at y = -1.5 and 0.5
-    found = blind_ground(cells, blind, ((-1.0, 1.0), (-2.0, 2.0)), 0.5, 15.0)
+    found = blind_ground(cells, blind, ((-1.0, 1.0), (-2.0, 2.0)), height=0.5, within=15.0)
     assert found.nearest["front"].point == (1.0, 0.5)
 
 
@@ -145,7 +147,8 @@ def test_the_vehicle_s_own_footprint_is_not_blind():
 @pytest.mark.parametrize("side", [0.1, 0.25, 1.0])
 def test_all_ground_within_is_searched_with_voxels_of_any_size(side):
     """A camera that looks up sees none of it; at most a column of voxels more is searched."""
-    space, up = pe.PerceptionSpace((-15, 15), (-15, 15), (0, 2), side), (0.0, -90.0, 0.0)
+    space = pe.PerceptionSpace((-15, 15), (-15, 15), (0, 2), side)
+    up = (0.0, -90.0, 0.0)
     rig = pe.Rig([shapes.camera(position=(0.0, 0.0, 1.1), rotation=up)])
     area = Sight(space, pe.Prior.road(), BOX).blind(rig, 0.5, within=3.37).area
     exact, most = ((4.0 + 2.0 * far) * (1.0 + 2.0 * far) for far in (3.37, 3.37 + side))
@@ -165,7 +168,8 @@ def test_what_stands_below_an_open_tailgate_may_be_blind(lowest, room):
 @pytest.mark.parametrize(("gap", "is_blind"), [(0.14, False), (0.31, True), (0.6, True)])
 def test_a_gap_between_rings_is_none_until_a_body_fits_in(gap, is_blind):
     """Rings on the ground 5 cm apart, and two that are farther from each other, 3 m away."""
-    near, far = np.arange(0.5, 3.01, 0.05), np.arange(3.0 + gap, 9.0, 0.05)
+    near = np.arange(0.5, 3.01, 0.05)
+    far = np.arange(3.0 + gap, 9.0, 0.05)
     elevations = -np.arctan(2.0 / np.concatenate([near, far]))
     model = pe.Lidar("gap", elevations, 720, 60.0)
     rig = pe.Rig([pe.Sensor("gap", model, pe.Pose((0.013, 0.017, 2.0)))])
@@ -262,7 +266,8 @@ def test_a_long_way_round_is_one_piece():
         di, dj = ((0, 1), (1, 0), (0, -1), (-1, 0))[turn % 4]
         for _ in range(length):
             flags[i, j] = True
-            i, j = i + di, j + dj
+            i = i + di
+            j = j + dj
     assert len(list(flooded(flags))) == 1
     assert np.array_equal(without_specks(flags, flags.sum()), flags)
     assert not without_specks(flags, flags.sum() + 1).any()
@@ -279,17 +284,19 @@ def test_smoothing_is_a_gauss_curve_both_ways():
     assert np.array_equal(gauss(values, 0.4), values)
 
 
-X = Y = np.linspace(-5.0, 5.0, 101)
-
-
 def signed_area(ring):
-    x, y = ring[:, 0], ring[:, 1]
+    x = ring[:, 0]
+    y = ring[:, 1]
     return float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]) / 2.0)
 
 
 def lines_of(flags):
-    count = np.arange(flags.shape[0], dtype=float), np.arange(flags.shape[1], dtype=float)
-    return outlines(np.asarray(flags, dtype=float), 0.5, *count)
+    return outlines(
+        np.asarray(flags, dtype=float),
+        0.5,
+        np.arange(flags.shape[0], dtype=float),
+        np.arange(flags.shape[1], dtype=float),
+    )
 
 
 def test_a_cone_is_cut_in_a_circle():

@@ -16,6 +16,16 @@ from tests.engine.refusals import wrongly_refused
 
 SPACE = shapes.small_space(0.5)
 CAR = shapes.box_car()
+NO_VIEWS = [
+    ("height", {"height": [1.0]}),
+    ("height", {"height": 5.0}),
+    ("height", {"height": -0.1}),
+    ("height", {"height": "low"}),
+    ("step", {"step": 0.0}),
+    ("step", {"step": -1.0}),
+    ("step", {"step": 1e-3}),
+    ("within", {"within": 0.0}),
+]
 
 
 def lidar(position=(-0.43, 0.11, 1.83), rotation=(0.0, 0.0, 0.0), name="roof", **options):
@@ -33,9 +43,11 @@ def test_places_as_wide_as_a_column_are_as_defined(height):
     ground = sight().ground(rig, height, step=0.5)
     z = 0.25 + 0.5 * int(height / 0.5)
     rng = np.random.default_rng(1)
-    i, j = rng.integers(0, 80, 150), rng.integers(0, 40, 150)
+    i = rng.integers(0, 80, 150)
+    j = rng.integers(0, 40, 150)
     kept = ~np.isnan(ground.entropy[i, j])
-    i, j = i[kept], j[kept]
+    i = i[kept]
+    j = j[kept]
     centers = np.stack([ground.x[i], ground.y[j], np.full(len(i), z)], axis=1)
     m = {s.name: kinds.measure(s, centers, 0.5, CAR) for s in rig}
     lidars = precision_of(m["roof"] + m["bonnet"], kinds.PerceptionModel().lidar)
@@ -62,7 +74,8 @@ def test_a_place_under_the_vehicle_s_skin_is_the_vehicle_s():
 
 def test_averaged_over_height_it_is_the_grid_s_own_map():
     """Mass-weighted, the means of many small places are the exact score's; each is spread alike."""
-    rig, prior = pe.Rig([lidar(), shapes.camera()]), pe.Prior.road()
+    rig = pe.Rig([lidar(), shapes.camera()])
+    prior = pe.Prior.road()
     score = pe.Evaluator(SPACE, prior, CAR).score(rig)
     ground = sight(prior=prior).ground(rig, step=0.125)
     exact = score.ground_map
@@ -72,7 +85,8 @@ def test_averaged_over_height_it_is_the_grid_s_own_map():
 
     mass = exact.mass / exact.mass.sum()
     for name in ("entropy", "coverage"):
-        found, whole = squares(getattr(ground, name)), getattr(exact, name)
+        found = squares(getattr(ground, name))
+        whole = getattr(exact, name)
         scale = 1.0 if name == "entropy" else 0.04  # 27 nats from nothing to all
         assert (found * mass).sum() == pytest.approx((whole * mass).sum(), abs=0.05 * scale)
         spread = gauss(whole * mass, SPREAD_M / 0.5) / gauss(mass, SPREAD_M / 0.5)
@@ -83,7 +97,8 @@ def test_averaged_over_height_it_is_the_grid_s_own_map():
 def test_a_wide_place_is_the_mean_of_what_is_in_it():
     rig = pe.Rig([lidar(channels=64, azimuths=720)])
     own = sight(space=shapes.small_space(0.25))
-    fine, coarse = own.ground(rig, 0.5, step=0.25), own.ground(rig, 0.5, step=2.0)
+    fine = own.ground(rig, 0.5, step=0.25)
+    coarse = own.ground(rig, 0.5, step=2.0)
     means = fine.entropy.reshape(20, 8, 10, 8).mean(axis=(1, 3))
     outside = ~np.isnan(means)
     assert outside.sum() > 180
@@ -115,9 +130,11 @@ def test_where_objects_are_met_places_without_any_do_not_count():
 
 def test_beams_are_cast_once_for_all_that_is_looked_at(monkeypatch):
     """Map, blind ground and reach measure voxels of their own, of beams that end where they end."""
-    cast, plain = [], VisibleMesh.first_hit
+    cast = []
+    plain = VisibleMesh.first_hit
     monkeypatch.setattr(VisibleMesh, "first_hit", lambda s, d: cast.append(d) or plain(s, d))
-    own, rig = sight(shapes.box_car(2)), pe.Rig([lidar((0.3, 0.2, 1.6))])
+    own = sight(shapes.box_car(2))
+    rig = pe.Rig([lidar((0.3, 0.2, 1.6))])
     for ask in (own.ground, own.blind, lambda r: own.reach(r, "car"), own.expected_ap):
         ask(rig)
     beams = np.concatenate(cast)
@@ -128,8 +145,10 @@ def test_beams_are_cast_once_for_all_that_is_looked_at(monkeypatch):
 
 
 def test_within_looks_at_a_square_alone():
-    own, rig = sight(), pe.Rig([lidar()])
-    part, whole = own.ground(rig, 0.5, step=0.5, within=5.0), own.ground(rig, 0.5, step=0.5)
+    own = sight()
+    rig = pe.Rig([lidar()])
+    part = own.ground(rig, 0.5, step=0.5, within=5.0)
+    whole = own.ground(rig, 0.5, step=0.5)
     assert part.entropy.shape == (20, 20) and (part.x[0], part.x[-1]) == (-4.75, 4.75)
     assert np.array_equal(part.entropy, whole.entropy[30:50, 10:30], equal_nan=True)
     wide = own.ground(rig, 0.5, step=0.5, within=500.0)
@@ -137,18 +156,7 @@ def test_within_looks_at_a_square_alone():
     assert np.array_equal(wide.entropy, whole.entropy, equal_nan=True)
 
 
-NO_VIEWS = [
-    ("height", {"height": [1.0]}),
-    ("height", {"height": 5.0}),
-    ("height", {"height": -0.1}),
-    ("height", {"height": "low"}),
-    ("step", {"step": 0.0}),
-    ("step", {"step": -1.0}),
-    ("step", {"step": 1e-3}),
-    ("within", {"within": 0.0}),
-]
-
-
 def test_what_cannot_be_looked_at_is_refused():
-    own, rig = sight(), pe.Rig([lidar()])
+    own = sight()
+    rig = pe.Rig([lidar()])
     assert wrongly_refused(lambda asked: own.ground(rig, **asked), NO_VIEWS, "sight") == []

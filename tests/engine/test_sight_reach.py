@@ -16,6 +16,13 @@ from tests.thorough import tries
 
 SPACE = pe.PerceptionSpace((-60, 60), (-20, 20), (1, 2), 0.5)
 UNIFORM = pe.Prior.uniform()
+NO_QUESTIONS = [
+    ("class_name", ("tram", {})),
+    ("class_name", (None, {})),
+    ("ap", ("car", {"ap": 0.0})),
+    ("ap", ("car", {"ap": 1.5})),
+    ("bearings", ("car", {"bearings": 3})),
+]
 
 
 def dense_lidar(max_range, azimuths, position=(0.03, 0.01, 1.52)):
@@ -33,7 +40,8 @@ def test_a_lidar_reaches_as_far_as_its_beams():
 
 
 def test_where_the_space_ends_a_reach_is_at_least():
-    own, rig = sight.Sight(SPACE, UNIFORM), pe.Rig([dense_lidar(200.0, 720)])
+    own = sight.Sight(SPACE, UNIFORM)
+    rig = pe.Rig([dense_lidar(200.0, 720)])
     reach = own.reach(rig, "any", bearings=4)
     assert own.reach_ahead(rig, "any") == (60.0, True)
     assert reach.limit == pytest.approx([60.0, 20.0, 60.0, 20.0])
@@ -75,7 +83,8 @@ def test_inside_a_vehicle_nothing_is_found():
     assert reach.distance.max() > 0.0
     with pytest.raises(pe.InputError, match="prior: weights: expected some weight outside"):
         pe.Evaluator(SPACE, UNIFORM, hall)
-    inside, rig = sight.Sight(SPACE, UNIFORM, hall), pe.Rig([dense_lidar(9.0, 60)])
+    inside = sight.Sight(SPACE, UNIFORM, hall)
+    rig = pe.Rig([dense_lidar(9.0, 60)])
     assert not inside.reach(rig, "any").distance.any()
     assert inside.reach_ahead(rig, "any") == (0.0, False)
 
@@ -83,13 +92,15 @@ def test_inside_a_vehicle_nothing_is_found():
 def test_a_reach_is_that_of_every_voxel_in_the_sector():
     """All voxels within 7.5 degrees of a bearing, weighed as its sector and those beside it."""
     space = pe.PerceptionSpace((-45, 45), (-15, 15), (0, 3), 0.25)
-    prior, car = pe.Prior.road(), shapes.box_car()
+    prior = pe.Prior.road()
+    car = shapes.box_car()
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(96, 900), (0.0, 0.0, 1.9))])
     own = sight.Sight(space, prior, car)
     found = own.reach(rig, "pedestrian", ap=0.5)
     assert own.reach_ahead(rig, "pedestrian") == (found.distance[0], False)
     density = prior.densities(space)[1]
-    x, y = space.centers(0)[:, None], space.centers(1)
+    x = space.centers(0)[:, None]
+    y = space.centers(1)
     for bearing in (2, 36, 0, 70)[: tries(2, 4)]:
         angle = found.bearings[bearing]
         aside = np.abs(np.remainder(np.arctan2(y, x) - angle + np.pi, 2.0 * np.pi) - np.pi)
@@ -119,15 +130,6 @@ def test_the_blind_zone_near_by_does_not_end_a_reach():
     assert own.reach(rig, "any", bearings=4).distance[0] == pytest.approx(30.0, abs=1.0)
 
 
-NO_QUESTIONS = [
-    ("class_name", ("tram", {})),
-    ("class_name", (None, {})),
-    ("ap", ("car", {"ap": 0.0})),
-    ("ap", ("car", {"ap": 1.5})),
-    ("bearings", ("car", {"bearings": 3})),
-]
-
-
 def test_what_cannot_be_asked_is_refused():
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
     own = sight.Sight(shapes.small_space(), pe.Prior.road())
@@ -141,7 +143,8 @@ def test_ap_of_an_entropy_undoes_the_equations():
 
 def test_expected_ap_is_the_prior_s_mean():
     """Against every voxel of a space, measured by the definition."""
-    space, prior = shapes.small_space(), pe.Prior.road()
+    space = shapes.small_space()
+    prior = pe.Prior.road()
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
     index = np.indices(space.shape).reshape(3, -1).T
     m = kinds.measure(rig["roof"], space.center_of(index), space.interval)

@@ -20,12 +20,15 @@ def ball(times, radius=1.0, center=(0.0, 0.0, 0.0)):
 def surface_points(triangles, count, seed=0):
     """Points spread over triangles, by area."""
     rng = np.random.default_rng(seed)
-    a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
+    a = triangles[:, 0]
+    b = triangles[:, 1]
+    c = triangles[:, 2]
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     some = rng.choice(len(triangles), count, p=areas / areas.sum())
     u, v = rng.random((2, count, 1))
     flip = u + v > 1.0
-    u, v = np.where(flip, 1.0 - u, u), np.where(flip, 1.0 - v, v)
+    u = np.where(flip, 1.0 - u, u)
+    v = np.where(flip, 1.0 - v, v)
     return a[some] + u * (b - a)[some] + v * (c - a)[some]
 
 
@@ -43,7 +46,7 @@ def car_with_rod():
     groups = (ball(5), pane, rod, bolt)
     parts = np.repeat(np.arange(4), [len(g) for g in groups]).astype(np.int32)
     names = ("body", "pane", "rod", "bolt")
-    return pe.Vehicle(np.concatenate(groups), parts, names, ("pane",), 0.03)
+    return pe.Vehicle(np.concatenate(groups), parts, names, ("pane",), clearance=0.03)
 
 
 @pytest.mark.parametrize("wanted", [1000, 3000, 10_000])
@@ -108,7 +111,8 @@ def test_more_parts_than_triangles_are_all_kept():
 
 def test_quick_takes_one_look_and_tells_its_error_all_the_same(monkeypatch):
     """The sizes of cubes that are tried are what costs time; the bound holds as ever."""
-    looks, of = [], simplify._Clusters.of
+    looks = []
+    of = simplify._Clusters.of
 
     def watched(triangles, side):
         looks.append(side)

@@ -48,7 +48,8 @@ def corners(solid):
 @pytest.mark.parametrize("name", MODELS)
 def test_solids_of_every_kind_of_view_are_closed_and_outwards(plugin, name):
     view = view_of(name, box_car())
-    whole, free = plugin.whole_solid("whole", view), free_solid("free", view)
+    whole = plugin.whole_solid("whole", view)
+    free = free_solid("free", view)
     hidden = plugin.hidden_solid("hidden", view)
     solids = [whole, free] + ([hidden] if hidden else [])
     assert all(is_watertight(corners(solid)) for solid in solids)

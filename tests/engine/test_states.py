@@ -29,6 +29,9 @@ from tests.engine import shapes
 
 BODY, DOOR, WHEEL = range(3)
 HINGE = (0.8, 0.9, 0.6)
+OPEN = pe.State("open", [pe.Motion(["door_*"], (0.0, 0.0, math.radians(70.0)), HINGE)])
+WIDE_OPEN = pe.State("wide open", [replace(OPEN.motions[0], rotation=(0.0, 0.0, -1.2))])
+LIFTED = pe.State("lifted", heave=0.2, pitch_rad=0.05, unsprung=["wheel_*"])
 
 
 def car():
@@ -52,9 +55,6 @@ def rig():
     )
 
 
-OPEN = pe.State("open", [pe.Motion(["door_*"], (0.0, 0.0, math.radians(70.0)), HINGE)])
-
-
 def test_a_door_turns_about_its_hinge_and_takes_its_mirror_along():
     vehicle = car()
     moved = OPEN.vehicle(vehicle)
@@ -64,12 +64,14 @@ def test_a_door_turns_about_its_hinge_and_takes_its_mirror_along():
         vehicle.triangles[door].reshape(-1, 3), moved.triangles[door].reshape(-1, 3), strict=True
     ):
         x, y, z = before - HINGE
-        c, s = math.cos(math.radians(70.0)), math.sin(math.radians(70.0))
+        c = math.cos(math.radians(70.0))
+        s = math.sin(math.radians(70.0))
         assert after == pytest.approx((0.8 + c * x - s * y, 0.9 + s * x + c * y, 0.6 + z))
     roof, mirror = OPEN.rig(rig(), vehicle)
     assert roof.pose == rig()["roof"].pose
     assert mirror.pose.rotation_deg == pytest.approx((0.0, 20.0, 160.0))
-    x, y = -0.2, 0.07
+    x = -0.2
+    y = 0.07
     assert mirror.pose.position[:2] == pytest.approx((0.8 + c * x - s * y, 0.9 + s * x + c * y))
     fixed = replace(OPEN, motions=[replace(OPEN.motions[0], sensors=["roof"])])
     roof, mirror = fixed.rig(rig(), vehicle)
@@ -84,7 +86,8 @@ def test_a_body_heaves_pitches_and_leans_on_its_wheels():
     moved = nose_down.vehicle(vehicle)
     wheel = vehicle.parts == WHEEL
     assert np.array_equal(moved.triangles[wheel], vehicle.triangles[wheel])
-    front, rear = (moved.triangles[..., 0] > 1.5) & ~wheel[:, None], moved.triangles[..., 0] < -1.5
+    front = (moved.triangles[..., 0] > 1.5) & ~wheel[:, None]
+    rear = moved.triangles[..., 0] < -1.5
     assert moved.triangles[front][:, 2].max() < moved.triangles[rear][:, 2].max() - 0.1
     pose = nose_down.rig(rig(), vehicle)["roof"].pose
     assert pose.rotation_deg == pytest.approx((0.0, 2.0, 0.0))
@@ -129,7 +132,9 @@ def test_the_table_has_the_figures_of_each_condition_scored_alone():
         evaluator = pe.Evaluator(study.space, study.prior, vehicle, samples=4096)
         score = evaluator.score(moved)
         assert (row.entropy, row.stderr, row.coverage) == (
-            *(score.entropy, score.stderr, score.coverage),
+            score.entropy,
+            score.stderr,
+            score.coverage,
         )
         less = evaluator.entropy(pe.Rig([moved["roof"]]))
         assert row.without["mirror"] == pytest.approx(less, abs=2e-9)
@@ -203,10 +208,6 @@ def test_what_blind_ground_leaves_to_spare_is_the_least_of_all_conditions():
     joined = worst_verdict([found, worst, replace(found, ground=less)])
     assert joined.margin == -1.0 and joined.ground.spare_out is None
     assert joined.ground.spare_m2 == less.spare_m2
-
-
-WIDE_OPEN = pe.State("wide open", [replace(OPEN.motions[0], rotation=(0.0, 0.0, -1.2))])
-LIFTED = pe.State("lifted", heave=0.2, pitch_rad=0.05, unsprung=["wheel_*"])
 
 
 @pytest.mark.parametrize("state", [OPEN, WIDE_OPEN, LIFTED], ids=lambda state: state.name)

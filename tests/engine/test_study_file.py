@@ -70,6 +70,23 @@ candidates = 12
 
 
 RANDOM = 'method = "random"\n'
+BAD = [
+    ("study", "a = ["),
+    ("spce", MINIMAL + "[spce]\n"),
+    ("sensor[0].colour", MINIMAL + "colour = 3\n"),
+    ("sensor[0].model", MINIMAL.replace("Pandar64", "Pandar65")),
+    ("sensor[0].name", MINIMAL.replace('name = "roof"', "")),
+    ("sensor", "[space]\n"),
+    ("rig: sensor name", MINIMAL + MINIMAL),
+    ("space.interval", MINIMAL + "[space]\ninterval = 0.3\n"),
+    ("prior.model", MINIMAL + '[prior]\nmodel = "city"\n'),
+    ("prior.focus[0].factor", MINIMAL + "[[prior.focus]]\nx = [0, 1]\n"),
+    ("sensor[0].free", MINIMAL + 'free = ["up"]\n'),
+    ("roof: bounds of z", MINIMAL + "bounds = {z = [2, 3]}\n"),
+    ("sensor[0].bounds.w", MINIMAL + "bounds = {w = [2, 3]}\n"),
+    ("optimize.candidates", MINIMAL + f"[optimize]\n{RANDOM}candidates = 0\n"),
+    ("optimize.method", MINIMAL + "[optimize]\ncandidates = 9\n"),
+]
 
 
 @pytest.fixture
@@ -110,25 +127,6 @@ def test_everything_that_is_said_arrives(write):
     bounds = study.search_space().bounds["roof"]
     assert bounds["z"] == (1.5, 2.0)
     assert bounds["yaw"] == pytest.approx((-math.radians(10), math.radians(10)))
-
-
-BAD = [
-    ("study", "a = ["),
-    ("spce", MINIMAL + "[spce]\n"),
-    ("sensor[0].colour", MINIMAL + "colour = 3\n"),
-    ("sensor[0].model", MINIMAL.replace("Pandar64", "Pandar65")),
-    ("sensor[0].name", MINIMAL.replace('name = "roof"', "")),
-    ("sensor", "[space]\n"),
-    ("rig: sensor name", MINIMAL + MINIMAL),
-    ("space.interval", MINIMAL + "[space]\ninterval = 0.3\n"),
-    ("prior.model", MINIMAL + '[prior]\nmodel = "city"\n'),
-    ("prior.focus[0].factor", MINIMAL + "[[prior.focus]]\nx = [0, 1]\n"),
-    ("sensor[0].free", MINIMAL + 'free = ["up"]\n'),
-    ("roof: bounds of z", MINIMAL + "bounds = {z = [2, 3]}\n"),
-    ("sensor[0].bounds.w", MINIMAL + "bounds = {w = [2, 3]}\n"),
-    ("optimize.candidates", MINIMAL + f"[optimize]\n{RANDOM}candidates = 0\n"),
-    ("optimize.method", MINIMAL + "[optimize]\ncandidates = 9\n"),
-]
 
 
 def test_bad_studies_are_refused(write):

@@ -29,6 +29,27 @@ REPEATABLE = settings(
     phases=[Phase.generate],  # shrinking a whole study takes minutes
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
+NAMES = st.text(
+    st.characters(codec="utf-8", exclude_categories=("C", "Zl", "Zp", "Zs")), min_size=1, max_size=9
+)
+TURN = st.floats(-2 * math.pi, 2 * math.pi)
+METRES = st.floats(-50, 50)
+SIZES = st.floats(1e-3, 1e3)
+CAMERAS = st.builds(
+    pe.Camera, NAMES, st.integers(1, 9000), st.integers(1, 9000), st.floats(0.01, math.pi - 0.01)
+)
+SMALL = st.floats(-0.02, 0.02)
+FOCAL = st.floats(400, 2000)
+CENTER = st.tuples(st.floats(100, 540), st.floats(100, 380))
+CIRCLE = st.one_of(st.none(), st.floats(0.3, 1.0))
+CATALOGUE = st.sampled_from(pe.catalog.names()).map(pe.catalog.load)
+POSES = st.builds(pe.Pose, st.tuples(METRES, METRES, METRES), st.tuples(TURN, TURN, TURN))
+SENSOR = {"name": "roof", "model": "Pandar64", "position": [0, 0, 2]}
+MAYBE_M = st.one_of(st.none(), st.floats(1e-3, 99))
+REFERENCES = st.builds(pe.Reference, METRES, st.floats(1e-3, 9), MAYBE_M, MAYBE_M, MAYBE_M)
+CURVES = st.builds(pe.ApCurve, st.floats(1e-3, 9), st.floats(-9, 9))
+OBJECTS = st.builds(pe.TargetRule, st.just("objects"), st.booleans(), st.integers(8, 20_000))
+TARGETS = st.one_of(st.builds(pe.TargetRule, scenes=st.integers(8, 999)), OBJECTS)
 
 
 # --- equality, field by field -------------------------------------------------------------------
@@ -68,13 +89,6 @@ def children(a, b):
 
 # --- random studies -------------------------------------------------------------------------------
 
-NAMES = st.text(
-    st.characters(codec="utf-8", exclude_categories=("C", "Zl", "Zp", "Zs")), min_size=1, max_size=9
-)
-TURN = st.floats(-2 * math.pi, 2 * math.pi)
-METRES = st.floats(-50, 50)
-SIZES = st.floats(1e-3, 1e3)
-
 
 def pairs(values, start=None):
     """Two numbers, low before high, with a start between them if there is one."""
@@ -93,37 +107,55 @@ def lidars(draw):
         )
     )
     offsets = draw(st.one_of(st.none(), angles))
-    steps, range_m = draw(st.integers(30, 4000)), draw(st.floats(0.5, 900))
+    steps = draw(st.integers(30, 4000))
+    range_m = draw(st.floats(0.5, 900))
     least = draw(st.sampled_from([0.0, 0.1, 0.4]))
-    return pe.Lidar(draw(NAMES), draw(angles), steps, range_m, offsets, fov, least)
-
-
-CAMERAS = st.builds(
-    pe.Camera, NAMES, st.integers(1, 9000), st.integers(1, 9000), st.floats(0.01, math.pi - 0.01)
-)
-SMALL = st.floats(-0.02, 0.02)
-FOCAL, CENTER = st.floats(400, 2000), st.tuples(st.floats(100, 540), st.floats(100, 380))
-CIRCLE = st.one_of(st.none(), st.floats(0.3, 1.0))
+    return pe.Lidar(
+        draw(NAMES),
+        draw(angles),
+        steps,
+        range_m,
+        azimuth_offsets=offsets,
+        horizontal_fov=fov,
+        min_range=least,
+    )
 
 
 @st.composite
 def lens_cameras(draw):
-    (cx, cy), circle = draw(CENTER), draw(CIRCLE)
+    cx, cy = draw(CENTER)
+    circle = draw(CIRCLE)
     lens = draw(st.sampled_from([pe.Pinhole, pe.BrownConrady, pe.KannalaBrandt, pe.FTheta]))
     first = {"k1": draw(st.floats(300, 900))} if lens is pe.FTheta else {}
     values = {key: draw(SMALL) for key in lens.coefficients} | first
     focal = (1.0, 1.0) if lens is pe.FTheta else (draw(FOCAL), draw(FOCAL))
     ranges = draw(st.one_of(st.just((0.0, math.inf)), st.tuples(st.floats(0, 1), METRES.map(abs))))
-    known = draw(NAMES), 640, 480, None
-    reach = ranges[0], ranges[1] + 2.0
+    name = draw(NAMES)
+    width = 640
+    height = 480
+    hfov = None
+    min_range = ranges[0]
+    max_range = ranges[1] + 2.0
     try:
-        return pe.Camera(*known, lens(*focal, cx, cy, circle, **values), *reach)
+        return pe.Camera(
+            name,
+            width,
+            height,
+            hfov,
+            lens=lens(*focal, cx, cy, circle, **values),
+            min_range=min_range,
+            max_range=max_range,
+        )
     except pe.InputError:  # it folds inside the picture: the same lens without distortion
-        return pe.Camera(*known, lens(*focal, cx, cy, circle, **first), *reach)
-
-
-CATALOGUE = st.sampled_from(pe.catalog.names()).map(pe.catalog.load)
-POSES = st.builds(pe.Pose, st.tuples(METRES, METRES, METRES), st.tuples(TURN, TURN, TURN))
+        return pe.Camera(
+            name,
+            width,
+            height,
+            hfov,
+            lens=lens(*focal, cx, cy, circle, **first),
+            min_range=min_range,
+            max_range=max_range,
+        )
 
 
 @st.composite
@@ -136,13 +168,14 @@ def rigs(draw):
         fusion = None if group is None else f"{model.kind} {group} shared"
         curve = draw(st.one_of(st.none(), st.builds(pe.ApCurve, st.floats(0.01, 1), SMALL)))
         shared = fusion or model.fuses_early  # a group has one curve
-        sensors.append(pe.Sensor(name, model, draw(POSES), fusion, None if shared else curve))
+        sensors.append(pe.Sensor(name, model, draw(POSES), fusion, curve=None if shared else curve))
     return pe.Rig(sensors)
 
 
 @st.composite
 def searches(draw, rig, vehicle):
-    free, limits = {}, {}
+    free = {}
+    limits = {}
     for sensor in rig:
         if draw(st.booleans()):
             free[sensor.name] = tuple(draw(st.lists(st.sampled_from(AXES), unique=True)))
@@ -161,25 +194,38 @@ def searches(draw, rig, vehicle):
     )
     samples = draw(st.sampled_from([0, 1024, 65_536]))
     mounting = draw(mountings(rig, vehicle, limits))
-    seed, tolerance = draw(st.integers(0, 2**63 - 1)), draw(tolerances(len(rig)))
-    return pe.Search(free, limits, seed, samples, schedule, mounting, "random", tolerance=tolerance)
+    seed = draw(st.integers(0, 2**63 - 1))
+    tolerance = draw(tolerances(len(rig)))
+    return pe.Search(
+        free,
+        limits,
+        seed,
+        samples,
+        schedule=schedule,
+        mounting=mounting,
+        method="random",
+        tolerance=tolerance,
+    )
 
 
 @st.composite
 def tolerances(draw, sensors):
-    position, angle = draw(st.floats(0, 1)), draw(st.floats(0, math.pi / 4))
+    position = draw(st.floats(0, 1))
+    angle = draw(st.floats(0, math.pi / 4))
     failures = sensors > 1 and draw(st.booleans())
     worst = (position > 0 or angle > 0 or failures) and draw(st.booleans())
-    return pe.Tolerance(position, angle, 2 * draw(st.integers(1, 9)), failures, worst)
+    return pe.Tolerance(position, angle, 2 * draw(st.integers(1, 9)), failures, worst=worst)
 
 
 @st.composite
 def mountings(draw, rig, vehicle, limits):
     """Mounts of all kinds, on which sensors start that can; ties; constraints that may not fit."""
     named = st.lists(NAMES, min_size=2, max_size=2, unique=True)
-    names, parts = draw(named), ("body",) if vehicle is None else vehicle.part_names
+    names = draw(named)
+    parts = ("body",) if vehicle is None else vehicle.part_names
     first = next(iter(rig))
-    mounts, on = {}, {}
+    mounts = {}
+    on = {}
     if draw(st.booleans()):
         others = [pe.Slot(name, draw(POSES)) for name in names if name != first.name]
         mounts[names[0]] = pe.SlotMount([pe.Slot(first.name, first.pose), *others])
@@ -192,7 +238,7 @@ def mountings(draw, rig, vehicle, limits):
     followers = [sensor.name for sensor in rig if sensor.name != first.name]
     tied = draw(st.booleans()) and followers and not limits.get(followers[0])
     groups = [(first.name, followers[0])] if tied else []
-    return pe.Mounting(mounts, on, (), groups, draw(constraints()))
+    return pe.Mounting(mounts, on, pairs=(), groups=groups, constraints=draw(constraints()))
 
 
 @st.composite
@@ -201,7 +247,8 @@ def constraints(draw):
     sides = st.one_of(st.none(), pairs(METRES).filter(lambda p: p[0] < p[1]))
     names = draw(st.lists(NAMES, max_size=2, unique=True))
     areas = [pe.NoGo(name, draw(sides), draw(sides), (0.0, math.inf)) for name in names]
-    distance, clear = draw(st.floats(0, 9)), draw(st.booleans())
+    distance = draw(st.floats(0, 9))
+    clear = draw(st.booleans())
     return pe.Constraints(draw(sizes), draw(sizes), distance, clear, areas)
 
 
@@ -211,8 +258,17 @@ def object_classes(draw):
     lanes = tuple(draw(st.lists(METRES, min_size=1, max_size=3)))
     scales = [draw(SIZES) for _ in range(4)]
     size = tuple(draw(SIZES) for _ in range(3))
-    spreads = (draw(st.floats(0, 9)), draw(st.floats(0, 9)), draw(st.floats(0, 1)))
-    return pe.ObjectClass(draw(NAMES), size, *scales, share, lanes, draw(st.floats(0, 9)), *spreads)
+    return pe.ObjectClass(
+        draw(NAMES),
+        size,
+        *scales,
+        share,
+        lanes,
+        draw(st.floats(0, 9)),
+        draw(st.floats(0, 9)),
+        draw(st.floats(0, 9)),
+        draw(st.floats(0, 1)),
+    )
 
 
 @st.composite
@@ -239,15 +295,13 @@ def priors(draw, folder):
     return type(prior)(prior.model, prior.classes, focus, prior.boxes, dense)
 
 
-SENSOR = {"name": "roof", "model": "Pandar64", "position": [0, 0, 2]}
-
-
 @st.composite
 def spaces(draw):
     interval = draw(st.sampled_from([0.1, 0.5, 0.3, 1.0, 0.25]))
     bounds = []
     for _ in "xyz":
-        low, voxels = draw(st.integers(-500, 500)), draw(st.integers(1, 900))
+        low = draw(st.integers(-500, 500))
+        voxels = draw(st.integers(1, 900))
         bounds.append((low * interval, (low + voxels) * interval))
     return pe.PerceptionSpace(*bounds, interval)
 
@@ -260,17 +314,16 @@ def vehicles(draw):
     names = draw(st.lists(NAMES, min_size=2, max_size=2, unique=True))
     renamed = dict(zip(PARTS, names, strict=True))
     clearance = draw(st.floats(0, 0.99))
-    return pe.Vehicle(moved, car.parts, tuple(names), tuple(renamed[g] for g in glass), clearance)
-
-
-MAYBE_M = st.one_of(st.none(), st.floats(1e-3, 99))
-REFERENCES = st.builds(pe.Reference, METRES, st.floats(1e-3, 9), MAYBE_M, MAYBE_M, MAYBE_M)
+    return pe.Vehicle(
+        moved, car.parts, tuple(names), tuple(renamed[g] for g in glass), clearance=clearance
+    )
 
 
 @st.composite
 def mesh_axes(draw):
     """Keys for the mesh's axes that leave a file in the ground frame as it is."""
-    up, forward = draw(st.sampled_from([None, "+z"])), draw(st.sampled_from([None, "+x"]))
+    up = draw(st.sampled_from([None, "+z"]))
+    forward = draw(st.sampled_from([None, "+x"]))
     return pe.MeshAxes(up, forward, 1.0, draw(st.sampled_from([None, (0.0, 0.0, 0.0)])))
 
 
@@ -286,16 +339,12 @@ def selections(draw, rig):
     return pe.Selection(choices, price, draw(count), kinds, draw(st.one_of(st.just(""), NAMES)))
 
 
-CURVES = st.builds(pe.ApCurve, st.floats(1e-3, 9), st.floats(-9, 9))
-OBJECTS = st.builds(pe.TargetRule, st.just("objects"), st.booleans(), st.integers(8, 20_000))
-TARGETS = st.one_of(st.builds(pe.TargetRule, scenes=st.integers(8, 999)), OBJECTS)
-
-
 @st.composite
 def studies(draw, folder):
     rig = draw(rigs())
     vehicle = draw(st.one_of(st.none(), vehicles()))
-    lidar, camera = draw(CURVES), draw(CURVES)
+    lidar = draw(CURVES)
+    camera = draw(CURVES)
     classes = st.dictionaries(NAMES, CURVES, max_size=2)
     objects = {kind: own for kind in ("lidar", "camera") if (own := draw(classes))}
     blind = draw(st.sampled_from(["floor", "literal"]))

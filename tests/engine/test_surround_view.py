@@ -11,7 +11,7 @@ from tests.engine import shapes
 
 SPACE = pe.PerceptionSpace((-10, 10), (-10, 10), (0, 2), 0.1)
 BOX = pe.Vehicle(shapes.box((-2.0, -0.8, 0.3), (2.0, 0.8, 1.2)))
-FISHEYE = KannalaBrandt(110.0, 112.0, 250.0, 150.0, None, -0.02, 0.001)
+FISHEYE = KannalaBrandt(fx=110.0, fy=112.0, cx=250.0, cy=150.0, fov=None, k1=-0.02, k2=0.001)
 WIDE = pe.Camera("wide", 500, 300, lens=FISHEYE)
 NARROW = pe.Camera("narrow", 1920, 1080, hfov=np.radians(40.0))
 
@@ -56,9 +56,11 @@ def test_blind_is_what_is_blind_to_the_cameras_to_the_bit(look, view):
 def test_a_square_is_of_the_camera_with_the_most_pixels_per_metre_of_those_that_see_it(look, view):
     assert view.cameras == ("front", "tele", "left")
     x, y = np.meshgrid(view.x, view.y, indexing="ij")
-    most, first = np.zeros(view.camera.shape), np.full(view.camera.shape, NO_CAMERA)
+    most = np.zeros(view.camera.shape)
+    first = np.full(view.camera.shape, NO_CAMERA)
     for number, name in enumerate(view.cameras):
-        sensor, alone = RIG[name], look.surround_view(pe.Rig([RIG[name]]), 5.0)
+        sensor = RIG[name]
+        alone = look.surround_view(pe.Rig([RIG[name]]), 5.0)
         assert set(np.unique(alone.camera)) == {VEHICLE, NO_CAMERA, 0}
         assert ((alone.camera == NO_CAMERA) == alone.blind)[alone.camera != VEHICLE].all()
         a, b, c = sensor.pose.position

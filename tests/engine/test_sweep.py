@@ -29,13 +29,38 @@ from tests.limits import HANG_S
 pytestmark = pytest.mark.usefixtures("few_errors")
 
 SEEDS = f"optimize.seed={','.join(map(str, range(10_001)))}"
+GREETINGS = {
+    "silent": None,
+    "web server": b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n",
+    "noise": b"\xff" * 4096,
+    "zeros": bytes(64),
+    "closed": b"",
+}
+"""What a peer that is no scheduler sends; nothing, and it closes the connection."""
+OWN_EXECUTORS = """
+from concurrent.futures import Executor
+
+
+class NoShutdown:
+    def submit(self, function, *arguments):
+        return None
+
+
+class NoFutures(Executor):
+    def submit(self, function, *arguments):
+        return None
+"""
+HELD = {1}
+"""Not done yet when the next one is handed out."""
 
 
 @pytest.fixture
 def study(tmp_path):
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 90))])
     schedule = pe.Schedule(candidates=2)
-    search = pe.Search({"roof": ("x", "z")}, {}, 3, 1024, schedule, method="random")
+    search = pe.Search(
+        {"roof": ("x", "z")}, limits={}, seed=3, samples=1024, schedule=schedule, method="random"
+    )
     path = tmp_path / "car.toml"
     pt.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search), path)
     return path
@@ -62,7 +87,10 @@ def test_several_settings_make_every_combination(study):
     )
     runs = sweep_runs({"car": study}, settings)
     assert [(r.study.rig["roof"].model.name, r.study.search.seed) for r in runs] == [
-        *(("Pandar64", 1), ("Pandar64", 2), ("HDL-64E", 1), ("HDL-64E", 2))
+        ("Pandar64", 1),
+        ("Pandar64", 2),
+        ("HDL-64E", 1),
+        ("HDL-64E", 2),
     ]
     assert {run.study.rig["roof"].pose.position for run in runs} == {(-0.43, 0.0, 1.9)}
     assert len({id(run.study.vehicle) for run in runs}) == 1, "a body is kept once"
@@ -129,16 +157,6 @@ def test_sweeps_that_cannot_be_are_one_line(study, out, more, complaint, capsys,
     assert line.startswith(f"pe: {complaint}"), line
 
 
-GREETINGS = {
-    "silent": None,
-    "web server": b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n",
-    "noise": b"\xff" * 4096,
-    "zeros": bytes(64),
-    "closed": b"",
-}
-"""What a peer that is no scheduler sends; nothing, and it closes the connection."""
-
-
 @pytest.mark.parametrize("protocol", ["tcp", "tls"])
 @pytest.mark.parametrize("greeting", GREETINGS.values(), ids=GREETINGS)
 def test_a_peer_that_is_no_scheduler_is_one_line(
@@ -165,21 +183,6 @@ def test_a_peer_that_is_no_scheduler_is_one_line(
         assert line.startswith(f"pe: {address}: scheduler: expected a scheduler that answers")
         for each in taken:
             each.close()
-
-
-OWN_EXECUTORS = """
-from concurrent.futures import Executor
-
-
-class NoShutdown:
-    def submit(self, function, *arguments):
-        return None
-
-
-class NoFutures(Executor):
-    def submit(self, function, *arguments):
-        return None
-"""
 
 
 @pytest.mark.parametrize(
@@ -271,12 +274,14 @@ def test_the_table_has_all_figures_that_were_computed(study, out, capsys):
     study.write_text(text)
     argv = ["sweep", str(study), "--optimize", "--set", "optimize.seed=1,2", "-o", str(out)]
     assert main([*argv, "--workers", "1"]) == 0
-    first, shown = table(out), capsys.readouterr().out
+    first = table(out)
+    shown = capsys.readouterr().out
     known = 0
     for row in first:
         result = json.loads((out / row["run"] / "result.json").read_text())
         for each in result["dashboard"]:
-            key, value = each["figure"], each["value"]
+            key = each["figure"]
+            value = each["value"]
             assert float(row[key]) == value if value is not None else key not in row, key
             known += value is not None
         before = result["figures"]["before"]
@@ -304,7 +309,8 @@ def test_a_run_that_fails_is_named_and_the_others_are_kept(study, out, capsys):
 @pytest.fixture
 def noted(monkeypatch):
     """Placements that a search evaluated, rather than took from its journal."""
-    noted, record = [], Journal.record
+    noted = []
+    record = Journal.record
 
     def watched(self, rig, level, evaluated):
         noted.append(rig)
@@ -385,7 +391,9 @@ class Dying(Executor):
     """An executor whose workers die with some tasks, and with all others handed out meanwhile."""
 
     def __init__(self, deadly, deaths):
-        self.deadly, self.deaths, self.given = deadly, dict.fromkeys(deadly, deaths), []
+        self.deadly = deadly
+        self.deaths = dict.fromkeys(deadly, deaths)
+        self.given = []
         self.open = []
 
     def submit(self, fn, call, task):
@@ -403,15 +411,12 @@ class Dying(Executor):
         return future
 
 
-HELD = {1}
-"""Not done yet when the next one is handed out."""
-
-
 class Place:
     threads = 1
 
     def __init__(self, executor, count):
-        self.executor, self.count = executor, count
+        self.executor = executor
+        self.count = count
 
     def width(self):
         return self.count
@@ -430,7 +435,8 @@ def test_a_worker_that_dies_costs_at_most_the_run_that_killed_it(study, deaths, 
         f"run{seed}": RunTask(replace(plain, search=replace(plain.search, seed=seed)), False, 1)
         for seed in (1, 2, 3)
     }
-    found, executor = {}, Dying({2}, deaths)
+    found = {}
+    executor = Dying({2}, deaths)
 
     def take(name, what):
         assert name not in found, "each once"

@@ -51,13 +51,30 @@ class Cluster:
     """A scheduler and two workers, processes of their own."""
 
     def __init__(self, folder):
-        where, quiet = ("--scheduler-file", folder / "scheduler.json"), ("--no-dashboard",)
-        local = ("--host", "127.0.0.1")
-        self.scheduler = started("scheduler", *where, *quiet, *local, "--port", 0)
-        self.folder, script = folder, folder / "waiting.py"
+        where = ("--scheduler-file", folder / "scheduler.json")
+        self.scheduler = started(
+            "scheduler", *where, "--no-dashboard", "--host", "127.0.0.1", "--port", 0
+        )
+        self.folder = folder
+        script = folder / "waiting.py"
         script.write_text(WAITING.format(folder=str(folder)))
-        one = ("--nthreads", 1, "--no-nanny", "--death-timeout", HANG_S, "--preload", script)
-        self.workers = [started("worker", *where, *quiet, *local, *one) for _ in range(2)]
+        self.workers = [
+            started(
+                "worker",
+                *where,
+                "--no-dashboard",
+                "--host",
+                "127.0.0.1",
+                "--nthreads",
+                1,
+                "--no-nanny",
+                "--death-timeout",
+                HANG_S,
+                "--preload",
+                script,
+            )
+            for _ in range(2)
+        ]
         self.address = self._address(folder / "scheduler.json")
 
     def _address(self, file):
@@ -101,7 +118,8 @@ class Noted:
     """An evaluator that notes each time a worker unpickles it, with the mesh."""
 
     def __init__(self, folder, evaluator):
-        self.folder, self.evaluator = folder, evaluator
+        self.folder = folder
+        self.evaluator = evaluator
 
     def __setstate__(self, state):
         vars(self).update(state)
@@ -136,7 +154,8 @@ def test_a_search_by_its_workers_takes_the_steps_of_one_process(study, cluster, 
 
 def at_first_result(monkeypatch, do):
     """Have something done when the first result has come; return the names of all that come."""
-    came, row_of = [], sweep_table.row_of
+    came = []
+    row_of = sweep_table.row_of
 
     def watched(run, *found):
         if not came:
@@ -159,7 +178,8 @@ def kill_in_the_middle(cluster):
 def test_a_worker_that_is_killed_costs_no_result(study, cluster, tmp_path, monkeypatch, capsys):
     threading.Thread(target=kill_in_the_middle, args=(cluster,), daemon=True).start()
     came = at_first_result(monkeypatch, lambda: None)
-    values, out = f"sensor.roof.position.2={','.join(HEIGHTS)}", tmp_path / "out"
+    values = f"sensor.roof.position.2={','.join(HEIGHTS)}"
+    out = tmp_path / "out"
     argv = ["sweep", str(study), "--set", values, "-o", str(out), "--executor", cluster.address]
     assert main(argv) == 0
     assert len(came) == len(set(came)) == len(HEIGHTS), "each result once"

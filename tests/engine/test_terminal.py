@@ -20,6 +20,8 @@ STEERING = {
     "\u2028\udc80": r"\u2028\udc80",
     "\U000e0041": r"\udb40\udc41",
 }
+SCORING = [Progress("scoring the start", 0.0), Progress("scoring the start", 0.5)]
+SEARCHING = [Progress("optimizing", k / 4, 1.5 - 0.1 * k, k) for k in range(5)]
 
 
 @pytest.mark.parametrize("text", STEERING)
@@ -74,10 +76,6 @@ class Screen(io.StringIO):
 
     def isatty(self):
         return True
-
-
-SCORING = [Progress("scoring the start", 0.0), Progress("scoring the start", 0.5)]
-SEARCHING = [Progress("optimizing", k / 4, 1.5 - 0.1 * k, k) for k in range(5)]
 
 
 @pytest.fixture(autouse=True)

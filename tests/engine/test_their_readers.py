@@ -28,6 +28,17 @@ GROUND = EYE.pose.ground_from_sensor @ SEEN + EYE.pose.position
 F = EYE.model.focal_px
 PIXEL = (960.0 - 0.2 * F, 540.0 + 0.1 * F)
 """Where it falls: 0.2 to the left of the axis, 0.1 below it."""
+FIELDS = {
+    "sensor.json": {"token": str, "channel": str, "modality": str},
+    "calibrated_sensor.json": {
+        "token": str,
+        "sensor_token": str,
+        "translation": list,
+        "rotation": list,
+        "camera_intrinsic": list,
+    },
+}
+"""nutonomy/nuscenes-devkit d9de17a, docs/schema_nuscenes.md."""
 
 
 def rpy_matrix(roll, pitch, yaw):
@@ -43,9 +54,11 @@ def root_from(robot, link):
     """(4, 4) of a link in its robot's root, along urdf_parser_py's own chain of joints."""
     found = np.eye(4)
     for name in robot.get_chain(robot.get_root(), link, links=False):
-        joint, step = robot.joint_map[name], np.eye(4)
+        joint = robot.joint_map[name]
+        step = np.eye(4)
         assert joint.type == "fixed"
-        step[:3, :3], step[:3, 3] = rpy_matrix(*joint.origin.rpy), joint.origin.xyz
+        step[:3, :3] = rpy_matrix(*joint.origin.rpy)
+        step[:3, 3] = joint.origin.xyz
         found = found @ step
     return found
 
@@ -56,25 +69,13 @@ def test_ros_own_parser_reads_the_urdf(capsys):
     files, _ = rig_files(RIG, "urdf")
     robot = urdf.URDF.from_xml_string(files["rig.urdf"])
     assert capsys.readouterr().err == "", "it complains there of what it does not know"
-    root, optical = root_from(robot, "base_link"), root_from(robot, "eye_optical")
+    root = root_from(robot, "base_link")
+    optical = root_from(robot, "eye_optical")
     right, down, depth = np.linalg.inv(optical)[:3] @ root @ [*GROUND, 1.0]
     assert (F * right / depth + 960.0, F * down / depth + 540.0) == pytest.approx(PIXEL)
     roof = np.linalg.inv(root) @ root_from(robot, "roof")
     assert roof[:3, 3] == pytest.approx(RIG["roof"].pose.position)
     assert roof[:3, :3] == pytest.approx(RIG["roof"].pose.ground_from_sensor)
-
-
-FIELDS = {
-    "sensor.json": {"token": str, "channel": str, "modality": str},
-    "calibrated_sensor.json": {
-        "token": str,
-        "sensor_token": str,
-        "translation": list,
-        "rotation": list,
-        "camera_intrinsic": list,
-    },
-}
-"""nutonomy/nuscenes-devkit d9de17a, docs/schema_nuscenes.md."""
 
 
 def test_nuscenes_tables_are_of_its_schema_and_project_as_its_devkit_does():
@@ -127,7 +128,8 @@ def test_kitti_s_lines_project_as_its_readers_do():
     lines = rig_files(RIG, "kitti")[0]["calib.txt"].decode().splitlines()
     rows = {key: np.array(values.split(), dtype=float) for key, values in
             (line.split(":", 1) for line in lines if line)}  # fmt: skip
-    rectified, to_camera = np.eye(4), np.eye(4)
+    rectified = np.eye(4)
+    to_camera = np.eye(4)
     rectified[:3, :3] = rows["R0_rect"].reshape(3, 3)
     to_camera[:3] = rows["Tr_velo_to_cam"].reshape(3, 4)
     roof = RIG["roof"].pose

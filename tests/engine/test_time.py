@@ -31,6 +31,17 @@ from tests.engine import shapes
 
 SPACE = pe.PerceptionSpace((-24.0, 24.0), (-12.0, 12.0), (0.0, 2.0), 0.5)
 FORWARD = pe.Camera("cam", 1280, 720, 1.2)
+TIMES_S = (0.0, 0.3, 2.5, 1000.0)
+TENTH = 0.1
+"""Time between two frames [s]."""
+STANDING = Story(
+    "standing",
+    speed_kmh=0.0,
+    actors=(
+        Actor("adult", BODIES["adult"], ((-1.0, 8.0, 1.0),)),
+        Actor("wall", BODIES["car"], ((0.0, 4.0, 0.6),), watched=False),
+    ),
+)
 
 
 def rig():
@@ -45,7 +56,8 @@ def study(of=None, **other):
 
 
 def test_information_approaches_the_fixed_point_of_t1_and_t2():
-    added, noise = np.array([1e-3, 0.5, 3.0, 1e4]), 0.1
+    added = np.array([1e-3, 0.5, 3.0, 1e4])
+    noise = 0.1
     precision = np.full(4, BLIND_PRECISION)
     for _ in range(20_000):
         precision = updated(predicted(precision, noise, 0.0), [added])
@@ -55,12 +67,14 @@ def test_information_approaches_the_fixed_point_of_t1_and_t2():
 
 def by_definition(frames, rates, added, floor):
     """Return 1 / sigma^2 of numbers, with exact times: each sensor's frames backwards from 0."""
-    step, ticks = 1.0 / math.lcm(*rates), {}
+    step = 1.0 / math.lcm(*rates)
+    ticks = {}
     first = -(frames.frames - 1) * math.lcm(*rates) // min(rates)
     for k, rate in enumerate(rates):
         for tick in range(0, first - 1, -(math.lcm(*rates) // rate)):
             ticks.setdefault(tick, []).append(k)
-    precision, last = floor, None
+    precision = floor
+    last = None
     for tick in sorted(ticks):
         if last is not None:
             precision = max(1.0 / (1.0 / precision + frames.q * (tick - last) * step), floor)
@@ -108,19 +122,16 @@ def test_a_class_has_its_own_noise():
     assert study(frames=Frames(5, 9.0, noises=same)).sight().over_frames(rig()) == whole
 
 
-TIMES_S = (0.0, 0.3, 2.5, 1000.0)
-TENTH = 0.1
-"""Time between two frames [s]."""
-
-
 @pytest.mark.parametrize("time_s", TIMES_S)
 @pytest.mark.parametrize(("needed", "window"), [(3, 5), (1, 1), (2, 3)])
 def test_tracks_are_those_of_all_outcomes(time_s, needed, window):
-    rule, chain = Confirmation(needed), rank_chain()
+    rule = Confirmation(needed)
+    chain = rank_chain()
     step = chain.step(TENTH / time_s if time_s else math.inf)
     found = np.random.default_rng(7).random((2, 8))
     found[1, [2, 5]] = 0.0  # hidden: not found, whatever was before
-    confirmed, kept = np.zeros((2, 8)), np.zeros((2, 8))
+    confirmed = np.zeros((2, 8))
+    kept = np.zeros((2, 8))
     for row, outcome in itertools.product((0, 1), itertools.product((0, 1), repeat=8)):
         state = chain.shares  # how likely each rank is, with this outcome
         for k, hit in enumerate(outcome):
@@ -158,10 +169,15 @@ def test_two_and_three_frames_are_those_of_a_gaussian_process():
 
 @pytest.mark.parametrize("ap", [0.05, 0.5, 0.9])
 def test_tracks_are_those_of_a_simulated_process(ap):
-    time_s, many = 2.5, 40_000
-    rng, kept = np.random.default_rng(11), math.exp(-TENTH / time_s)
-    z, limit = rng.standard_normal(many), NormalDist().inv_cdf(ap)
-    hits, done, simulated = [], np.zeros(many, bool), []
+    time_s = 2.5
+    many = 40_000
+    rng = np.random.default_rng(11)
+    kept = math.exp(-TENTH / time_s)
+    z = rng.standard_normal(many)
+    limit = NormalDist().inv_cdf(ap)
+    hits = []
+    done = np.zeros(many, bool)
+    simulated = []
     for _ in range(60):
         hits.append(z < limit)
         done |= np.sum(hits[-5:], axis=0) >= 3
@@ -227,23 +243,13 @@ def test_a_sensor_with_its_own_curve_has_the_rate_of_its_kind(samples):
     assert drawn[0] == pytest.approx(drawn[1], abs=1e-9)
 
 
-STANDING = Story(
-    "standing",
-    speed_kmh=0.0,
-    actors=(
-        Actor("adult", BODIES["adult"], ((-1.0, 8.0, 1.0),)),
-        Actor("wall", BODIES["car"], ((0.0, 4.0, 0.6),), watched=False),
-    ),
-)
-
-
 def test_a_story_at_rest_is_the_ap_of_objects_in_traffic():
     car = shapes.box_car()
     front = float(car.bounds[1][0])
     boxes = np.array([BODIES["adult"].box, BODIES["car"].hiding])
     centers = [(front + 8.0, 1.0, boxes[0, 2] / 2), (front + 4.0, 0.6, boxes[1, 2] / 2)]
     names = ("pedestrian", "car")
-    objects = Objects(centers, boxes, [0.0, 0.0], [0, 1], names, [0, 0])
+    objects = Objects(centers, boxes, [0.0, 0.0], [0, 1], class_names=names, scenes=[0, 0])
     m = ObjectMeasurementCache(objects, car, True).measure(rig())
     entropies, _ = FusedObjects(objects, np.ones(2), pe.PerceptionModel()).entropies(rig(), m)
     seen = drive_by(STANDING, rig(), car)
@@ -272,7 +278,8 @@ def test_what_hides_is_at_least_the_prior_s_and_what_is_seen_is_small():
 
 @pytest.mark.parametrize("name", ["crossing_child", "cut_in"])
 def test_no_verdict_gets_better_with_a_larger_body_that_hides(name):
-    car, story = shapes.box_car(), stories()[name]
+    car = shapes.box_car()
+    story = stories()[name]
     watched = [actor for actor in story.actors if actor.watched]
     base = np.array(BODIES["car"].hiding)
     before = None
@@ -323,7 +330,8 @@ def test_a_slow_sensor_confirms_late():
 
 def test_no_further_sensor_and_no_higher_rate_confirms_later():
     roof, front = rig().sensors
-    both, slow = pe.Rig([roof, front]), {"lidar": 1.0}
+    both = pe.Rig([roof, front])
+    slow = {"lidar": 1.0}
     lidar, camera = (
         drive_by(near_body(), pe.Rig([s]), None, rates=slow).bodies[0] for s in (roof, front)
     )
@@ -335,7 +343,8 @@ def test_no_further_sensor_and_no_higher_rate_confirms_later():
 
 def test_ap_is_that_of_the_last_frame():
     moving = Actor("adult", BODIES["adult"], ((-3.0, 60.0, 0.0), (0.0, 3.0, 0.0)))
-    story, roof = replace(near_body(), actors=(moving,)), pe.Rig([rig()["roof"]])
+    story = replace(near_body(), actors=(moving,))
+    roof = pe.Rig([rig()["roof"]])
     whole, slow = (
         drive_by(story, roof, None, rates=rates).bodies[0].ap for rates in ({}, {"lidar": 2.0})
     )
@@ -371,7 +380,8 @@ def test_the_scan_changes_no_bit_of_what_stands():
 
 
 def test_bodies_move_as_the_vehicle_drives_on():
-    car, moving = shapes.box_car(), replace(STANDING, speed_kmh=36.0)
+    car = shapes.box_car()
+    moving = replace(STANDING, speed_kmh=36.0)
     where, _ = moving.positions(car)
     front = float(car.bounds[1][0])
     assert where[0, 0] == pytest.approx((front + 18.0, 1.0))

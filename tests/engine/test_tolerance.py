@@ -17,7 +17,10 @@ USUAL = pe.Tolerance(0.01, math.radians(0.3))
 BOTH = pe.Tolerance(0.02, math.radians(1.0), 2, failures=True)
 NOSE = (2.21663, 0.31663, 1.0947), (19.4249, -30.1023, 50.1524)
 """The first draw of the second sensor."""
-ROUNDING_M, ROUNDING_RAD = 0.51e-5, math.radians(0.51e-4)
+ROUNDING_M = 0.51e-5
+ROUNDING_RAD = math.radians(0.51e-4)
+SENSOR = {"name": "roof", "model": "Pandar64", "position": [0.0, 0.0, 2.0]}
+TWO = [SENSOR, SENSOR | {"name": "nose"}]
 
 
 def rig():
@@ -150,14 +153,13 @@ def test_a_search_minimises_what_placements_are_worth_mounted_off(evaluator):
     bounds = {"roof": {"z": (1.5, 2.2), "pitch": (-0.2, 0.2)}}
     objective = RobustObjective(evaluator, BOTH)
     schedule = pe.Schedule(4)
-    *_, last = pe.optimize(objective, rig(), pe.SearchSpace(bounds), 1, schedule, method="random")
+    *_, last = pe.optimize(
+        objective, rig(), pe.SearchSpace(bounds), seed=1, schedule=schedule, method="random"
+    )
     assert last.entropy == objective.entropy(last.best) < objective.entropy(rig())
 
 
 # --- studies --------------------------------------------------------------------------------------
-
-SENSOR = {"name": "roof", "model": "Pandar64", "position": [0.0, 0.0, 2.0]}
-TWO = [SENSOR, SENSOR | {"name": "nose"}]
 
 
 def read(sensors=TWO, **optimize):
@@ -168,7 +170,9 @@ def test_a_study_says_tolerance_and_failures():
     study = read(
         tolerance={"position": 0.02, "angle": 0.5, "draws": 6, "failures": True, "worst": True}
     )
-    assert study.search.tolerance == pe.Tolerance(0.02, math.radians(0.5), 6, True, True)
+    assert study.search.tolerance == pe.Tolerance(
+        position=0.02, angle=math.radians(0.5), draws=6, failures=True, worst=True
+    )
     again = study_from_dict(study_to_dict(study))
     assert again.search == study.search
 

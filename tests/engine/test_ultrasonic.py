@@ -22,7 +22,7 @@ def ultrasonic(position=(2.4, 0.0, 0.5), rotation=(0, 0, 0), **change):
 
 
 def post(x, y, size=(0.1, 0.1, 1.0), yaw=0.0):
-    return pe.Objects([[x, y, size[2] / 2]], [size], [yaw], [0], ("post",))
+    return pe.Objects([[x, y, size[2] / 2]], [size], [yaw], [0], class_names=("post",))
 
 
 @pytest.mark.parametrize(
@@ -56,14 +56,18 @@ def test_objects_are_heard_where_points_of_their_surface_are():
     """An own lattice of the box's whole surface, in an own frame, decides; edges are left out."""
     sensor = ultrasonic(rotation=(0, 5, 12))
     rng = np.random.default_rng(5)
-    turn, eye = np.asarray(sensor.pose.ground_from_sensor), np.asarray(sensor.pose.position)
+    turn = np.asarray(sensor.pose.ground_from_sensor)
+    eye = np.asarray(sensor.pose.position)
     decided = 0
     for _ in range(150):
-        x, y, yaw = rng.uniform(3.2, 5.0), rng.uniform(-1.6, 1.6), rng.uniform(-3, 3)
+        x = rng.uniform(3.2, 5.0)
+        y = rng.uniform(-1.6, 1.6)
+        yaw = rng.uniform(-3, 3)
         size = rng.uniform(0.1, 0.8, 3)
         places = rng.uniform(-0.5, 0.5, (4000, 3))
         places[np.arange(4000), rng.integers(0, 3, 4000)] = rng.choice([-0.5, 0.5], 4000)
-        c, s = math.cos(yaw), math.sin(yaw)
+        c = math.cos(yaw)
+        s = math.sin(yaw)
         surface = places * size @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) + (x, y, size[2] / 2)
         local = (surface - eye) @ turn
         far = np.linalg.norm(local, axis=1)
@@ -78,7 +82,8 @@ def test_objects_are_heard_where_points_of_their_surface_are():
 
 
 def test_the_body_hides_some_of_the_cone():
-    sensor, kind = ultrasonic((2.32, 0.3, 0.5), (0, 0, 70)), kinds.KINDS["ultrasonic"]
+    sensor = ultrasonic((2.32, 0.3, 0.5), (0, 0, 70))
+    kind = kinds.KINDS["ultrasonic"]
     sample = kind.on_sample(every_voxel(SPACE), shapes.box_car(), 1)
     measured = sample.measure(sensor)
     free = kind.on_sample(every_voxel(SPACE), None, 1).measure(sensor)
@@ -88,7 +93,8 @@ def test_the_body_hides_some_of_the_cone():
 
 
 def test_it_is_in_no_entropy_until_a_curve_is_given():
-    roof, sonar = shapes.lidar_on_roof(), ultrasonic()
+    roof = shapes.lidar_on_roof()
+    sonar = ultrasonic()
     evaluator = pe.Evaluator(SPACE, pe.Prior.uniform(), shapes.box_car())
     alone, both = (evaluator.score(pe.Rig(s)) for s in ([roof], [roof, sonar]))
     assert both.entropy == alone.entropy and both.per_sensor["rear"].coverage > 0.0
@@ -99,10 +105,12 @@ def test_it_is_in_no_entropy_until_a_curve_is_given():
 
 def test_the_ground_map_hears_posts_and_no_more():
     """A post of half a metre is heard in the cone, seen from above."""
-    sensor, grid = ultrasonic((0, 0, 0.3)), GroundGrid((-1.0, -2.0), (80, 80), 0.05)
+    sensor = ultrasonic((0, 0, 0.3))
+    grid = GroundGrid((-1.0, -2.0), (80, 80), 0.05)
     marked = kinds.KINDS["ultrasonic"].on_ground(kinds.GroundView(grid, 0.5)).mark(sensor)
     x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
-    far, aside = np.hypot(x, y), np.degrees(np.abs(np.arctan2(y, x)))
+    far = np.hypot(x, y)
+    aside = np.degrees(np.abs(np.arctan2(y, x)))
     assert marked.marked[(far > 0.1) & (far < 1.95) & (aside < 28)].all()
     outside = np.abs(y) - np.tan(math.radians(30.0)) * x
     assert not marked.marked[(far > 2.0 + 0.036) | (outside > 0.06)].any()

@@ -80,7 +80,8 @@ def test_the_best_places_are_reported_on_a_larger_sample(study):
 
 
 def test_requirements_are_counted_with_their_mounting_errors(study):
-    zone, child = pe.requirements.Zone(spots=((5.0, 0.0),)), pe.requirements.BODIES["child"]
+    zone = pe.requirements.Zone(spots=((5.0, 0.0),))
+    child = pe.requirements.BODIES["child"]
     under = pe.requirements.Under(mounting=True)
     wanted = pe.requirements.Requirement("child", zone, (child,), under=under)
     loose = replace(study.search, tolerance=search.Tolerance(angle=np.radians(40.0)))
@@ -152,7 +153,8 @@ def test_the_error_is_that_of_the_gains(study):
 
 
 def test_the_command_writes_what_the_job_finds(study, tmp_path, capsys):
-    path, rows = tmp_path / "car.toml", tmp_path / "places.csv"
+    path = tmp_path / "car.toml"
+    rows = tmp_path / "places.csv"
     pt.export_study(study, path)
     given = ["where", str(path), "--model", "Camera 90 deg", "--places", "30"]
     assert main([*given, "--json", "-o", str(rows)]) == 0

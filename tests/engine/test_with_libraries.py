@@ -26,7 +26,8 @@ AXLE = pe.Reference(-1.3, 0.32)
 
 def area(points):
     """Area inside a line that closes; the sign tells which way it runs."""
-    a, b = points, np.roll(points, -1, axis=0)
+    a = points
+    b = np.roll(points, -1, axis=0)
     return float((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum()) / 2.0
 
 
@@ -135,7 +136,8 @@ def test_argoverse_s_tables_have_its_columns_and_say_their_conventions():
 def test_argoverse_s_own_projection_sees_a_point_where_ours_does():
     """As its PinholeCamera does: u ~ K (R' (p - t)), p from the rear axle."""
     poses, lenses = (table.to_pylist() for table in tables().values())
-    row, lens = next(r for r in poses if r["sensor_name"] == "eye"), lenses[0]
+    row = next(r for r in poses if r["sensor_name"] == "eye")
+    lens = lenses[0]
     w, x, y, z = (row[key] for key in ("qw", "qx", "qy", "qz"))
     rotation = np.array(
         [

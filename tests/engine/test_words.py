@@ -29,7 +29,8 @@ def several_meanings(trees):
 
     The same type may be named in many files; a class is another thing wherever it is.
     """
-    meanings, places = defaultdict(set), defaultdict(list)
+    meanings = defaultdict(set)
+    places = defaultdict(list)
     for place, tree in trees:
         for name, meaning in types_of(tree):
             meanings[name.removesuffix("s")].add((name, meaning))

@@ -20,7 +20,8 @@ FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader
 """WebGL in software: the same picture on every machine."""
 PATIENCE_MS = 10_000
 """Timeout for a browser that hangs."""
-DESKTOP, PHONE = (1280, 900), (390, 844)
+DESKTOP = (1280, 900)
+PHONE = (390, 844)
 WITHOUT_WEBGL = """
   const real = HTMLCanvasElement.prototype.getContext;
   HTMLCanvasElement.prototype.getContext = function (kind, ...more) {

@@ -85,7 +85,8 @@ def test_the_view_is_drawn(view):
 
 @pytest.mark.parametrize("layer", ["fov", "ground"])
 def test_a_sensor_s_switch_shows_and_hides(view, layer):
-    before, box = pixels(view), view.locator(f"input[data-sensor='0'][data-layer='{layer}']")
+    before = pixels(view)
+    box = view.locator(f"input[data-sensor='0'][data-layer='{layer}']")
     box.click()
     changed = pixels(view)
     assert changed != before
@@ -137,7 +138,8 @@ def test_it_is_turned_by_mouse_and_keys_and_reset(view):
 
 def test_the_wheel_scrolls_the_page_until_the_view_was_pressed(view):
     view.locator(".v3-canvas").hover()
-    before, top = pixels(view), view.evaluate("scrollY")
+    before = pixels(view)
+    top = view.evaluate("scrollY")
     view.mouse.wheel(0, 120)
     view.wait_for_function("top => scrollY > top", arg=top)
     assert pixels(view) == before

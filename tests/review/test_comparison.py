@@ -34,7 +34,7 @@ def differences(contexts):
 def beside(*rigs, **changes):
     """Studies of these rigs as a page has them; none is scored."""
     study = dataclasses.replace(small_study(), **changes)
-    each = [pt.Outcome("score", s, s, None, None) for s in map(study.with_rig, rigs)]
+    each = [pt.Outcome("score", s, s, before=None, after=None) for s in map(study.with_rig, rigs)]
     return keyed_contexts(
         [ReportContext(name, one) for name, one in zip("ABCDEF", each, strict=False)]
     )

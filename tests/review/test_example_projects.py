@@ -21,6 +21,7 @@ FOLDER = ROOT / "examples"
 FILES = ("decided.toml", "figures.json", "review.html", "vehicle.npz")
 MAX_BYTES = 12_000_000
 """Of all projects together."""
+PROJECTS = sorted(path.parent.name for path in FOLDER.glob("*/decided.toml"))
 
 
 def tool():
@@ -32,7 +33,6 @@ def tool():
 
 
 EXAMPLES = tool()
-PROJECTS = sorted(path.parent.name for path in FOLDER.glob("*/decided.toml"))
 STUDIES = [path for name in PROJECTS for path in EXAMPLES.studies_of(name)]
 RECOMPUTED = [path for path in STUDIES if path.stem == "1_roof"][-tries(1, 4) :]
 """Studies whose figures, verdicts among them, are computed; `make examples` computes all."""

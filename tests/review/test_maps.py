@@ -28,7 +28,16 @@ def seen(entropy, sensors=None):
     x, y = ((np.arange(n) + 0.5 - n / 2) for n in (nx, ny))
     number = np.where(np.isfinite(entropy), 1, -1) if sensors is None else sensors
     coverage = np.where(np.isfinite(entropy), 0.5, np.nan)
-    return GroundSight(x, y, 1.0, None, entropy, coverage, number, number)
+    return GroundSight(
+        x=x,
+        y=y,
+        step=1.0,
+        height=None,
+        entropy=entropy,
+        coverage=coverage,
+        sensors=number,
+        kinds=number,
+    )
 
 
 def pixels_of(svg):
@@ -40,7 +49,8 @@ def pixels_of(svg):
 def test_a_map_has_ahead_right_and_left_up():
     """One good place, ahead on the left, and the vehicle in the middle."""
     entropy = np.full((6, 4), 16.651)
-    entropy[5, 3], entropy[2:4, 1:3] = -10.976, np.nan
+    entropy[5, 3] = -10.976
+    entropy[2:4, 1:3] = np.nan
     pixels = pixels_of(ground_map(seen(entropy), ENTROPY, None, "alt"))
     assert pixels.shape == (4, 6, 4)
     best, worst = (graphics.as_bytes(graphics.VIRIDIS[k]) for k in (-1, 0))
@@ -50,7 +60,8 @@ def test_a_map_has_ahead_right_and_left_up():
 
 
 def test_the_key_has_the_colours_of_the_map():
-    entropy, sensors = np.zeros((4, 2)), np.array([[0, 1], [2, 3], [4, 0], [1, 2]])
+    entropy = np.zeros((4, 2))
+    sensors = np.array([[0, 1], [2, 3], [4, 0], [1, 2]])
     svg = ground_map(seen(entropy, sensors), SENSORS, None, "alt")
     pixels = pixels_of(svg)
     for (i, j), number in np.ndenumerate(sensors):
@@ -61,8 +72,11 @@ def test_the_key_has_the_colours_of_the_map():
 
 
 def test_a_difference_is_blue_where_the_second_is_better():
-    one, two = np.array([[0.0, 0.0, 0.0]]), np.array([[-20.0, 0.0, 20.0]])
-    pixels = pixels_of(difference_map(seen(one), seen(two), None, "alt", ("better", "worse")))
+    one = np.array([[0.0, 0.0, 0.0]])
+    two = np.array([[-20.0, 0.0, 20.0]])
+    pixels = pixels_of(
+        difference_map(seen(one), seen(two), vehicle=None, alt="alt", ends=("better", "worse"))
+    )
     right, middle, left = (pixels[k, 0, :3] for k in (2, 1, 0))
     assert right.tolist() == graphics.as_bytes(graphics.DIFFERENCE[2]).tolist()
     assert (

@@ -83,7 +83,14 @@ def test_scripts_and_styles_stand_once_and_data_by_study(scored, other, monkeypa
             "script_data": {"key": one.key, "name": name, "x": [1.5, None]},
         }
 
-    row = Section("try", "Try", values, False, "drive-by", lambda: ("const a = '</script>';",))
+    row = Section(
+        "try",
+        "Try",
+        values,
+        joint=False,
+        template="drive-by",
+        scripts=lambda: ("const a = '</script>';",),
+    )
     monkeypatch.setattr("pe_tools.page.document.SECTIONS", (row,))
     text = page_bytes([scored, other]).decode()
     assert text.count("const a = '<\\/script>';") == text.count("@page { margin") == 1

@@ -17,7 +17,8 @@ from tests.engine.test_masks import decoded
 from tests.review.conftest import box
 
 SIZE = (96, 54)
-RED, BLUE = (0.6, 0.0, 0.0), (0.0, 0.0, 0.6)
+RED = (0.6, 0.0, 0.0)
+BLUE = (0.0, 0.0, 0.6)
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +38,8 @@ def test_a_view_projects_where_it_looks():
     """Its rays and its projection are each other's inverse; left of the eye is left."""
     view = Viewpoint((-10.0, 0.0, 2.0), (0.0, 0.0, 1.0), 40.0)
     camera = view.camera(*SIZE)
-    right, down = np.array([3.5, 48.0, 90.0]), np.array([5.0, 27.0, 50.5])
+    right = np.array([3.5, 48.0, 90.0])
+    down = np.array([5.0, 27.0, 50.5])
     points = np.array(view.eye) + 7.0 * camera.rays_through(right, down)
     found = view.project(points, *SIZE)
     np.testing.assert_allclose(found, (right, down), atol=1e-9)
@@ -79,9 +81,17 @@ def test_glass_is_looked_through_by_a_camera_alone():
     parts = np.repeat([0, 1], [len(pane), len(wall)])
     vehicle = pe.Vehicle(np.concatenate([pane, wall]), parts, ["window", "wall"], ["window"])
     solids = RayScene([painted_vehicle(vehicle)])
-    ahead, eye = np.array([[1.0, 0.0, 0.0]]), np.array([0.0, 0.0, 1.0])
+    ahead = np.array([[1.0, 0.0, 0.0]])
+    eye = np.array([0.0, 0.0, 1.0])
     for from_sensor, part in ((False, 0), (True, 1)):
-        camera = RayCamera(eye, 1, 1, lambda *_: ahead, 0.1, from_sensor)
+        camera = RayCamera(
+            eye,
+            width=1,
+            height=1,
+            rays_through=lambda *_: ahead,
+            pixel_rad=0.1,
+            from_sensor=from_sensor,
+        )
         assert solids.first_hits(camera, ahead).part.tolist() == [part]
 
 
@@ -90,7 +100,7 @@ def test_a_sensor_behind_the_body_is_reported_apart(car):
     vehicle, rig = car
     behind = pe.Sensor("a <b>", rig["right"].model, pe.Pose((-2.3, 0.5, 0.6)))
     study = pe.Study(pe.Rig([rig["right"], behind]), vehicle)
-    shown = ReportContext("car", pt.Outcome("score", study, study, None, None))
+    shown = ReportContext("car", pt.Outcome("score", study, study, before=None, after=None))
     drawing, key = picture_module.labelled_picture(shown, "alt")
     assert drawing.count('stroke-dasharray="4 4"') == 1 and drawing.count("<circle") == 3
     assert [row[:2] for row in key] == [(1, "right"), (2, "a <b>")]

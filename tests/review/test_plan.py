@@ -31,7 +31,7 @@ def test_the_page_says_what_it_rests_on_and_what_it_does_not_say(scored):
     study = dataclasses.replace(small_study(), model=own, vehicle=None)
     score = scored.after
     (other,) = keyed_contexts(
-        [ReportContext("own", pt.Outcome("score", study, study, score, score))]
+        [ReportContext("own", pt.Outcome("score", study, study, score, after=score))]
     )
     lidar = assumptions((other,))["curves"][0]
     assert lidar[1:3] == ["0.200", "0.500"] and lidar[-1] not in CURVE_SOURCES.values()

@@ -158,7 +158,8 @@ def test_the_search_has_every_key_verb_and_sensor(site):
 
 def clicks_from(pages, first, most):
     """Return how many links lead from a page to each other one, of at most so many."""
-    distance, waiting = {first: 0}, deque([first])
+    distance = {first: 0}
+    waiting = deque([first])
     while waiting:
         here = waiting.popleft()
         if distance[here] == most:

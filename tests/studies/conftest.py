@@ -23,7 +23,8 @@ ROOT = Path(__file__).parents[2]
 
 def study(name, *arguments):
     """Run a study's command in this process: what it prints, warnings too, and its status."""
-    out, err = io.StringIO(), io.StringIO()
+    out = io.StringIO()
+    err = io.StringIO()
     streams = contextlib.redirect_stdout(out), contextlib.redirect_stderr(err)
     argv = [name, *map(str, arguments)]
     names = f"studies.{name}", f"studies.{name}.__main__"  # by a test: Python would warn

@@ -57,13 +57,15 @@ def test_the_plan_is_the_one_before_the_first_run():
 
 def test_rigs_are_the_lidars_of_the_studies_that_the_plan_names():
     """Poses and bounds of experiment 4, and of the benchmark's shuttle with its body."""
-    paper, bench = load_study(STUDIES / "4_cameras.toml"), PROBLEMS["shuttle of eight"].make()
+    paper = load_study(STUDIES / "4_cameras.toml")
+    bench = PROBLEMS["shuttle of eight"].make()
     for rig, other in zip(PLAN.searches.rigs, (paper, bench), strict=True):
         ours = study_of(PLAN, rig, "entropy", 1)
         lidars = [s for s in other.rig if s.kind == "lidar"]
         assert [s.pose for s in ours.rig] == [s.pose for s in lidars]
         assert [s.model for s in ours.rig] == [s.model for s in lidars]
-        own, theirs = ours.search, other.search
+        own = ours.search
+        theirs = other.search
         for sensor, lidar in zip(ours.rig, lidars, strict=True):
             assert own.free[sensor.name] == theirs.free[lidar.name]
             assert own.limits.get(sensor.name, {}) == theirs.limits.get(lidar.name, {})
@@ -82,7 +84,8 @@ def test_a_short_search_is_kept_and_its_runs_are_gone_on_with_by_resume_alone(
 ):
     """It ends within its bounds, and its file is not searched again."""
     search_alone(monkeypatch)
-    plan, said = quick_after_search_plan(), []
+    plan = quick_after_search_plan()
+    said = []
     assert [p.name for p in searched_placements(plan, tmp_path / AFTER_SEARCH)] == [
         "after-shuttle-start"
     ]

@@ -44,7 +44,8 @@ def test_the_bound_is_nearly_reached():
     """Straight ahead a cube seen along its diagonal comes within a few percent of it."""
     camera = pe.catalog.load("Camera 30 deg")
     diagonal = np.ones(3) / math.sqrt(3.0)
-    pitch, yaw = -math.asin(diagonal[2]), math.atan2(diagonal[1], diagonal[0])
+    pitch = -math.asin(diagonal[2])
+    yaw = math.atan2(diagonal[1], diagonal[0])
     sensor = pe.Sensor("camera", camera, pe.Pose((0, 0, 0), (0, pitch, yaw)))
     area = pe.measure(sensor, [20.0 * diagonal], SIDE)[0]
     bound = max_pixel_area(camera, np.array([20.0]), SIDE)[0]
@@ -53,7 +54,8 @@ def test_the_bound_is_nearly_reached():
 
 def test_the_printed_figure_needs_near_voxels_and_a_wide_view():
     """A voxel at the farthest distance has the printed entropy; the least unseen share is exact."""
-    printed, camera = ROW["2_60deg"].entropy, pe.catalog.load("Camera 60 deg")
+    printed = ROW["2_60deg"].entropy
+    camera = pe.catalog.load("Camera 60 deg")
     distance = max_distance_for(camera, printed, SIDE, RTM3D)
     assert min_entropy(camera, np.array([distance]), SIDE, RTM3D)[0] == pytest.approx(printed)
     assert 2.0 < distance < 6.0

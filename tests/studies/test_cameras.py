@@ -28,7 +28,9 @@ MODEL = camera_model(PLAN.cameras.rig)
 FOLDER = ROOT / "docs" / "validity" / "own" / "cameras"
 DIGEST = "ab094c698eca1191"
 """Of the plan that the study began with. A changed plan is another study, with its own results."""
-AHEAD = Placement("one", "sedan", ((1.9, 0.0, 1.5, 0.0, 0.0, 0.0),), False, CAMERAS, "")
+AHEAD = Placement(
+    "one", "sedan", ((1.9, 0.0, 1.5, 0.0, 0.0, 0.0),), all_round=False, design=CAMERAS, model=""
+)
 """One level camera in front of the windscreen."""
 
 
@@ -65,14 +67,16 @@ def box_ahead(monkeypatch):
     """A scene with a cube of 2 m, 10 m ahead, as the only object."""
     triangles = solid((9.0, 11.0), (-1.0, 1.0), (0.0, 2.0))
     none = np.zeros(len(triangles), np.int64)
-    content = Scene(triangles, none, none, np.array([[10.0, 0.0]]), np.array([0]), True)
+    content = Scene(triangles, none, none, np.array([[10.0, 0.0]]), labels=np.array([0]), flat=True)
     monkeypatch.setattr(rendering, "scene", lambda *_: content)
 
 
 def test_a_cube_covers_the_pixels_that_its_face_does(box_ahead):
     scene = rendering.Renderer(PLAN, AHEAD).pictures("test", 0)
-    f, distance = MODEL.focal_px, 9.0 - 1.9
-    width, height = 2.0 * f / distance, 2.0 * f / distance
+    f = MODEL.focal_px
+    distance = 9.0 - 1.9
+    width = 2.0 * f / distance
+    height = 2.0 * f / distance
     assert scene.beams[0] == pytest.approx(width * height, rel=0.12)
     picture = scene.pictures[0].astype(float)
     row = MODEL.height // 2
@@ -89,7 +93,8 @@ def test_cells_take_their_features_from_where_they_are_in_the_picture():
     lifting = Lifting.of(PLAN, placement)
     cameras = rendering.Renderer(PLAN, placement).cameras
     _, columns, rows, _ = lifting.nearness.shape
-    region, side = PLAN.region, STRIDE * PLAN.region.cell_m
+    region = PLAN.region
+    side = STRIDE * PLAN.region.cell_m
     total = len(cameras) * columns * rows
     rng = np.random.default_rng(4)
     cells = rng.choice(np.flatnonzero((lifting.pixels[:, :, 0] < total).all(axis=1)), 60)

@@ -125,7 +125,7 @@ def test_scenes_and_their_noise_are_the_same_in_every_session(voxels):
 
 @pytest.mark.parametrize("world", [PLAIN, TOWN])
 def test_beams_end_where_embree_says(placement, world):
-    content = scene(PLAN, "sedan", "train", world, 1)
+    content = scene(PLAN, "sedan", "train", world, number=1)
     embree = Embree.of(content.triangles)
     if embree is None:
         pytest.skip("embreex is not installed")
@@ -257,7 +257,8 @@ def saved(*folders):
 
 
 def test_the_page_is_that_of_the_saved_results():
-    cameras, searches = full_camera_plan(), full_after_search_plan()
+    cameras = full_camera_plan()
+    searches = full_after_search_plan()
     done = RunFiles(FOLDER, PLAN, runs(PLAN)).read()
     with_cameras = seed_by_seed(cameras, camera_placements(cameras))
     camera_runs = RunFiles(FOLDER / CAMERAS, cameras, with_cameras).read()
@@ -278,7 +279,8 @@ def test_the_page_of_validity_gives_the_answer_of_the_study():
     answer = saved()["answer"]
     blocks = (ROOT / "docs/validity/README.md").read_text("utf-8").split("\n\n")
     (told,) = (text for b in blocks if answer in (text := " ".join(b.split())))
-    study, published = told.find("ur own study]"), told.find("ublished")
+    study = told.find("ur own study]")
+    published = told.find("ublished")
     assert study >= 0 and (published < 0 or study < published), "our own study comes first"
 
 
@@ -288,7 +290,8 @@ def test_the_readme_says_in_ninety_words_what_to_go_by_and_what_a_number_means()
     told = re.sub(r"\]\([^)]*\)", "]", " ".join(section.split()))
     assert len(told.replace("- ", "").split()) <= 90
     second = json.loads((FOLDER / "second/results.json").read_text("utf-8"))
-    searches, good = second[SEARCHES]["minus_entropy"], second[GOOD]
+    searches = second[SEARCHES]["minus_entropy"]
+    good = second[GOOD]
     more = [ring for ring, row in searches.items() if row["verdict"] == FINDS_MORE[1]]
     assert more == list(searches)[1:]
     figures = (good["figures"][name]["rho"] for name in (EXPECTED_AP, COVERAGE, PRIMARY))

@@ -72,7 +72,8 @@ def test_points_of_what_stands_fall_on_it_in_all_frames():
     assert both.shape == (nx, ny, 2 * LAYERS) and (both[..., :LAYERS] == alone).all()
     assert (five.beams >= one.beams).all() and five.beams.sum() > 3 * one.beams.sum()
     # above the ground, what the last frame saw the earlier ones saw near by
-    now, before = both[..., 4:LAYERS].any(axis=2), both[..., LAYERS + 4 :].any(axis=2)
+    now = both[..., 4:LAYERS].any(axis=2)
+    before = both[..., LAYERS + 4 :].any(axis=2)
     near = np.zeros_like(before)
     for i in (-1, 0, 1):
         for j in (-1, 0, 1):
@@ -90,14 +91,17 @@ def test_verdicts_are_by_the_plan():
 
 def made_up_results(plan, score_of):
     """Results whose AP with five frames follows a figure, and with one another one."""
-    results, scores = {}, {}
+    results = {}
+    scores = {}
     for k, placement in enumerate(frames_placements(plan)):
         scores[placement.name] = score_of(k)
     for run in frames_runs(plan):
-        k, seed = int(run.placement.name[-2:]), run.seed
+        k = int(run.placement.name[-2:])
+        seed = run.seed
 
         def found(ap):
-            by_class, ended = dict.fromkeys(CLASSES, ap), {"converged": ap < 0.5}
+            by_class = dict.fromkeys(CLASSES, ap)
+            ended = {"converged": ap < 0.5}
             return {"ap": ap, "by_class": by_class, "training": ended}
 
         results[run.name] = {**found(0.5 + 0.02 * k + 0.001 * seed), "one_frame": found(0.4)}

@@ -84,7 +84,9 @@ def test_partial_rho_by_hand():
 def test_intervals_hold_the_true_rho_about_as_often_as_they_say():
     """Spearman's rho of a normal pair with correlation r is 6/pi asin(r/2)."""
     rng = np.random.default_rng(3)
-    r, count, tries = 0.6, 40, 60
+    r = 0.6
+    count = 40
+    tries = 60
     truth = 6 / math.pi * math.asin(r / 2)
     held = 0
     for _ in range(tries):
@@ -99,12 +101,13 @@ def test_intervals_hold_the_true_rho_about_as_often_as_they_say():
 
 def test_pairs_of_different_hardware_by_hand():
     ap = np.array([0.1, 0.2, 0.3, 0.9])
-    hardware, vehicle = np.array(["a", "a", "b", "b"]), np.zeros(4)
+    hardware = np.array(["a", "a", "b", "b"])
+    vehicle = np.zeros(4)
     # pairs: (2,0) (2,1) (3,0) (3,1); the score has the first one wrong and the second tied
     score = np.array([5.0, 4.0, 4.0, 9.0])
-    assert ordered_share(score, ap, hardware, vehicle, 0.02) == pytest.approx(2.5 / 4)
-    assert ordered_share(score, ap, hardware, vehicle, 0.15) == pytest.approx(2.0 / 3)
-    assert math.isnan(ordered_share(score, ap, hardware, np.arange(4), 0.02))
+    assert ordered_share(score, ap, hardware, vehicle, tie=0.02) == pytest.approx(2.5 / 4)
+    assert ordered_share(score, ap, hardware, vehicle, tie=0.15) == pytest.approx(2.0 / 3)
+    assert math.isnan(ordered_share(score, ap, hardware, np.arange(4), tie=0.02))
 
 
 def made_up(plan, missing=0):

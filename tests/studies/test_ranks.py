@@ -28,7 +28,8 @@ def test_rho_by_hand():
 
 
 def test_rho_with_ties_is_the_correlation_of_midranks():
-    a, b = [1, 2, 2, 4, 5], [3, 1, 4, 4, 9]
+    a = [1, 2, 2, 4, 5]
+    b = [3, 1, 4, 4, 9]
     expected = np.corrcoef(midranks(a), midranks(b))[0, 1]
     assert spearman(a, b) == pytest.approx(expected, abs=1e-12)
 
@@ -40,7 +41,8 @@ def test_critical_values_are_the_tables(count, least):
 
 
 def test_chance_is_the_mean_over_detectors_of_shuffled_placements():
-    score, aims = [1.0, 2.0, 2.0, 5.0], [[1.0, 3.0, 2.0, 4.0], [2.0, 1.0, 4.0, 4.0]]
+    score = [1.0, 2.0, 2.0, 5.0]
+    aims = [[1.0, 3.0, 2.0, 4.0], [2.0, 1.0, 4.0, 4.0]]
     expected = sorted(
         np.mean([spearman([score[i] for i in order], aim) for aim in aims])
         for order in itertools.permutations(range(4))

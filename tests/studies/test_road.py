@@ -80,7 +80,8 @@ def test_a_log_is_read_without_the_vehicle_itself(tmp_path):
 
 
 def test_figures_by_hand():
-    n, m = np.array([0, 0, 2, 8, 5]), np.array([0.0, 4.0, 2.0, 10.0, 0.2])
+    n = np.array([0, 0, 2, 8, 5])
+    m = np.array([0.0, 4.0, 2.0, 10.0, 0.2])
     assert ratio(n, m) == 0.8  # of 0, 1 and 0.8
     assert none_excess(n, m) == pytest.approx(0.0)
     assert none_excess(n, np.zeros(5)) == pytest.approx(0.6)
@@ -103,15 +104,16 @@ def simulated(tmp_path_factory):
     rig = read_lidars(tmp_path_factory.getbasetemp() / "road0")
     rng = np.random.default_rng(3)
     count = 240
-    distance, angle = rng.uniform(6.0, 100.0, count), rng.uniform(-3.0, 3.0, count)
+    distance = rng.uniform(6.0, 100.0, count)
+    angle = rng.uniform(-3.0, 3.0, count)
     centers = np.stack([distance * np.cos(angle), distance * np.sin(angle), 0.0 * angle + 0.7], 1)
     objects = Objects(
         centers,
         np.tile([4.5, 1.9, 1.6], (count, 1)),
         rng.uniform(-3.0, 3.0, count),
         np.zeros(count, int),
-        CLASSES,
-        np.arange(count) // 8,
+        class_names=CLASSES,
+        scenes=np.arange(count) // 8,
     )
     log = Log("simulated", objects, np.zeros(count, int), np.arange(count))
     truth = Fitted(FADING, np.full(len(CLASSES), 0.5), np.full(len(CLASSES), 56.2))

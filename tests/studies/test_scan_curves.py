@@ -58,7 +58,8 @@ def test_the_fit_finds_the_curve_that_made_the_data():
 
 def test_the_fit_is_no_worse_than_any_curve_of_a_dense_grid():
     """With noise, and with a curve that is clipped at both ends: there is no better corner."""
-    beams, rng = counts(seed=5), np.random.default_rng(6)
+    beams = counts(seed=5)
+    rng = np.random.default_rng(6)
     for true in (TRUE, engine.ApCurve(0.5, -0.8)):
         ap = beams.expected_ap(true) + rng.normal(0.0, 0.02, len(beams.shares))
         error = ((beams.expected_ap(fitted_curve(beams, ap)) - ap) ** 2).sum()
@@ -75,8 +76,10 @@ def test_expected_ap_is_that_of_the_evaluator():
     assert set(beams) == set(CLASSES)
     model = engine.PerceptionModel(objects={"lidar": dict.fromkeys(CLASSES, TRUE)})
     for k, placement in enumerate(chosen):
-        body, rule = vehicle(placement.vehicle), TargetRule("objects", True, 16)
-        space, road = engine.PerceptionSpace(), engine.Prior.road()
+        body = vehicle(placement.vehicle)
+        rule = TargetRule("objects", True, 16)
+        space = engine.PerceptionSpace()
+        road = engine.Prior.road()
         evaluator = ObjectEvaluator(space, road, body, targets=rule, model=model)
         per_class = evaluator.score(placement.rig()).objects.per_class
         for name, part in beams.items():
@@ -110,7 +113,8 @@ def test_the_engine_s_file_is_the_fit_of_the_saved_results():
     """Whoever commits more runs writes it: studies.detectors --page-only --curves FILE."""
     text = FILE.read_text("utf-8")
     assert text == curves_text(saved(), date_of(text))
-    curves, head = scan_file(), tomllib.loads(FILE.read_text("utf-8"))
+    curves = scan_file()
+    head = tomllib.loads(FILE.read_text("utf-8"))
     assert head["runs"] == head["planned"] == saved()["done"] == saved()["planned"]
     for name, row in saved()["classes"].items():
         assert curves["lidar"][name] == engine.ApCurve(row["a"], row["b"])

@@ -57,6 +57,7 @@ from tests.studies.test_road import write_log
 FOLDER = Path(__file__).parents[2] / "docs/validity/own/second"
 DIGEST = "8c1ca3a05d1ff702"
 """Of the plan as it was before its first run."""
+PAGES = [FOLDER.parent / "second.md", FOLDER.parents[1] / "README.md"]
 
 
 def test_the_good_placements_see_all_round_and_are_new():
@@ -86,14 +87,12 @@ def test_arms_have_equal_beams_at_equal_poses():
 
 @pytest.mark.thorough
 def test_the_results_are_those_of_the_committed_runs():
-    plan, saved = full_second_plan(), json.loads((FOLDER / "results.json").read_text("utf-8"))
+    plan = full_second_plan()
+    saved = json.loads((FOLDER / "results.json").read_text("utf-8"))
     runs = {path.stem: json.loads(path.read_text("utf-8")) for path in FOLDER.glob("runs/*.json")}
     scores = json.loads((FOLDER / "scores.json").read_text("utf-8"))["scores"]
     parts = parts_of(plan, searched_placements(on_roofs(plan), FOLDER))
     assert second_analysis(plan, parts, runs, scores) == saved
-
-
-PAGES = [FOLDER.parent / "second.md", FOLDER.parents[1] / "README.md"]
 
 
 def test_both_parts_have_both_verdicts_by_one_rule():
@@ -148,8 +147,8 @@ def test_rows_are_channels_of_each_lidar_that_meet_the_object():
         np.array([[1.0, 2.0, 1.8], [1.0, 1.0, 1.0]]),
         np.zeros(2),
         np.zeros(2, int),
-        ("car",),
-        np.zeros(2, int),
+        class_names=("car",),
+        scenes=np.zeros(2, int),
     )
     puck = catalog.load("Velodyne VLP-16 Puck")
     rig = pe.Rig([pe.Sensor(f"{z}", puck, pe.Pose((0.0, 0.0, z))) for z in (1.0, 1.5)])
@@ -163,7 +162,8 @@ def test_rows_are_channels_of_each_lidar_that_meet_the_object():
 @pytest.mark.parametrize(("true", "verdict"), [(0.5, REFUTED), (0.74, HOLDS)])
 def test_arms_whose_ap_follows_a_law_are_forecast_by_that_law(true, verdict):
     """Numbers of rows and beams as if each placement had met ten objects."""
-    plan, rng = full_second_plan(), np.random.default_rng(3)
+    plan = full_second_plan()
+    rng = np.random.default_rng(3)
     chosen = arm_placements(plan)
     rows = [rng.integers(2, 5, 10) * len(p.lidar.elevations) // 16 for p in chosen]
     beams = [rng.uniform(20.0, 30.0, 10) * 4.0 for _ in chosen]
@@ -198,7 +198,7 @@ def parts(plan):
     """Return the runs of each part, as if each search had ended where it starts."""
     roofs = on_roofs(plan)
     found = [
-        placement_of(roofs, name, what, rig.poses, seed)
+        placement_of(roofs, name, what, rig.poses, seed=seed)
         for name, rig in roofs.searches.rigs.items()
         for what in whats_of(roofs)
         for seed in (roofs.searches.seeds if what != START else [None])
@@ -295,7 +295,8 @@ def rows_of_a_log():
 
 def test_real_layouts_are_every_twentieth_frame_with_feet_on_the_ground(tmp_path):
     write_log(tmp_path / "one", rows_of_a_log())
-    layouts, plan = Layouts(tmp_path), full_second_plan()
+    layouts = Layouts(tmp_path)
+    plan = full_second_plan()
     assert len(layouts) == 3
     scenes = [layouts(plan, "sedan", "test", LAYOUTS, k) for k in range(3)]
     assert [s.labels.tolist() for s in scenes] == [[0], [0, 1], [0]], "one car meets the vehicle"

@@ -47,7 +47,9 @@ def log_of(rows):
     count = len(rows)
     centers = np.column_stack([x, np.zeros(count), np.ones(count)])
     sizes = np.tile([4.0, 2.0, 1.5], (count, 1))
-    boxes = Objects(centers, sizes, np.zeros(count), [0] * count, CLASSES, frames.astype(int))
+    boxes = Objects(
+        centers, sizes, np.zeros(count), [0] * count, class_names=CLASSES, scenes=frames.astype(int)
+    )
     return Log("a log", boxes, points.astype(int), tracks.astype(int))
 
 
@@ -75,7 +77,9 @@ def test_figures_of_many_tracks():
 
 
 def test_persistence_is_that_of_the_chain():
-    rng, p, r = np.random.default_rng(3), 0.4, 0.6
+    rng = np.random.default_rng(3)
+    p = 0.4
+    r = 0.6
     rows = []
     for track in range(40):
         hit = rng.random() < p
@@ -113,7 +117,9 @@ def test_the_page_is_that_of_the_saved_figures():
 
 
 def test_a_correlation_time_is_found_again():
-    rng, time_s, rows = np.random.default_rng(5), 1.5, []
+    rng = np.random.default_rng(5)
+    time_s = 1.5
+    rows = []
     kept = np.exp(-0.1 / time_s)
     for track in range(60):
         z = rng.standard_normal()
@@ -121,17 +127,21 @@ def test_a_correlation_time_is_found_again():
             z = kept * z + np.sqrt(1.0 - kept * kept) * rng.standard_normal()
             rows.append((k, track, 40.0, 9 * (z < 0.2)))
     log = log_of(rows)
-    cells = {lag: [pairs_of_class(log, np.ones(len(rows)), "car", lag, 5, 3)] for lag in LAGS}
+    cells = {
+        lag: [pairs_of_class(log, np.ones(len(rows)), "car", lag, n=5, groups=3)] for lag in LAGS
+    }
     assert fitted(cells)["time_s"] == pytest.approx(time_s, abs=0.4)
 
 
 def test_pairs_of_frames_by_hand():
     # one track: seen, seen, not, seen; two frames apart: (1, 0), (1, 1)
     log = log_of([(k, 0, 40.0, n) for k, n in enumerate((9, 9, 0, 9))])
-    pairs = pairs_of_class(log, np.ones(4), "car", 2, 5, 1)
+    pairs = pairs_of_class(log, np.ones(4), "car", lag=2, n=5, groups=1)
     counts = [float(t.sum()) for t in (pairs.all, pairs.first, pairs.then, pairs.both)]
     assert counts == [2.0, 2.0, 1.0, 1.0]
-    assert pairs_of_class(log, np.ones(4), "car", 4, 5, 1).total == 0.0  # no pair so far apart
+    assert (
+        pairs_of_class(log, np.ones(4), "car", lag=4, n=5, groups=1).total == 0.0
+    )  # no pair so far apart
     assert correlation_of([pairs]) == 0.0  # P(seen | seen) = P(seen) = 1/2
 
 
@@ -139,7 +149,8 @@ def test_what_the_plan_says_of_the_memory():
     def found(values, model):
         return {"thirds": {"all": {"correlation": [[v, v, v] for v in values], "model": model}}}
 
-    slow, chain = [0.8, 0.7, 0.65, 0.55, 0.4, 0.3], [0.8, 0.64, 0.51, 0.33, 0.11, 0.01]
+    slow = [0.8, 0.7, 0.65, 0.55, 0.4, 0.3]
+    chain = [0.8, 0.64, 0.51, 0.33, 0.11, 0.01]
     said = [row[-1] for row in memory_statements(found(slow, slow))]
     assert said == ["holds", "holds"]
     said = [row[-1] for row in memory_statements(found(chain, slow))]

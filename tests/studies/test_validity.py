@@ -120,7 +120,8 @@ def test_the_page_of_all_studies_has_their_figures(committed):
                      "published/results.json")
     )  # fmt: skip
     told = " ".join((FOLDER / "README.md").read_text("utf-8").split())
-    statements, afterwards = own["statements"], own["afterwards"]
+    statements = own["statements"]
+    afterwards = own["afterwards"]
     rows = [s["figures"] for s in (statements[0], statements[2], statements[3])]
     rows += [afterwards["beyond_coverage"]]
     for row in rows:
@@ -136,11 +137,13 @@ def test_the_page_of_all_studies_has_their_figures(committed):
         for rows in road["statements"].values()
     )
     for figure in ("ratio", "none"):
-        (before, of, first), (after, _, last) = default[figure], kept[figure]
+        before, of, first = default[figure]
+        after, _, last = kept[figure]
         assert f'{before} of {of} cells, `returns = "road"` {after} of {of} |' in told
         assert first == last == "refuted"
     assert default["rho"] == kept["rho"] == (4, 6, "not decided")
-    found, w = law["across"]["mean"], law["w"]
+    found = law["across"]["mean"]
+    w = law["w"]
     low, high = found["interval"]
     assert f"RMSE {found['difference']:.4f} ({low:+.4f} to {high:+.4f})" in told
     assert f"worth {w / (1 - w):.1f} columns, w {w:.2f}" in told

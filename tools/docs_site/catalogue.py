@@ -15,10 +15,13 @@ from pe_tools import graphics
 from pe_tools.page.pictures.svg import Canvas
 
 FOLDER = "reference/catalogue"
-WIDTH, HEIGHT, GAP = 260.0, 240.0, 20.0
+WIDTH = 260.0
+HEIGHT = 240.0
+GAP = 20.0
 BEAMS = 360
 BEAMS_ABOVE = 120
-INK, SOFT = "#57606a", "#d8dee4"
+INK = "#57606a"
+SOFT = "#d8dee4"
 TITLES = ("from the side", "from above")
 Floats = NDArray[np.float64]
 Shapes = list[tuple[int, Floats, tuple[float, ...]]]
@@ -141,7 +144,8 @@ def _sketched_views(sensor: Sensor) -> Iterator[Shapes]:
 
 
 def _view(canvas: Canvas, shapes: Shapes, left: float) -> None:
-    middle, scale = np.array([left + WIDTH / 2, HEIGHT / 2 - 8]), 0.42 * WIDTH
+    middle = np.array([left + WIDTH / 2, HEIGHT / 2 - 8])
+    scale = 0.42 * WIDTH
     for radius in (0.5, 1.0):
         canvas.add("circle", cx=middle[0], cy=middle[1], r=radius * scale, fill="none", stroke=SOFT)
     for corners, points, color in shapes:

@@ -21,7 +21,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGE, NOTEBOOK = "python.md", "python.ipynb"
+PAGE = "python.md"
+NOTEBOOK = "python.ipynb"
 CELL = re.compile(
     r"```python\n(?P<code>.*?)```\n"
     r"(?:\n```text\n(?P<text>.*?)```\n)?(?:\n!\[(?P<alt>[^]]*)\]\((?P<image>images/\S+?)\)\n)?",
@@ -59,7 +60,9 @@ def run(cells: Sequence[str]) -> list[Shown]:
 
 def shown(cell: str, names: dict[str, Any], plt: Any) -> Shown:
     """Run a cell; take what it printed, the value of its last line, and its plot."""
-    tree, printed, value = ast.parse(cell), io.StringIO(), None
+    tree = ast.parse(cell)
+    printed = io.StringIO()
+    value = None
     last = tree.body.pop() if isinstance(tree.body[-1], ast.Expr) else None
     with contextlib.redirect_stdout(printed):
         exec(compile(tree, PAGE, "exec"), names)
@@ -70,7 +73,8 @@ def shown(cell: str, names: dict[str, Any], plt: Any) -> Shown:
         picture = io.BytesIO()
         plt.gcf().savefig(picture, dpi=DPI, metadata={"Software": None})
         plt.close("all")
-        png, value = picture.getvalue(), None
+        png = picture.getvalue()
+        value = None
     said = printed.getvalue()
     html = value._repr_html_() if hasattr(value, "_repr_html_") else ""
     html = html.replace(' border="1" class="dataframe"', "")  # of pandas; the site has its own
@@ -113,7 +117,9 @@ def on_site(page: str) -> str:
 
 def notebook() -> str:
     """Return the page as a notebook of Jupyter: its text, its cells, without what they give."""
-    page, place, cells = (ROOT / "docs" / PAGE).read_text("utf-8"), 0, []
+    page = (ROOT / "docs" / PAGE).read_text("utf-8")
+    place = 0
+    cells = []
     for match in CELL.finditer(page):
         cells += [("markdown", page[place : match.start()]), ("code", match["code"])]
         place = match.end()
@@ -131,7 +137,8 @@ def notebook() -> str:
 
 if __name__ == "__main__":
     path = ROOT / "docs" / PAGE
-    text, found = path.read_text("utf-8"), page_run()
+    text = path.read_text("utf-8")
+    found = page_run()
     for match, own in zip(CELL.finditer(text), found, strict=True):
         if own.png:
             (path.parent / match["image"]).write_bytes(own.png)

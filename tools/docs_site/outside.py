@@ -38,7 +38,8 @@ def with_site_links(markdown: str, page: str) -> str:
         The page in the site, as in ``project/changelog.md``.
     """
     source = {site: real for real, site in PAGES.items()}.get(page, f"docs/{page}")
-    folder, site_folder = posixpath.dirname(source), posixpath.dirname(page)
+    folder = posixpath.dirname(source)
+    site_folder = posixpath.dirname(page)
 
     def in_site(found: re.Match[str]) -> str:
         text, target, anchor = found.groups()
@@ -73,7 +74,8 @@ def title_of(page: Path) -> str:
 
 def _outside_code(markdown: str, change) -> str:
     """Change the text between code blocks alone."""
-    parts, last = [], 0
+    parts = []
+    last = 0
     for block in _CODE.finditer(markdown):
         parts += [change(markdown[last : block.start()]), block[0]]
         last = block.end()

@@ -35,7 +35,8 @@ ROOMS = {
 
 def pages() -> dict[str, str]:
     """Return the text of each page, by its path in the site."""
-    texts, heads = {}, {}
+    texts = {}
+    heads = {}
     for name, target in public_names():
         room = max((r for r in ROOMS if target.startswith(r)), key=len)
         page, title, about = ROOMS[room]

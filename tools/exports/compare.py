@@ -32,7 +32,8 @@ TIMEOUT_S = 300
 
 def main(blenders: list[str]) -> int:
     """Compare, and print a table."""
-    worst, silent = 0.0, []
+    worst = 0.0
+    silent = []
     for name, study_name in STUDIES.items():
         path = ROOT / "blend_assets" / "experiments" / f"{study_name}.toml"
         study = replace(pe.load_study(path), space=SPACE)

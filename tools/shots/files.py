@@ -75,7 +75,8 @@ def captioned(image: Image.Image, words: str) -> Image.Image:
     width, height = image.size
     whole = Image.new("RGB", (width, height + CAPTION_PX), "#14171a")
     whole.paste(image)
-    pen, font = ImageDraw.Draw(whole), ImageFont.load_default(size=20)
+    pen = ImageDraw.Draw(whole)
+    font = ImageFont.load_default(size=20)
     pen.text((width / 2, height + CAPTION_PX / 2), words, "#f2f4f5", font, anchor="mm")
     return whole
 

@@ -9,7 +9,8 @@ from .reel import Camera, Reel
 
 FRAMES = 48
 FRAME_MS = 110
-START, WAY_M = (-0.35, 0.0, 1.52), 1.0
+START = (-0.35, 0.0, 1.52)
+WAY_M = 1.0
 """Where the LiDAR is at first, and how far it goes to and fro [m]."""
 CROP = (2, 92, 1598, 872)
 WIDTH = 1200

@@ -5,7 +5,8 @@ from __future__ import annotations
 from .reel import Camera, Reel
 
 VEHICLE = "My car"
-ROOF, BONNET_AHEAD = (-0.45, 0.0, 1.45), (9.0, 3.0, 0.0)
+ROOF = (-0.45, 0.0, 1.45)
+BONNET_AHEAD = (9.0, 3.0, 0.0)
 LOOK = """
 from mathutils import Euler
 look = area.spaces.active.region_3d

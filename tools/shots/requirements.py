@@ -7,8 +7,12 @@ from .reel import Camera, Reel
 
 BEHIND = LOOK.format(center=(0.35, -2.6, 0.3), distance=13.5, rotation=(0.98, 0.0, -0.9))
 PRESETS = (
-    *("r158_camera", "r151_moving", "ncap26_reverse_static", "r159_longitudinal"),
-    *("park_aid_front", "perceptor_ground"),
+    "r158_camera",
+    "r151_moving",
+    "ncap26_reverse_static",
+    "r159_longitudinal",
+    "park_aid_front",
+    "perceptor_ground",
 )
 SHOWN = OURS.format("overlay.layer_cache") + ".shown_of(window.scene.name, 'requirements')"
 

@@ -5,8 +5,11 @@ from __future__ import annotations
 from .guide import BUDGET, CLOSE, LOOK, OURS, RUNNING, SETTINGS, grab, settled
 from .reel import Camera, Reel
 
-WIDTH, STILL_MS, MOVING_MS = 1120, 3600, 160
-ROOF, BEHIND_SEAT = (-0.43, 0.0, 1.8), (0.4, 1.7, 0.0)
+WIDTH = 1120
+STILL_MS = 3600
+MOVING_MS = 160
+ROOF = (-0.43, 0.0, 1.8)
+BEHIND_SEAT = (0.4, 1.7, 0.0)
 AHEAD = LOOK.format(center=(5.0, 0.0, 0.5), distance=24.0, rotation=(1.05, 0.0, 2.3))
 BODIES = LOOK.format(center=(4.0, 0.0, 0.5), distance=19.0, rotation=(1.12, 0.0, 2.5))
 WHERE = OURS.format("where_map")

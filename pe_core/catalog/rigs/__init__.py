@@ -94,14 +94,14 @@ def _from_table(key: str, table: Mapping[str, Any]) -> KnownRig:
     is_base = table.get("base_frames", False)
     sensors = tuple(_sensor(row, table["center_x"], is_base) for row in table["sensor"])
     return KnownRig(
-        key,
-        table["title"],
-        table["vehicle"],
-        table["origin"],
-        table["source"],
-        table["note"],
-        None if length is None else (length, width, height),
-        sensors,
+        key=key,
+        title=table["title"],
+        vehicle=table["vehicle"],
+        origin=table["origin"],
+        source=table["source"],
+        note=table["note"],
+        size=None if length is None else (length, width, height),
+        sensors=sensors,
     )
 
 

@@ -47,7 +47,8 @@ def templates() -> Mapping[str, RigTemplate]:
 def _rows(table: Iterable[Mapping[str, Any]]) -> tuple[tuple[str, str, float, float], ...]:
     rows = []
     for row in table:
-        yaw, pitch = float(row.get("yaw", 0.0)), float(row.get("pitch", 0.0))
+        yaw = float(row.get("yaw", 0.0))
+        pitch = float(row.get("pitch", 0.0))
         for place in row["at"]:
             rows.append((place, row["model"], 0.0 - yaw if "right" in place else yaw, pitch))
     return tuple(rows)
@@ -75,7 +76,8 @@ def at_nearest(
 
     Where no place is left for a sensor, it stays where it is.
     """
-    found, free = list(sensors), dict(places)
+    found = list(sensors)
+    free = dict(places)
     waiting = set(range(len(found)))
     for _, k, name in sorted(
         (math.dist(each.pose.position, place.point), k, name)

@@ -36,13 +36,16 @@ CORNERS = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)
 COLUMN_M = 0.5
 MAX_COLUMNS = 4
 """A body is one column wide and long up to `COLUMN_M`, at most `MAX_COLUMNS` beyond."""
-_BEFORE, _AFTER = slice(None, -2), slice(2, None)
+_BEFORE = slice(None, -2)
+_AFTER = slice(2, None)
 DIAGONALS = ((_BEFORE, _BEFORE), (_BEFORE, _AFTER), (_AFTER, _BEFORE), (_AFTER, _AFTER))
 """The diagonal neighbours of all columns, as slices of a band of `cell_plan`."""
 POST_EVERY = 4
 POST_SHARE = 0.25
 """Side of the posts beside a body, as a share of its shorter horizontal side."""
 FLAT_M = 1e-3  # Thickness of a patch of ground
+_ALONG = (0.0, math.pi / 2.0)
+_PRIOR = "core of the class of the road prior (docs/metric.md)"
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +133,8 @@ class Body:
             posts = np.repeat([False, True], [2 * RING_PLACES, len(CORNERS)])
             return np.zeros(len(posts), np.int64), posts
         k, i, j = np.nonzero(cell_plan(self.bands, *self.columns))
-        (along, across), inner = self.columns, np.ones(len(k), bool)
+        along, across = self.columns
+        inner = np.ones(len(k), bool)
         inner &= (i > 0) & (i <= along) & (j > 0) & (j <= across)
         return k, ~inner
 
@@ -141,7 +145,8 @@ class Body:
         box: if a plane through the camera cuts the ring, as a side of the picture does, one of them
         is wholly on the side that is not seen.
         """
-        radius, height = self.size[0] / 2.0, self.size[2]
+        radius = self.size[0] / 2.0
+        height = self.size[2]
         turns = (np.arange(RING_PLACES) + 0.25) * (2.0 * math.pi / RING_PLACES)
         away = radius - RING_CELL_M * math.sqrt(0.5)
         around = np.array([(away * math.cos(a), away * math.sin(a)) for a in turns.tolist()])
@@ -177,7 +182,8 @@ class Body:
 
     def _divided(self, axis: int) -> Floats:
         """Return centre and width (C + 2, 2) of the columns along an axis, and of both posts."""
-        count, inside = self.columns[axis], self.box[axis]
+        count = self.columns[axis]
+        inside = self.box[axis]
         post = POST_SHARE * min(self.size[:2])
         away = (self.size[axis] + post) / 2.0
         middles = ((np.arange(count) + 0.5) / count - 0.5) * inside
@@ -207,8 +213,6 @@ def post_bands(bands: int) -> list[int]:
     return sorted({*range(0, bands, POST_EVERY), bands - 1})
 
 
-_ALONG = (0.0, math.pi / 2.0)
-_PRIOR = "core of the class of the road prior (docs/metric.md)"
 BODIES: Mapping[str, Body] = MappingProxyType(
     {
         body.name: body

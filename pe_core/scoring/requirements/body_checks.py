@@ -67,14 +67,17 @@ class BodyChecks:
         model: PerceptionModel,
         caches: SceneCaches,
     ) -> None:
-        self._wanted, self._caches = wanted, caches
-        self._bodies, all_parts = [list[_BodySet]() for _ in wanted], list[BodyParts]()
+        self._wanted = wanted
+        self._caches = caches
+        self._bodies = [list[_BodySet]() for _ in wanted]
+        all_parts = list[BodyParts]()
         count = cell_count = 0
         for own, (requirement, samples) in zip(self._bodies, wanted, strict=True):
             feet = _feet(requirement, samples)
             for body in requirement.bodies:
                 objects = placed(body, feet, body.headings, False)
-                box, cells = slice(count, count := count + len(objects)), None
+                box = slice(count, count := count + len(objects))
+                cells = None
                 if requirement.criterion.share is not None:
                     all_parts.append(parts_of(body, feet, body.headings))
                     cells = slice(cell_count, cell_count := cell_count + len(all_parts[-1].cells))
@@ -125,9 +128,11 @@ class BodyChecks:
         requirement, _ = self._wanted[number]
         names = [s.name for s in rig]
         seen = {s.name: self._seen(number, s, measured) for s in rig}
-        whole = self._enough(number, rig, seen, measured.m, names)
+        whole = self._enough(number, rig, seen, measured.m, members=names)
         without = {
-            lost: self._enough(number, rig, seen, measured.m, [n for n in names if n != lost])
+            lost: self._enough(
+                number, rig, seen, measured.m, members=[n for n in names if n != lost]
+            )
             for lost in names
         }
         passed = whole.copy()
@@ -149,7 +154,8 @@ class BodyChecks:
         """Return what measures bodies in a scene; what measures their cells is made, too."""
         if number not in self._measurers:
             assert self._joined is not None
-            vehicle, caches = self._caches.vehicle, self._caches[number]
+            vehicle = self._caches.vehicle
+            caches = self._caches[number]
             self._measurers[number] = ObjectMeasurementCache(
                 self._joined, vehicle, kernel_caches=caches
             )
@@ -174,11 +180,13 @@ class BodyChecks:
     def _seen(self, number: int, sensor: Sensor, measured: _PointsByBand) -> Flags:
         """Return the samples and bodies (N, bodies * headings) that a sensor sees."""
         requirement, samples = self._wanted[number]
-        criterion, columns = requirement.criterion, []
+        criterion = requirement.criterion
+        columns = []
         if not criterion.counts(sensor.kind):
             width = len(columns_of(requirement))
             return np.zeros((len(samples.points), width), bool)
-        m, parts = measured.m[sensor.name], measured.parts.get(sensor.name, NOTHING)
+        m = measured.m[sensor.name]
+        parts = measured.parts.get(sensor.name, NOTHING)
         for each in self._bodies[number]:
             seen = has_enough(sensor, each.objects, m[each.box], criterion)
             if each.cells is not None and criterion.share is not None and seen.any():
@@ -211,7 +219,8 @@ class BodyChecks:
 
 def _feet(requirement: Requirement, samples: Samples) -> Floats:
     """Return where bodies stand (N, 3): at all samples and heights."""
-    count, points = levels_of(requirement), samples.points
+    count = levels_of(requirement)
+    points = samples.points
     heights = np.linspace(*requirement.zone.z, count)
     return np.column_stack([np.repeat(points, count, axis=0), np.tile(heights, len(points))])
 
@@ -221,7 +230,8 @@ def counted(
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return by how many sensors and kinds each body of each sample is seen, (N, bodies)."""
     first = next(iter(seen.values()))
-    counts, by_kind = np.zeros(first.shape, np.int64), dict[str, Flags]()
+    counts = np.zeros(first.shape, np.int64)
+    by_kind = dict[str, Flags]()
     for sensor in rig:
         if sensor.name not in members or not criterion.counts(sensor.kind):
             continue
@@ -251,7 +261,9 @@ def _joined_parts(parts: Sequence[BodyParts]) -> BodyParts | None:
     """Return all parts as one set, first the cells, then the shells; None without any."""
     if not parts:
         return None
-    cells, shells, first = list[Objects](), list[Objects](), 0
+    cells = list[Objects]()
+    shells = list[Objects]()
+    first = 0
     for each in parts:
         for own, objects in ((cells, each.cells), (shells, each.shells)):
             if objects is not None:

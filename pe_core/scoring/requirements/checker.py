@@ -25,11 +25,15 @@ from .verdict import Samples, Verdict, ZoneResult, body_verdict
 from .zone_growth import ZoneGrowth, boxes_of
 from .zones import INSIDE_M, PlacedZone
 
-FULL, INSIDE, PREVIEW = "full", "inside", "preview"
+FULL = "full"
+INSIDE = "inside"
+PREVIEW = "preview"
 """Sets of samples: of the zones and the ground round them, of the zones alone, of fewer."""
 COARSE = 2.0  # Factor of the step of a preview
 PREVIEW_OBJECTS = 1_000  # A zone with fewer boxes keeps its step in a preview
-SHARE_WEIGHT, LACKING_WEIGHT, AWAY_WEIGHT = 0.45, 0.45, 0.1
+SHARE_WEIGHT = 0.45
+LACKING_WEIGHT = 0.45
+AWAY_WEIGHT = 0.1
 """Weights of the samples that fail, of sensors and kinds that lack, and of the angle."""
 
 
@@ -62,8 +66,10 @@ class RequirementChecker:
         space: PerceptionSpace | None = None,
     ) -> None:
         self.requirements = checked_requirements(requirements)
-        self.vehicle, self._model = vehicle, model or PerceptionModel()
-        self._reference, self._space = reference, space or PerceptionSpace()
+        self.vehicle = vehicle
+        self._model = model or PerceptionModel()
+        self._reference = reference
+        self._space = space or PerceptionSpace()
         self.anchor = None if vehicle is None else vehicle.as_drawn
         planes: dict[tuple[Any, ...], VehiclePlanes] = {}
         self.zones: tuple[PlacedZone, ...] = tuple(
@@ -111,7 +117,8 @@ class RequirementChecker:
         self.check_rig(rig)
         if not self.requirements:
             return
-        rig, cases = cautious(rig), [] if preview else [cautious(case) for case in cases]
+        rig = cautious(rig)
+        cases = [] if preview else [cautious(case) for case in cases]
         with self._lock:
             steps = self._set(PREVIEW if preview else FULL).steps(rig, cases)
         while True:
@@ -129,13 +136,16 @@ class RequirementChecker:
         how far the nearest boresight is turned away from those that fail (0.1): it leads a search
         in where no sensor sees anything yet.
         """
-        rig, cases = cautious(rig), [cautious(case) for case in cases]
+        rig = cautious(rig)
+        cases = [cautious(case) for case in cases]
         with self._lock:
             return self._set(INSIDE).shortfalls(rig, cases) if self.requirements else ()
 
     def _set(self, name: str) -> "_CheckedSet":
         if name not in self._sets:
-            self._sets[name] = _CheckedSet(self, name, self._space, self._model, self._caches)
+            self._sets[name] = _CheckedSet(
+                self, name, self._space, self._model, caches=self._caches
+            )
         return self._sets[name]
 
 
@@ -150,18 +160,22 @@ class _CheckedSet:
         model: PerceptionModel,
         caches: SceneCaches,
     ) -> None:
-        self._vehicle, self._which = checker.vehicle, which
-        self._grounds, self._growths = dict[int, GroundCheck](), dict[int, ZoneGrowth]()
+        self._vehicle = checker.vehicle
+        self._which = which
+        self._grounds = dict[int, GroundCheck]()
+        self._growths = dict[int, ZoneGrowth]()
         pairs: list[tuple[Requirement, Samples]] = []
         self._numbers: list[int] = []
         for number, own in enumerate(checker.requirements):
             zone = checker.zones[number]
             if own.criterion.is_of_ground:
                 anchor = checker.anchor
-                self._grounds[number] = GroundCheck(own, zone, space, self._vehicle, anchor, caches)
+                self._grounds[number] = GroundCheck(
+                    own, zone, space, self._vehicle, anchor=anchor, caches=caches
+                )
             else:
                 inside, around = _samples(own, zone, which)
-                self._growths[number] = ZoneGrowth(own, inside, around, model, caches)
+                self._growths[number] = ZoneGrowth(own, inside, around, model, caches=caches)
                 self._numbers.append(number)
                 pairs.append((own, inside))
         self._pairs = pairs
@@ -169,7 +183,8 @@ class _CheckedSet:
 
     def steps(self, rig: Rig, cases: Sequence[Rig]) -> Iterator[CheckStep]:
         """Yield the verdicts on a rig, and steps without one in between."""
-        preview, done = self._which == PREVIEW, 0
+        preview = self._which == PREVIEW
+        done = 0
         scenes = 1 + len(cases) * any(own.under.mounting for own, _ in self._pairs)
         total = len(self._pairs) + len(self._grounds) + len(rig) * scenes * bool(self._pairs)
         for _ in self._bodies.measuring(rig, cases):
@@ -179,8 +194,7 @@ class _CheckedSet:
         pairs = dict(zip(self._numbers, self._pairs, strict=True))
         for number in sorted([*pairs, *self._grounds]):
             if number in pairs:
-                given = *pairs[number], results[number], rig, self._vehicle, preview
-                verdict = body_verdict(*given)
+                verdict = body_verdict(*pairs[number], results[number], rig, self._vehicle, preview)
                 if verdict.at_least:
                     for grown in self._growths[number].margins(results[number], rig, cases):
                         margin, at_least = grown
@@ -220,7 +234,8 @@ def checkable(
 ) -> tuple[tuple[Requirement, ...], dict[str, str]]:
     """Return the requirements that a rig on a vehicle can be held to, and why not, by name. Others
     have a zone that cannot be placed, or ask for kinds of sensors that the rig lacks."""
-    fitting, reasons = [], {}
+    fitting = []
+    reasons = {}
     planes: dict[tuple[Any, ...], VehiclePlanes] = {}
     for each in requirements:
         try:
@@ -238,11 +253,14 @@ def check_extent(requirement: Requirement, zone: PlacedZone, space: PerceptionSp
     blind ground is asked for is wholly in the space."""
     who = f"requirement {requirement.name!r}"
     low, high = zone.bounds
-    (x0, y0), (x1, y1) = low.tolist(), high.tolist()
+    x0, y0 = low.tolist()
+    x1, y1 = high.tolist()
     if x1 < space.x[0] or x0 > space.x[1] or y1 < space.y[0] or y0 > space.y[1]:
         expected = f"a zone in the space, x = {list(space.x)}, y = {list(space.y)}"
         raise InputError(who, "zone", expected, f"x = {[x0, x1]}, y = {[y0, y1]}")
-    is_of_ground, (x, y) = requirement.criterion.is_of_ground, (space.x, space.y)
+    is_of_ground = requirement.criterion.is_of_ground
+    x = space.x
+    y = space.y
     if is_of_ground and not (x[0] <= x0 and x1 <= x[1] and y[0] <= y0 and y1 <= y[1]):
         expected = f"ground in the space, x = {list(x)}, y = {list(y)}: no other is searched"
         raise InputError(who, "zone", expected, f"x = {[x0, x1]}, y = {[y0, y1]}")
@@ -254,7 +272,8 @@ def check_extent(requirement: Requirement, zone: PlacedZone, space: PerceptionSp
 
 def shortfall(requirement: Requirement, samples: Samples, result: ZoneResult, rig: Rig) -> float:
     """Return 0 where a requirement is met, else how far it is off, above 0 to 1."""
-    criterion, inside = requirement.criterion, samples.inside
+    criterion = requirement.criterion
+    inside = samples.inside
     share = float(result.passed[inside].mean())
     if share >= criterion.zone_share:
         return 0.0
@@ -273,7 +292,8 @@ def _turned_away(requirement: Requirement, points: Floats, rig: Rig) -> float:
     sensors = [s for s in rig if requirement.criterion.counts(s.kind)]
     if not sensors or not len(points):
         return 1.0
-    body, cosines = requirement.bodies[0], []
+    body = requirement.bodies[0]
+    cosines = []
     places = np.column_stack([points, np.full(len(points), body.low + body.size[2] / 2.0)])
     for sensor in sensors:
         x, y, z = (places - np.asarray(sensor.pose.position)).T

@@ -19,7 +19,7 @@ COUNT = Whole(1, 1000)
 MAX_REQUIREMENTS = 200
 POSITIVE_SHARE = Number(0.0, 1.0, above=True)
 AREA = Number(0.0, 1e6, unit="m2", noun="area")
-OF_BODIES = (*("sensors", "kinds", "points", "pixels", "share", "ap"), "zone_share")
+OF_BODIES = ("sensors", "kinds", "points", "pixels", "share", "ap", "zone_share")
 DISTANCE = Number(0.0, 100.0, unit="m", noun="length")
 
 
@@ -113,7 +113,8 @@ class Criterion:
         if not eligible:
             expected = f"a kind of sensor that the rig has ({', '.join(sorted(kinds))})"
             raise InputError(who, "criterion.of", expected, ", ".join(self.of))
-        alone, eligible = ", ".join(sorted(eligible)), set(filter(self.counts, eligible))
+        alone = ", ".join(sorted(eligible))
+        eligible = set(filter(self.counts, eligible))
         if not eligible and self.is_of_ground:
             expected = f"a sensor that sees what is {self.blind_height:g} m tall on the ground"
             raise InputError(who, "criterion.blind_height", expected, f"{alone} alone")

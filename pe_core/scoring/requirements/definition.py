@@ -79,7 +79,8 @@ def visible_share(body: Body, cells: NDArray[np.bool_]) -> Floats:
     plan = cell_plan(body.bands, *body.columns)
     measured = np.zeros((len(cells), *plan.shape), bool)
     measured[:, plan] = cells
-    levels, every = np.array(post_bands(body.bands)), np.arange(body.bands)
+    levels = np.array(post_bands(body.bands))
+    every = np.arange(body.bands)
     below = levels[np.searchsorted(levels, every, "right") - 1]
     above = levels[np.searchsorted(levels, every)]
     seen = measured[:, below] & measured[:, above]
@@ -112,7 +113,8 @@ def parts_of(
     body: Body, feet: Sequence[Sequence[float]] | Floats, headings: Sequence[float]
 ) -> BodyParts:
     """Return a body's cells and shells at all feet (N, 3) and headings, as `placed` does."""
-    cells, (bands, posts) = placed(body, feet, headings, True), body.cell_bands()
+    cells = placed(body, feet, headings, True)
+    bands, posts = body.cell_bands()
     centers, sizes, shell_bands = body.shells()
     count = len(cells) // len(bands)
     bodies = np.arange(count)[:, None] * (1 + int(posts.sum()))  # a post is a body of its own
@@ -120,7 +122,7 @@ def parts_of(
     cells = replace(cells, scenes=scenes.reshape(-1))
     shells = None
     if len(shell_bands):
-        shells = _objects(body, centers, sizes, feet, headings)
+        shells = _objects(body, centers, sizes, feet, headings=headings)
         shells = replace(shells, scenes=np.repeat(bodies[:, 0], len(shell_bands)))
     return BodyParts(
         cells,
@@ -143,11 +145,12 @@ def _objects(
     x, y, z = centers.T
     rotated = np.stack([np.stack([c * x - s * y, s * x + c * y, z], axis=1) for c, s in turns])
     everywhere = (at + rotated[None]).reshape(-1, 3)
-    count, per = len(at), len(centers)
+    count = len(at)
+    per = len(centers)
     return Objects(
         np.round(everywhere, 9),
         np.tile(sizes, (count * len(headings), 1)),
         np.tile(np.repeat(np.asarray(headings, dtype=float), per), count),
         np.zeros(len(everywhere), np.int64),
-        (body.class_name or body.name,),
+        class_names=(body.class_name or body.name,),
     )

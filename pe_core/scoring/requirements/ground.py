@@ -39,15 +39,20 @@ class GroundCheck:
         anchor: Vehicle | None,
         caches: SceneCaches,
     ) -> None:
-        self.requirement, self._zone, self._space = requirement, zone, space
-        self._vehicle, self._anchor, self._caches = vehicle, anchor, caches
+        self.requirement = requirement
+        self._zone = zone
+        self._space = space
+        self._vehicle = vehicle
+        self._anchor = anchor
+        self._caches = caches
         self._own = _ZoneGround(self, 0.0)
         self._grown: dict[float, _ZoneGround | None] = {}
 
     def verdict(self, rig: Rig, preview: bool, cases: Sequence[Rig] = ()) -> Verdict:
         """Return the verdict on a rig; a preview has no margin, and is without losses that need not
         count."""
-        own, ground = self.requirement, self._own
+        own = self.requirement
+        ground = self._own
         marks = ground.marks(rig)
         blind = ground.blind(marks.values())
         lost = {}
@@ -56,28 +61,30 @@ class GroundCheck:
         counted = [blind, *(lost.values() if own.under.one_lost else ())]
         for number, case in self._asked(cases):
             counted += self._blinds(ground, ground.marks(case, number))
-        met_whole, met = self._meets(blind), all(map(self._meets, counted))
+        met_whole = self._meets(blind)
+        met = all(map(self._meets, counted))
         margin, at_least = (None, False) if preview else self._margin(rig, met, cases)
         i, j = np.nonzero(blind)
         worst = None
         if len(i):
             k = int(np.argmin(ground.distance[i, j]))
-            x, y = ground.cells.x[i[k]], ground.cells.y[j[k]]
+            x = ground.cells.x[i[k]]
+            y = ground.cells.y[j[k]]
             worst = round(float(x), 3), round(float(y), 3)
         return Verdict(
-            own,
-            met,
-            margin,
-            at_least,
-            1.0 - np.count_nonzero(blind) / max(int(np.count_nonzero(ground.mask)), 1),
-            worst,
-            None,
-            (),
-            dict,
-            {name: self._meets(each) for name, each in lost.items()},
-            (0, 0),
-            Samples(self._zone, np.zeros((0, 2)), np.zeros(0), ground.mask),
-            np.zeros(0, bool),
+            requirement=own,
+            met=met,
+            margin=margin,
+            at_least=at_least,
+            share=1.0 - np.count_nonzero(blind) / max(int(np.count_nonzero(ground.mask)), 1),
+            worst=worst,
+            body=None,
+            seen_by=(),
+            why=dict,
+            without={name: self._meets(each) for name, each in lost.items()},
+            sensors=(0, 0),
+            samples=Samples(self._zone, np.zeros((0, 2)), np.zeros(0), ground.mask),
+            passed=np.zeros(0, bool),
             met_whole=met_whole,
             preview=preview,
             ground=self._figures(blind, counted),
@@ -107,7 +114,9 @@ class GroundCheck:
 
     def _margin(self, rig: Rig, met: bool, cases: Sequence[Rig]) -> tuple[float, bool]:
         """Return how far the zone could grow [m] or has to shrink, and whether it could more."""
-        criterion, looked, step = self.requirement.criterion, 0.0, self._own.cells.step
+        criterion = self.requirement.criterion
+        looked = 0.0
+        step = self._own.cells.step
         for grown in (self._zone.grow, *growth(self._zone)):
             if grown not in self._grown:
                 low, high = self._zone.bounds
@@ -128,22 +137,25 @@ class GroundCheck:
 
     def _figures(self, blind: Flags, counted: Sequence[Flags]) -> GroundFigures:
         """Return the blind ground in figures, and what of it is to spare in the worst case."""
-        criterion, ground = self.requirement.criterion, self._own
+        criterion = self.requirement.criterion
+        ground = self._own
         area, out = (max(map(measure, counted)) for measure in (ground.area, ground.farthest_out))
         return GroundFigures(
             math.ceil(ground.area(blind) * 100.0 - 1e-6) / 100.0,
             math.ceil(ground.farthest_out(blind) * 100.0 - 1e-6) / 100.0,
             None if criterion.blind_m2 is None else rounded_down(criterion.blind_m2 - area),
             None if criterion.blind_out is None else rounded_down(criterion.blind_out - out),
-            blind,
-            ground.cells,
+            blind=blind,
+            cells=ground.cells,
         )
 
     def _off(self, blind: Flags) -> float:
         if self._meets(blind):
             return 0.0
-        criterion, ground = self.requirement.criterion, self._own
-        area, most = 0.0, max(ground.area(ground.mask), STEP_M)
+        criterion = self.requirement.criterion
+        ground = self._own
+        area = 0.0
+        most = max(ground.area(ground.mask), STEP_M)
         if criterion.blind_m2 is not None:
             area = max(ground.area(blind) - criterion.blind_m2, 0.0) / most
         out = 0.0
@@ -202,7 +214,8 @@ class _ZoneGround:
         """Return the squares that each sensor marks in a scene, with their margin, by name."""
         check = self.check
         if number not in self._searches:
-            height, caches = (check.requirement.criterion.blind_height, check._caches[number])
+            height = check.requirement.criterion.blind_height
+            caches = check._caches[number]
             self._searches[number] = BlindSearch.of(self.cells, height, check._vehicle, caches)
         search = self._searches[number]
         search.squares.marked(rig)
@@ -237,7 +250,8 @@ class _ZoneGround:
 
     def fails_at(self, blind: Flags, criterion: Criterion) -> float:
         """Return by how much the zone can grow (shrink, below 0) until it fails [m]; inf: never."""
-        away, at = np.sort(self.distance[blind]), math.inf
+        away = np.sort(self.distance[blind])
+        at = math.inf
         if criterion.blind_m2 is not None:
             allowed = math.floor(criterion.blind_m2 / self.cells.step**2 + INSIDE_M)
             at = float(away[allowed]) if allowed < len(away) else math.inf

@@ -52,7 +52,8 @@ in the study; of parts named wheel, tire or tyre; where tyres touch the ground; 
 door."""
 MIRRORS = ("mirror", "antenna", "aerial", "wiper")
 """Beginnings of words in the names of parts that the planes leave out, as UN R159 does."""
-DOORS, NO_DOORS = ("door",), ("window", "windows", "handle", "mirror")
+DOORS = ("door",)
+NO_DOORS = ("window", "windows", "handle", "mirror")
 LONGEST_DOOR_M = 1.8
 """A longer part is several doors, of which the rear edge is not that of the first."""
 SIDES = ("left", "right")
@@ -72,18 +73,23 @@ def axles_of(vehicle: Vehicle) -> tuple[float, float] | None:
     triangles = vehicle.triangles
     height = float(triangles[..., 2].min()) + CONTACT_M
     points = parts_below(triangles[triangles[..., 2].min(axis=1) <= height], height)
-    low, high = np.nanmin(points, axis=1), np.nanmax(points, axis=1)
-    right, left = vehicle.bounds[0][1], vehicle.bounds[1][1]
+    low = np.nanmin(points, axis=1)
+    high = np.nanmax(points, axis=1)
+    right = vehicle.bounds[0][1]
+    left = vehicle.bounds[1][1]
     off = SIDE_SHARE * (left - right)
     is_left = low[:, 1] - (left + right) / 2.0 > off
     if not (is_left | (high[:, 1] - (left + right) / 2.0 < -off)).all():
         return None
     order = np.argsort(low[:, 0])
-    low, high, is_left = low[order, 0], np.maximum.accumulate(high[order, 0]), is_left[order]
+    low = low[order, 0]
+    high = np.maximum.accumulate(high[order, 0])
+    is_left = is_left[order]
     ends = np.flatnonzero(low[1:] - high[:-1] > GAP_M) + 1
     axles = []
     for part in np.split(np.arange(len(low)), ends):
-        rear, front = float(low[part[0]]), float(high[part[-1]])
+        rear = float(low[part[0]])
+        front = float(high[part[-1]])
         if front - rear > PATCH_M or is_left[part].all() or not is_left[part].any():
             return None
         axles.append((rear + front) / 2.0)
@@ -100,19 +106,23 @@ def mirror_faces(vehicle: Vehicle) -> Flags:
     if len(triangles) > MAX_FACES:
         return none
     piece, count = _pieces(triangles)
-    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+    low = np.full((count, 3), np.inf)
+    high = np.full((count, 3), -np.inf)
     np.minimum.at(low, piece, triangles.min(axis=1))
     np.maximum.at(high, piece, triangles.max(axis=1))
     ground = float(low[:, 2].min())
     small = ((high - low).max(axis=1) <= MIRROR_M) & (low[:, 2] > ground + MIRROR_LOW_M)
     if small.all() or not small.any():
         return none
-    right, left = float(low[~small, 1].min()), float(high[~small, 1].max())
+    right = float(low[~small, 1].min())
+    left = float(high[~small, 1].max())
     if left - right < MIN_WIDTH * float(high[:, 1].max() - low[:, 1].min()):
         return none
     out = small & ((high[:, 1] > left + STICKS_OUT_M) | (low[:, 1] < right - STICKS_OUT_M))
-    image_low, image_high = low.copy(), high.copy()
-    image_low[:, 1], image_high[:, 1] = left + right - high[:, 1], left + right - low[:, 1]
+    image_low = low.copy()
+    image_high = high.copy()
+    image_low[:, 1] = left + right - high[:, 1]
+    image_high[:, 1] = left + right - low[:, 1]
     found = np.flatnonzero(out)
     away = np.maximum(
         np.abs(low[found, None] - image_low[None, found]).max(axis=2),
@@ -125,7 +135,8 @@ def mirror_faces(vehicle: Vehicle) -> Flags:
 
 def parts_below(triangles: Floats, height: float) -> Floats:
     """Return points (F, 6, 3) of triangles below a height: corners and cuts of edges, else NaN."""
-    a, b = triangles, triangles[:, [1, 2, 0]]
+    a = triangles
+    b = triangles[:, [1, 2, 0]]
     rise = b[..., 2] - a[..., 2]
     is_cut = (a[..., 2] <= height) != (b[..., 2] <= height)
     share = (height - a[..., 2]) / np.where(is_cut, rise, 1.0)
@@ -191,7 +202,8 @@ class VehiclePlanes:
         `eyes`: x of the driver's eyes [m].
         """
         points, how = _body_points(vehicle, below)
-        low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+        low = points[:, :2].min(axis=0)
+        high = points[:, :2].max(axis=0)
         along = {"front": float(high[0]), "rear": float(low[0]), "origin": 0.0}
         across = {"left": float(high[1]), "right": float(low[1]), "origin": 0.0}
         along["center"], across["center"] = ((low + high) / 2.0).tolist()
@@ -201,15 +213,16 @@ class VehiclePlanes:
         found: dict[str, PlaneSource] = dict.fromkeys((*OUTWARD, "near", "off", "center"), how)
         missing = _add_axles(along, found, vehicle, reference)
         driver = SIDES[near_side == SIDES[0]]
-        missing |= _add_door(along, found, vehicle, driver, across["center"])
+        missing |= _add_door(along, found, vehicle, driver, middle=across["center"])
         if eyes is None:
             missing["eyes"] = "eyes = x of the driver's eyes"
         else:
-            along["eyes"], found["eyes"] = eyes, {"code": "stated"}
+            along["eyes"] = eyes
+            found["eyes"] = {"code": "stated"}
         rounded = ({k: round(v, DECIMALS) for k, v in own.items()} for own in (along, across))
         x, y = (ReadOnlyDict(each) for each in rounded)
         outline = read_only(convex_outline(points[:, :2]))
-        return cls(x, y, found, missing, outline)
+        return cls(x, y, found, missing, outline=outline)
 
     def coordinate(self, axis: int, place: Place, near_side: str, source: str, field: str) -> float:
         """Return a coordinate [m] of a place along x (0) or y (1), or raise `InputError`."""
@@ -263,7 +276,8 @@ def convex_outline(points: Floats) -> Floats:
         inside &= (side > 0.0) | bool((a == b).all())
     kept = np.unique(np.round(np.vstack([points[~inside], extreme]), DECIMALS), axis=0)
     ordered = [tuple(p) for p in kept.tolist()]
-    lower, upper = _chain(ordered), _chain(ordered[::-1])
+    lower = _chain(ordered)
+    upper = _chain(ordered[::-1])
     return np.array(lower[:-1] + upper[:-1] or ordered)
 
 
@@ -289,7 +303,8 @@ def _body_points(vehicle: Vehicle, below: float | None) -> tuple[Floats, PlaneSo
     if named and len(body):
         how = {"code": "without named", "parts": [names[k] for k in named]}
     elif left_out.any():
-        x, z = vehicle.triangles[left_out][..., 0], vehicle.triangles[left_out][..., 2]
+        x = vehicle.triangles[left_out][..., 0]
+        z = vehicle.triangles[left_out][..., 2]
         x_m, z_m = ([round(float(end), 2) for end in (w.min(), w.max())] for w in (x, z))
         how = {"code": "without shaped", "x": x_m, "z": z_m}
     body = body if len(body) else vehicle.triangles
@@ -314,13 +329,16 @@ def _add_axles(
             needed += "on the ground"
             return {"rear_axle": needed, "front_axle": needed}
         for name, x in zip(("rear_axle", "front_axle"), axles, strict=True):
-            along[name], found[name] = x, {"code": "tyres"}
+            along[name] = x
+            found[name] = {"code": "tyres"}
         return {}
     how: PlaneSource = {"code": "stated" if reference is not None else "wheels"}
-    along["rear_axle"], found["rear_axle"] = own.rear_axle_x, how
+    along["rear_axle"] = own.rear_axle_x
+    found["rear_axle"] = how
     if own.wheelbase is None:
         return {"front_axle": "[reference] with a wheelbase"}
-    along["front_axle"], found["front_axle"] = own.rear_axle_x + own.wheelbase, how
+    along["front_axle"] = own.rear_axle_x + own.wheelbase
+    found["front_axle"] = how
     return {}
 
 
@@ -348,7 +366,8 @@ def _add_door(
         beside = (OUTWARD[side] * (corners[..., 1] - middle)).min(axis=1) > 0.0
         if not beside.any():
             continue
-        low, high = corners[beside].min(axis=(0, 1)), corners[beside].max(axis=(0, 1))
+        low = corners[beside].min(axis=(0, 1))
+        high = corners[beside].max(axis=(0, 1))
         length, depth = (high - low)[:2].tolist()
         if depth < length <= LONGEST_DOOR_M and low[0] > along["rear_axle"]:
             doors[vehicle.part_names[k]] = float(low[0]), float(high[0])
@@ -357,5 +376,6 @@ def _add_door(
         needed = f"a door on the driver's side ({side}), ahead of the rear axle, at most "
         return {"door": f"{needed}{LONGEST_DOOR_M:g} m long; not {names}"}
     foremost = max(doors, key=lambda name: sum(doors[name]))
-    along["door"], found["door"] = doors[foremost][0], {"code": "door", "parts": [foremost]}
+    along["door"] = doors[foremost][0]
+    found["door"] = {"code": "door", "parts": [foremost]}
     return {}

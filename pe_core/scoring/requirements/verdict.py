@@ -25,7 +25,10 @@ from .zones import INSIDE_M, PlacedZone
 
 DECIMALS = 2  # Margins are rounded to the centimetre, to the safe side
 FARTHEST_M = 10.0  # Zones are grown no farther than this
-OCCLUDED, TOO_FEW, IN_PART, NO_COUNT = "occluded", "too few", "in part", "not counted"
+OCCLUDED = "occluded"
+TOO_FEW = "too few"
+IN_PART = "in part"
+NO_COUNT = "not counted"
 """Codes of reasons, beside those of `Kind.missed`. In part: a share has to be visible, and less may
 be. Not counted: the criterion leaves out sensors of this kind."""
 CUBE_M = 0.1  # Side of the cubes by which it is told why a sensor does not see a body
@@ -54,10 +57,12 @@ def margin_of(
     has to be `passed` (N,). Samples are a `step` apart, and reach as far as was `looked` [m].
     """
     order = np.argsort(distance, kind="stable")
-    away, ok = distance[order], passed[order]
+    away = distance[order]
+    ok = passed[order]
     share = np.cumsum(ok) / np.arange(1, len(ok) + 1)
     last = np.append(away[1:] - away[:-1] > INSIDE_M, True)  # the last sample at its distance
-    away, share = away[last], share[last]
+    away = away[last]
+    share = share[last]
     fails = share < wanted
     grown = away > INSIDE_M
     inner = away[~grown]
@@ -257,18 +262,18 @@ class Verdict(ShortRepr):
         """The verdict in plain values."""
         inside = self.passed[self.samples.inside]
         return VerdictSummary(
-            self.name,
-            self.requirement.after,
-            self.met,
-            self.margin,
-            self.at_least,
-            round(self.share, 6),
-            len(inside),
-            int((~inside).sum()),
-            self.blind_m2,
-            self.condition,
-            self.preview,
-            self.worst,
+            name=self.name,
+            check=self.requirement.after,
+            met=self.met,
+            margin_m=self.margin,
+            margin_at_least=self.at_least,
+            share=round(self.share, 6),
+            samples=len(inside),
+            failing=int((~inside).sum()),
+            blind_m2=self.blind_m2,
+            condition=self.condition,
+            preview=self.preview,
+            worst=self.worst,
         )
 
     @property
@@ -305,13 +310,16 @@ def body_verdict(
     preview: bool,
 ) -> Verdict:
     """Return the verdict on a requirement on bodies, from its samples; a preview has no margin."""
-    wanted, inside = requirement.criterion.zone_share, samples.inside
+    wanted = requirement.criterion.zone_share
+    inside = samples.inside
     share = float(result.passed[inside].mean())
     met = share >= wanted
-    margin, at_least = None, False
+    margin = None
+    at_least = False
     if not (preview if met else samples.zone.kind in LINES):
-        step, looked = requirement.zone.step, samples.zone.grow
-        margin, at_least = margin_of(samples.distance, result.passed, wanted, step, looked)
+        step = requirement.zone.step
+        looked = samples.zone.grow
+        margin, at_least = margin_of(samples.distance, result.passed, wanted, step, looked=looked)
     counts = np.sum([flags.astype(np.int64) for flags in result.seen.values()], axis=0)
     at = counts[inside]
     return Verdict(
@@ -319,8 +327,8 @@ def body_verdict(
         met,
         margin,
         at_least,
-        share,
-        **_worst_place(requirement, samples, result, counts, rig, vehicle, met),
+        share=share,
+        **_worst_place(requirement, samples, result, counts, rig=rig, vehicle=vehicle, met=met),
         without={k: bool(flags[inside].mean() >= wanted) for k, flags in result.without.items()},
         sensors=(int(at.min()), int(at.max())),
         samples=samples,
@@ -348,7 +356,7 @@ def _worst_place(
 
     blind = [s for s in rig if not result.seen[s.name][worst, column]]
     foot = x, y, requirement.zone.z[0]
-    why = partial(_reasons, requirement.criterion, blind, body, foot, vehicle)
+    why = partial(_reasons, requirement.criterion, blind, body, foot, vehicle=vehicle)
     seen_by = tuple(s.name for s in rig if result.seen[s.name][worst, column])
     return {"worst": (x, y), "body": body.name, "seen_by": seen_by, "why": why}
 

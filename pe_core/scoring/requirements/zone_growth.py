@@ -38,8 +38,10 @@ class ZoneGrowth:
         model: PerceptionModel,
         caches: SceneCaches,
     ) -> None:
-        self._requirement, self._inside = requirement, inside
-        self._model, self._caches = model, caches
+        self._requirement = requirement
+        self._inside = inside
+        self._model = model
+        self._caches = caches
         self._rings: dict[float, list[RingPart] | None] = {
             inside.zone.grow: self._parts(around.points, around.distance)
         }
@@ -50,8 +52,11 @@ class ZoneGrowth:
         """Yield the margin of a zone that meets its requirement, and whether it could grow more.
         The zone is grown to twice as far again and again, as long as it does not fail, and a margin
         is yielded after each part that is measured: the last one counts."""
-        wanted, step = self._requirement.criterion.zone_share, self._requirement.zone.step
-        distance, passed, inner = self._inside.distance, result.passed, 0.0
+        wanted = self._requirement.criterion.zone_share
+        step = self._requirement.zone.step
+        distance = self._inside.distance
+        passed = result.passed
+        inner = 0.0
         saw = {name: int(np.count_nonzero(flags)) for name, flags in result.seen.items()}
         for outer in (self._inside.zone.grow, *growth(self._inside.zone)):
             parts = self._ring(inner, outer)
@@ -60,12 +65,12 @@ class ZoneGrowth:
             for part in parts:
                 distance = np.concatenate([distance, part.samples.distance])
                 passed = np.concatenate([passed, part.passed(rig, cases, saw)])
-                margin = margin_of(distance, passed, wanted, step, outer)
+                margin = margin_of(distance, passed, wanted, step, looked=outer)
                 yield margin
                 if not margin[1]:
                     return
             inner = outer
-            yield margin_of(distance, passed, wanted, step, outer)
+            yield margin_of(distance, passed, wanted, step, looked=outer)
 
     def _ring(self, inner: float, outer: float) -> "list[RingPart] | None":
         """Return the ground round the zone between two distances; None where it is too much."""
@@ -78,14 +83,21 @@ class ZoneGrowth:
 
     def _parts(self, points: Floats, distance: Floats) -> "list[RingPart]":
         """Return samples from the zone outwards; those at one distance stay together."""
-        order, size = np.argsort(distance, kind="stable"), PART_BOXES // boxes_of(self._requirement)
-        away, cuts, last = distance[order], [], 0
+        order = np.argsort(distance, kind="stable")
+        size = PART_BOXES // boxes_of(self._requirement)
+        away = distance[order]
+        cuts = []
+        last = 0
         for cut in (np.flatnonzero(np.diff(away) > INSIDE_M) + 1).tolist():
             if cut - last >= size:
                 cuts.append(last := cut)
-        given = self._requirement, self._model, self._caches
         return [
-            RingPart(Samples(self._inside.zone, points[own], distance[own]), *given)
+            RingPart(
+                Samples(self._inside.zone, points[own], distance[own]),
+                self._requirement,
+                self._model,
+                self._caches,
+            )
             for own in np.split(order, cuts)
             if len(own)
         ]
@@ -101,8 +113,10 @@ class RingPart:
         model: PerceptionModel,
         caches: SceneCaches,
     ) -> None:
-        self.samples, self._requirement = samples, requirement
-        self._model, self._caches = model, caches
+        self.samples = samples
+        self._requirement = requirement
+        self._model = model
+        self._caches = caches
         self._whole: BodyChecks | None = None
         self._known: dict[tuple[int, str], tuple[Sensor, Flags, Flags]] = {}
 
@@ -122,7 +136,9 @@ class RingPart:
 
     def _passing(self, number: int, rig: Rig, among: Ints, saw: dict[str, int]) -> Ints:
         """Return those of some samples that pass in a scene."""
-        counts, unsure, seen = self._requirement.criterion.counts, among, dict[str, Flags]()
+        counts = self._requirement.criterion.counts
+        unsure = among
+        seen = dict[str, Flags]()
         asked = [sensor for sensor in rig if counts(sensor.kind)]
         for sensor in sorted(asked, key=lambda s: self._rank(number, s, saw)):
             if not len(unsure):
@@ -162,14 +178,16 @@ class RingPart:
             seen = np.zeros((len(known), len(columns_of(self._requirement))), bool)
         asked = which[~known[which]]
         if len(asked):
-            seen[asked], known[asked] = self._measured(number, sensor, asked), True
+            seen[asked] = self._measured(number, sensor, asked)
+            known[asked] = True
             saw[sensor.name] = saw.get(sensor.name, 0) + int(np.count_nonzero(seen[asked]))
         self._known[key] = sensor, known, seen
         return seen
 
     def _measured(self, number: int, sensor: Sensor, which: Ints) -> Flags:
         """Measure a sensor; cells of bodies only where the whole body is seen well enough."""
-        own, points = self._requirement, self.samples.points[which]
+        own = self._requirement
+        points = self.samples.points[which]
         if own.criterion.share is None:
             return self._checks(own, points).seen_by(number, sensor)
         whole = replace(own, criterion=replace(own.criterion, share=None))

@@ -54,7 +54,8 @@ class PlacePairRule:
         return _places((value,), (self.axis, self.axis), source, field)[0]
 
 
-ALONG, ACROSS = PlacePairRule(0), PlacePairRule(1)
+ALONG = PlacePairRule(0)
+ACROSS = PlacePairRule(1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,15 +160,22 @@ class Zone:
             near = self.near_side
             return np.array(
                 [
-                    [planes.coordinate(a, c, near, who, f"zone.{key}") for a, c in enumerate(xy)]
+                    [
+                        planes.coordinate(a, c, near, who, field=f"zone.{key}")
+                        for a, c in enumerate(xy)
+                    ]
                     for xy in corners
                 ]
             ).reshape(-1, 2)
 
-        corners, kind = np.zeros((0, 2)), "ring"
+        corners = np.zeros((0, 2))
+        kind = "ring"
         if self.x is not None and self.y is not None:
             x, y = (
-                sorted(planes.coordinate(a, c, self.near_side, who, f"zone.{'xy'[a]}") for c in own)
+                sorted(
+                    planes.coordinate(a, c, self.near_side, who, field=f"zone.{'xy'[a]}")
+                    for c in own
+                )
                 for a, own in enumerate((self.x, self.y))
             )
             if min(x[1] - x[0], y[1] - y[0]) <= 0.0:
@@ -177,12 +185,13 @@ class Zone:
             kind = "area"
         for key in ("polygon", "path", "spots"):
             if own := getattr(self, key):
-                corners, kind = at(own, key), {"polygon": "area"}.get(key, key)
+                corners = at(own, key)
+                kind = {"polygon": "area"}.get(key, key)
         ahead = np.roll(corners, -1, axis=0)
         area = (corners[:, 0] * ahead[:, 1] - corners[:, 1] * ahead[:, 0]).sum()
         if kind == "area" and abs(area) < AREA_M2:
             raise InputError(who, "zone.polygon", "an area of some extent", corners.tolist())
-        return PlacedZone(self, planes, kind, corners, who)
+        return PlacedZone(self, planes, kind, corners, who=who)
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,12 +250,14 @@ class PlacedZone:
         points = self._lattice(self.zone.step * coarser, self.grow if grown else 0.0)
         distance = self.distance(points, most)
         kept = distance <= most
-        points, distance = points[kept], distance[kept]
+        points = points[kept]
+        distance = distance[kept]
         if len(points) > MAX_GRID:
             found = f"{len(points):,} with the ground round it"
             raise InputError(self.who, "zone.step", f"at most {MAX_GRID:,} samples", found)
         outside = signed_distance(points, self.planes.outline) > INSIDE_M
-        points, distance = points[outside], distance[outside]
+        points = points[outside]
+        distance = distance[outside]
         if not (distance <= INSIDE_M).any():
             found = "a zone inside the vehicle's body"
             raise InputError(self.who, "zone", "ground on which a body can stand", found)
@@ -262,7 +273,8 @@ class PlacedZone:
         points = self._lattice(self.zone.step, high)
         distance = self.distance(points)
         kept = (distance > low + INSIDE_M) & (distance <= high + INSIDE_M)
-        points, distance = points[kept], distance[kept]
+        points = points[kept]
+        distance = distance[kept]
         outside = signed_distance(points, self.planes.outline) > INSIDE_M
         return points[outside], distance[outside]
 
@@ -300,8 +312,10 @@ def signed_distance(points: Floats, corners: Floats) -> Floats:
     others = np.roll(corners, -1, axis=0)
     away = _to_lines(points, corners, others)
     near = ((points >= corners.min(axis=0)) & (points <= corners.max(axis=0))).all(axis=1)
-    x, y = points[near, :1], points[near, 1:]
-    (ax, ay), (bx, by) = corners.T, others.T
+    x = points[near, :1]
+    y = points[near, 1:]
+    ax, ay = corners.T
+    bx, by = others.T
     crosses = (ay <= y) != (by <= y)
     slope = (bx - ax) / np.where(by == ay, 1.0, by - ay)
     inside = np.zeros(len(points), dtype=bool)
@@ -314,11 +328,13 @@ def _to_lines(points: Floats, starts: Floats, ends: Floats) -> Floats:
     x, y = np.ascontiguousarray(points.T)
     best = np.full(len(points), np.inf)
     for (ax, ay), (bx, by) in zip(starts.tolist(), ends.tolist(), strict=True):
-        along_x, along_y = bx - ax, by - ay
+        along_x = bx - ax
+        along_y = by - ay
         size = along_x * along_x + along_y * along_y
         share = ((x - ax) * along_x + (y - ay) * along_y) / (size or 1.0)
         np.clip(share, 0.0, 1.0, out=share)
-        off_x, off_y = x - (ax + share * along_x), y - (ay + share * along_y)
+        off_x = x - (ax + share * along_x)
+        off_y = y - (ay + share * along_y)
         np.minimum(best, off_x * off_x + off_y * off_y, out=best)
     return np.sqrt(best)
 
@@ -357,7 +373,8 @@ def _offset(outline: Floats, distance: float) -> Floats:
     turn = np.arctan2(-edges[:, 0], edges[:, 1])  # outward normals of a counter-clockwise outline
     points = []
     for k, corner in enumerate(outline):
-        first, last = turn[k - 1], turn[k]
+        first = turn[k - 1]
+        last = turn[k]
         sweep = (last - first) % (2.0 * math.pi)
         count = max(1, math.ceil(sweep / math.radians(10.0)))
         angles = first + sweep * np.arange(count + 1) / count

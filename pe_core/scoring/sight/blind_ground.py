@@ -143,13 +143,14 @@ def sector_cells() -> GroundCells:
     """Return the squares round the circle on which blind sectors are measured."""
     count = math.ceil(SECTOR_RADIUS_M / STEP_M) + math.ceil(1.0 / STEP_M)
     low = np.arange(-count, count) * STEP_M
-    return GroundCells(low, low, low + STEP_M, low + STEP_M, STEP_M)
+    return GroundCells(low, low, low + STEP_M, low + STEP_M, step=STEP_M)
 
 
 @cache
 def _circle() -> tuple[Ints, Ints]:
     """Return the squares (N,), (N,) of `sector_cells` that points of the circle lie in."""
-    cells, count = sector_cells(), math.ceil(2.0 * math.pi * SECTOR_RADIUS_M / ARC_STEP_M)
+    cells = sector_cells()
+    count = math.ceil(2.0 * math.pi * SECTOR_RADIUS_M / ARC_STEP_M)
     angles = [2.0 * math.pi * k / count for k in range(count)]
     i, j = (
         np.floor((SECTOR_RADIUS_M * np.array([turn(a) for a in angles]) - low[0]) / cells.step)
@@ -161,7 +162,8 @@ def _circle() -> tuple[Ints, Ints]:
 def widest_sector(blind: Flags, height: float) -> BlindSector:
     """Return the widest sector of blind `sector_cells` (NX, NY) on the circle."""
     i, j = _circle()
-    count, clear = len(i), np.flatnonzero(~blind[i, j])
+    count = len(i)
+    clear = np.flatnonzero(~blind[i, j])
     if not len(clear):
         return BlindSector(height, 360.0, 0.0)
     steps = np.diff(clear, append=clear[0] + count)
@@ -211,9 +213,9 @@ def blind_ground(
         area_of(cells, blind),
         height,
         within,
-        ReadOnlyDict({side: strip.nearest() for side, strip in strips.items()}),
-        ReadOnlyDict({side: strip.zone() for side, strip in strips.items()}),
-        ReadOnlyDict({side: strip.seen_from() for side, strip in strips.items()}),
+        nearest=ReadOnlyDict({side: strip.nearest() for side, strip in strips.items()}),
+        zone=ReadOnlyDict({side: strip.zone() for side, strip in strips.items()}),
+        seen_from=ReadOnlyDict({side: strip.seen_from() for side, strip in strips.items()}),
     )
 
 
@@ -239,7 +241,8 @@ class _Strip:
     def of(cls, cells: GroundCells, blind: Flags, body: Rectangle, side: str) -> "_Strip":
         """Cut out the strip of a side, as wide as the body or one cell."""
         axis, sign = SIDES[side]
-        along, across = (cells.x, cells.y)[axis], (cells.x, cells.y)[1 - axis]
+        along = (cells.x, cells.y)[axis]
+        across = (cells.x, cells.y)[1 - axis]
         edge = body[axis][1] if sign > 0 else body[axis][0]
         low, high = body[1 - axis]
         rows = np.flatnonzero(sign * (along - edge) > 0.0)[::sign]
@@ -253,7 +256,7 @@ class _Strip:
         first_clear = int(np.argmin(strip.any(axis=1))) if len(strip) else 0
         if len(strip) and distance[first_clear] < NARROW_M:
             strip[:first_clear] = False
-        return cls(strip, distance, across[columns], edge, axis, sign)
+        return cls(strip, distance, across[columns], edge, axis=axis, sign=sign)
 
     def nearest(self) -> BlindSpot | None:
         """The nearest blind location; of several, the one nearest to the middle of the strip."""
@@ -355,11 +358,13 @@ def _under(vehicle: Vehicle | None, grid: GroundGrid, room: float) -> Flags:
     covered = np.zeros(grid.shape, bool)
     if vehicle is None:
         return covered
-    first, last = [], []
+    first = []
+    last = []
     for w, low, high, n in zip(grid.origin, *vehicle.bounds, grid.shape, strict=False):
         first.append(int(np.clip(np.floor((low - w) / grid.step), 0, n - 1)))
         last.append(int(np.clip(np.ceil((high - w) / grid.step), 1, n)))
-    (i, j), (i1, j1) = first, last
+    i, j = first
+    i1, j1 = last
     ends = [
         (w + a * grid.step, w + b * grid.step)
         for w, a, b in zip(grid.origin, first, last, strict=True)
@@ -368,8 +373,10 @@ def _under(vehicle: Vehicle | None, grid: GroundGrid, room: float) -> Flags:
     lowest = -top_heights(vehicle.triangles * (1.0, 1.0, -1.0), space)
     corners = vehicle.triangles.reshape(-1, 3)
     low = corners[corners[:, 2] < room, :2]
-    (x0, y0), (x1, y1) = low.min(axis=0, initial=np.inf), low.max(axis=0, initial=-np.inf)
-    x, y = space.centers(0)[:, None], space.centers(1)
+    x0, y0 = low.min(axis=0, initial=np.inf)
+    x1, y1 = low.max(axis=0, initial=-np.inf)
+    x = space.centers(0)[:, None]
+    y = space.centers(1)
     over_body = (x >= x0) & (x <= x1) & (y >= y0) & (y <= y1)
     beyond = np.isfinite(lowest) & (lowest >= room) & ~over_body
     covered[i:i1, j:j1] = np.isfinite(lowest) & ~opened(beyond, BODY_M / 2.0 / grid.step)

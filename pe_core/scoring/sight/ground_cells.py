@@ -24,7 +24,8 @@ Bounds = tuple[float, float]
 Rectangle = tuple[Bounds, Bounds]
 """A rectangle of the ground: bounds along x and along y [m]."""
 VOXELS_PER_M2 = 8
-MIN_VOXELS, MAX_VOXELS = 4, 64
+MIN_VOXELS = 4
+MAX_VOXELS = 64
 """Voxels of a cell, if it is wider than a column."""
 MAX_CELLS = 2**21
 STEP = Number(0.0, above=True, cap=1e6, unit="m", noun="length")
@@ -84,7 +85,7 @@ class GroundCells:
             raise InputError("sight", "step", f"a step with at most {MAX_CELLS:,} cells", found)
         low = [at + np.arange(n) * step for (at, _), n in zip(bounds, counts, strict=True)]
         high = [np.minimum(w + step, end) for w, (_, end) in zip(low, bounds, strict=True)]
-        return cls(low[0], low[1], high[0], high[1], step)
+        return cls(low[0], low[1], high[0], high[1], step=step)
 
     @property
     def key(self) -> tuple[float, ...]:
@@ -182,14 +183,16 @@ def dilated(flags: Flags, widths: list[int]) -> Flags:
 
 def _along(flags: Flags, reach: int) -> Flags:
     """Dilate by `reach` cells within each row; each step doubles the distance."""
-    near, done = flags, 0
+    near = flags
+    done = 0
     reach = min(reach, flags.shape[1] - 1)
     while done < reach:
         k = min(max(done, 1), reach - done)
         wider = near.copy()
         wider[:, k:] |= near[:, :-k]
         wider[:, :-k] |= near[:, k:]
-        near, done = wider, done + k
+        near = wider
+        done = done + k
     return near
 
 
@@ -210,7 +213,8 @@ def without_specks(flags: Flags, min_cells: float) -> Flags:
     """Drop connected pieces (by sides) of fewer cells than `min_cells`."""
     width = flags.shape[1] + 1  # one more cell, so that no run continues in the next row
     edges = np.diff(np.pad(flags, ((0, 0), (1, 1))).astype(np.int8), axis=1).reshape(-1)
-    starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+    starts = np.flatnonzero(edges == 1)
+    ends = np.flatnonzero(edges == -1)
     # pairs (a, b) of runs of cells in neighbouring rows that share a side
     first = np.searchsorted(ends, starts + width, side="right")
     n = np.maximum(np.searchsorted(starts, ends + width, side="left") - first, 0)
@@ -218,7 +222,8 @@ def without_specks(flags: Flags, min_cells: float) -> Flags:
     b = first[a] + count_up(n)
     piece = np.arange(len(starts))  # the smallest number in each run's component
     while (differ := piece[a] != piece[b]).any():
-        one, other = piece[a[differ]], piece[b[differ]]
+        one = piece[a[differ]]
+        other = piece[b[differ]]
         np.minimum.at(piece, np.maximum(one, other), np.minimum(one, other))
         while ((further := piece[piece]) != piece).any():
             piece = further
@@ -256,7 +261,8 @@ def outlines(values: Floats, level: float, x: Floats, y: Floats) -> tuple[Floats
     The field (NX, NY) is that at the middles of evenly spaced cells (x, y); outside of them it is
     below the level. The region is on the left of each outline; the last point repeats the first."""
     field = np.pad(values - level, 1, constant_values=-EDGE)
-    xs, ys = _widened(x), _widened(y)
+    xs = _widened(x)
+    ys = _widened(y)
     rings = [_points_on(ring, field, xs, ys) for ring in chained(*_segments(field))]
     return tuple(sorted(rings, key=len, reverse=True))
 
@@ -272,7 +278,8 @@ def _segments(field: Floats) -> tuple[Ints, Ints]:
     inside = field > 0.0
     case = inside[:-1, :-1] + 2 * inside[1:, :-1] + 4 * inside[1:, 1:] + 8 * inside[:-1, 1:]
     middle = field[:-1, :-1] + field[1:, :-1] + field[1:, 1:] + field[:-1, 1:] > 0.0
-    starts, ends = [], []
+    starts = []
+    ends = []
     for number, sides, where in (
         *((n, s, None) for n, s in SEGMENTS.items()),
         *((n, s, ~middle) for n, s in APART.items()),
@@ -287,7 +294,8 @@ def _segments(field: Floats) -> tuple[Ints, Ints]:
 
 def _edge(i: Ints, j: Ints, side: int, shape: tuple[int, ...]) -> Ints:
     """Number of a side of squares (i, j): even along x, odd along y, by its lower end."""
-    i, j = i + (side == RIGHT), j + (side == TOP)
+    i = i + (side == RIGHT)
+    j = j + (side == TOP)
     return 2 * (i * shape[1] + j) + (side in (LEFT, RIGHT))
 
 
@@ -308,8 +316,10 @@ def _points_on(edges: list[int], field: Floats, xs: Floats, ys: Floats) -> Float
     """Return the points (N, 2) where a field crosses the level along numbered edges of the grid."""
     number, along_y = np.divmod(np.asarray(edges), 2)
     i, j = np.divmod(number, field.shape[1])
-    i1, j1 = i + (1 - along_y), j + along_y
-    a, b = field[i, j], field[i1, j1]
+    i1 = i + (1 - along_y)
+    j1 = j + along_y
+    a = field[i, j]
+    b = field[i1, j1]
     t = a / (a - b)
     x = xs[i] + t * (xs[i1] - xs[i])
     y = ys[j] + t * (ys[j1] - ys[j])

@@ -38,6 +38,10 @@ FEW = 0.25
 DECIMALS = 6  # Reaches are rounded to the micrometre
 AP = Number(0.0, 1.0, above=True, below=True)
 BEARINGS = Whole(4, 720)
+AT_LEAST_M = 0.5
+"""A reach this near to the end of the evaluated range counts as its end: it is "at least"."""
+ARC_STEPS = 12  # Points along the arc of a sector
+SECTOR_RAD = 2.0 * math.pi / len(SECTORS)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -112,7 +116,7 @@ class Spokes:
             inside &= space.centers(2)[k] >= tops[i, j]
         ring = np.flatnonzero(inside) // VOXELS
         mass = _smoothed(inside.sum(axis=2, dtype=float))
-        return cls(read_only(angles), read_only(limit), index[inside], ring, mass)
+        return cls(read_only(angles), read_only(limit), index[inside], ring, mass=mass)
 
     @property
     def ahead(self) -> "Spokes":
@@ -171,17 +175,14 @@ def _end_of_longest(values: Floats, min_value: float) -> float:
     edges = np.flatnonzero(np.diff(np.concatenate([[False], values >= min_value, [False]])))
     if not len(edges):
         return 0.0
-    starts, ends = edges[::2], edges[1::2]
+    starts = edges[::2]
+    ends = edges[1::2]
     end = int(ends[np.argmax(ends - starts)])
     if end == len(values):
         return float(end)
-    above, below = float(values[end - 1]), float(values[end])
+    above = float(values[end - 1])
+    below = float(values[end])
     return end - 0.5 + (above - min_value) / (above - below)
-
-
-AT_LEAST_M = 0.5
-"""A reach this near to the end of the evaluated range counts as its end: it is "at least"."""
-ARC_STEPS = 12  # Points along the arc of a sector
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -201,7 +202,8 @@ def reach_line(reach: Reach, distance: Floats) -> ReachLine:
     if reach.sector:
         aside = (np.arange(ARC_STEPS) / (ARC_STEPS - 1) - 0.5) * reach.sector
         bearings = np.add.outer(bearings, aside).reshape(-1)
-        distance, at_least = np.repeat(distance, ARC_STEPS), np.repeat(at_least, ARC_STEPS)
+        distance = np.repeat(distance, ARC_STEPS)
+        at_least = np.repeat(at_least, ARC_STEPS)
     else:
         round_ = (np.roll(distance, 1) + 2.0 * distance + np.roll(distance, -1)) / 4.0
         distance = np.where(at_least, distance, round_)
@@ -214,9 +216,6 @@ def ends_with_space(reach: Reach, distance: Floats) -> Flags:
     return np.asarray(distance >= reach.limit - AT_LEAST_M)
 
 
-SECTOR_RAD = 2.0 * math.pi / len(SECTORS)
-
-
 def object_reach(lone: LoneObjects, rig: Rig, class_name: str, min_ap: float) -> Reach:
     """Return the reach of a class with an AP of at least `min_ap`: of the rig, of each sensor."""
 
@@ -227,4 +226,6 @@ def object_reach(lone: LoneObjects, rig: Rig, class_name: str, min_ap: float) ->
     bearings = read_only(np.arange(len(SECTORS)) * SECTOR_RAD)
     alone = {s.name: metres([s.name]) for s in rig}
     limit = read_only(np.full(len(SECTORS), FARTHEST_M))
-    return Reach(class_name, min_ap, bearings, metres(None), alone, limit, sector=SECTOR_RAD)
+    return Reach(
+        class_name, min_ap, bearings, metres(None), per_sensor=alone, limit=limit, sector=SECTOR_RAD
+    )

@@ -56,7 +56,8 @@ from .visibility import (
 ORIGIN = ((0.0, 0.0), (0.0, 0.0))
 SAMPLES = 65_536
 """Number of voxels for the AP by class."""
-MIN_AP, BEARINGS_SHOWN = 0.5, 72
+MIN_AP = 0.5
+BEARINGS_SHOWN = 72
 """From which AP an object counts as found, and along how many bearings, unless one says so."""
 
 
@@ -98,7 +99,9 @@ class Sight:
         shift: Shift = CENTERED,
     ) -> None:
         require_scene("sight", space, prior, vehicle)
-        self.space, self.prior, self.vehicle = space, prior, vehicle
+        self.space = space
+        self.prior = prior
+        self.vehicle = vehicle
         self.frames = frames or Frames()
         self.targets = targets or TargetRule()
         self._samples = samples
@@ -156,7 +159,7 @@ class Sight:
                 ),
             )
             m = measured.measured(rig)
-            return ground_sight(measured.voxels, rig, m, self._fusion, height)
+            return ground_sight(measured.voxels, rig, m, self._fusion, height=height)
 
     def blind(self, rig: Rig, height: float = 0.0, within: float = WITHIN_M) -> BlindGround:
         """Return the ground round the vehicle where a body is invisible to all sensors.
@@ -175,8 +178,9 @@ class Sight:
             How far from the rectangle of the vehicle's body the ground is evaluated [m].
         """
         cells = self._cells_round_body(height, within)
-        blind, body = self._blind_of(cells, rig, height), body_rectangle(self.vehicle)
-        return blind_ground(cells, blind, body, float(height), float(within))
+        blind = self._blind_of(cells, rig, height)
+        body = body_rectangle(self.vehicle)
+        return blind_ground(cells, blind, body, float(height), within=float(within))
 
     def blind_area(self, rig: Rig, height: float = 0.0) -> float:
         """Return the area of `blind` [m2], without its outlines: quicker."""
@@ -323,7 +327,9 @@ class Sight:
                 s.name: read_only(spokes.distance(self._ap(rig, m, [s.name]), min_ap)) for s in rig
             }
             whole = read_only(spokes.distance(self._ap(rig, m, list(m)), min_ap))
-            return Reach(class_name, min_ap, spokes.bearings, whole, alone, spokes.limit)
+            return Reach(
+                class_name, min_ap, spokes.bearings, whole, per_sensor=alone, limit=spokes.limit
+            )
 
     def reach_ahead(self, rig: Rig, class_name: str) -> tuple[float, bool]:
         """Return `reach` by voxels straight ahead [m], and whether it ends with the space."""
@@ -371,7 +377,7 @@ class Sight:
             return visible_shares(measured.voxels, m, self._rises(rig, m))
 
     def _sampled(self) -> VoxelSample:
-        return draw(self._densities, self.space, SAMPLES, self._tops, self._shift)
+        return draw(self._densities, self.space, SAMPLES, self._tops, shift=self._shift)
 
     def _ap(self, rig: Rig, m: Mapping[str, NDArray], members: Collection[str]) -> Floats:
         """Return the AP of every voxel with some sensors fused: eqs. 4 to 7, and 5 inverted."""

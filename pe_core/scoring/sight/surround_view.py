@@ -17,7 +17,8 @@ from ...scene.rig import Rig, Sensor
 from ...sensors import kind_of
 from .blind_ground import BlindSearch, area_of
 
-NO_CAMERA, VEHICLE = -1, -2
+NO_CAMERA = -1
+VEHICLE = -2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,19 +59,28 @@ def surround_view(search: BlindSearch, rig: Rig) -> SurroundView:
     if not pictured:
         raise InputError("sight", "surround view", "a rig with a camera", "none")
     cameras = Rig(pictured)
-    cells, blind = search.cells, search.blind(cameras)
-    blind_alone, covered = search.by_sensor(), search.covered
+    cells = search.cells
+    blind = search.blind(cameras)
+    blind_alone = search.by_sensor()
+    covered = search.covered
     camera = np.where(covered, VEHICLE, NO_CAMERA)
     most = np.zeros(cells.shape)
     for number, sensor in enumerate(cameras):
         i, j = np.nonzero(~blind_alone[sensor.name] & ~covered)
         pixels = pixels_per_m(sensor, np.column_stack([cells.x[i], cells.y[j]]))
         more = pixels > most[i, j]
-        camera[i[more], j[more]], most[i[more], j[more]] = number, pixels[more]
+        most[i[more], j[more]] = pixels[more]
+        camera[i[more], j[more]] = number
     names = tuple(sensor.name for sensor in cameras)
-    squares = read_only(cells.x), read_only(cells.y), cells.step
-    found = names, read_only(camera), read_only(blind)
-    return SurroundView(*squares, *found, area_of(cells, blind))
+    return SurroundView(
+        read_only(cells.x),
+        read_only(cells.y),
+        cells.step,
+        names,
+        camera=read_only(camera),
+        blind=read_only(blind),
+        area=area_of(cells, blind),
+    )
 
 
 def pixels_per_m(sensor: Sensor, points: Floats) -> Floats:

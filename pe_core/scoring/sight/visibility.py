@@ -134,7 +134,8 @@ def by_prior(
     if tops is not None:
         first = np.searchsorted(space.centers(2), tops[i, j].reshape(-1)).reshape(i.shape)
     columns = _WeightByColumn(densities)
-    k, mass = np.empty(i.size, np.int64), np.empty(i.size)
+    k = np.empty(i.size, np.int64)
+    mass = np.empty(i.size)
     for some in blocks(i.size, AT_ONCE):
         at, beside, above = (w.reshape(-1)[some] for w in (i, j, first))
         k[some], mass[some] = columns.sampled(at, beside, above, share.reshape(-1)[some])
@@ -159,13 +160,16 @@ class _WeightByColumn:
         empty = mix.sum(axis=0) <= 0.0
         mix[:, empty] = self._everywhere[:, None]
         last = len(self._below[0]) - 2
-        under, whole = self._upto(mix, first), self._upto(mix, np.full_like(first, last + 1))
+        under = self._upto(mix, first)
+        whole = self._upto(mix, np.full_like(first, last + 1))
         wanted = under + share * (whole - under)
-        low, high = np.minimum(first, last), np.full_like(first, last)
+        low = np.minimum(first, last)
+        high = np.full_like(first, last)
         for _ in range(max(1, last + 1).bit_length()):
             middle = (low + high) // 2
             above = self._upto(mix, middle + 1) > wanted
-            high, low = np.where(above, middle, high), np.where(above, low, middle + 1)
+            high = np.where(above, middle, high)
+            low = np.where(above, low, middle + 1)
             low = np.minimum(low, high)
         return low, np.where(empty, 0.0, whole - under)
 
@@ -192,7 +196,9 @@ class MeasuredVoxels:
     def __init__(
         self, voxels: Any, sensors: MeasurementCache, fusion: Fusion, centers: Floats
     ) -> None:
-        self.voxels, self._sensors, self._fusion = voxels, sensors, fusion
+        self.voxels = voxels
+        self._sensors = sensors
+        self._fusion = fusion
         self._distance = np.hypot(*centers[:, :2].T)
 
     @property
@@ -212,7 +218,9 @@ class VoxelSetCache:
     """A cache of voxel sets: those that were used last, up to `MAX_VOXELS`."""
 
     def __init__(self, space: PerceptionSpace, vehicle: Vehicle | None, fusion: Fusion) -> None:
-        self._space, self._vehicle, self._fusion = space, vehicle, fusion
+        self._space = space
+        self._vehicle = vehicle
+        self._fusion = fusion
         self.kernel_cache: dict[str, Any] = {}  # by kind: beams are cast once for all voxel sets
         self._sets: dict[Hashable, Any] = {}  # least recently used first
 
@@ -283,14 +291,14 @@ def ground_sight(
     for s in rig:
         by_kind[s.kind] = by_kind.get(s.kind, False) | by_sensor[s.name]
     return GroundSight(
-        read_only(voxels.cells.x),
-        read_only(voxels.cells.y),
-        voxels.cells.step,
-        height,
-        read_only(voxels.mean(entropies)),
-        read_only(voxels.mean(visible)),
-        read_only(_number(by_sensor, voxels)),
-        read_only(_number(by_kind, voxels)),
+        x=read_only(voxels.cells.x),
+        y=read_only(voxels.cells.y),
+        step=voxels.cells.step,
+        height=height,
+        entropy=read_only(voxels.mean(entropies)),
+        coverage=read_only(voxels.mean(visible)),
+        sensors=read_only(_number(by_sensor, voxels)),
+        kinds=read_only(_number(by_kind, voxels)),
     )
 
 

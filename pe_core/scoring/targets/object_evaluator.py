@@ -60,10 +60,15 @@ class ObjectEvaluator:
         kernel_caches: dict[str, Any] | None = None,
     ) -> None:
         require_scene("evaluator", space, prior, vehicle)
-        self.space, self.prior, self.vehicle = space, prior, vehicle
+        self.space = space
+        self.prior = prior
+        self.vehicle = vehicle
         self.targets = targets or TargetRule(OBJECTS)
-        self._model, self._shift = model or PerceptionModel(), shift
-        self.drawn: SampledObjects = sample_objects(prior, space, vehicle, self.targets, shift)
+        self._model = model or PerceptionModel()
+        self._shift = shift
+        self.drawn: SampledObjects = sample_objects(
+            prior, space, vehicle, self.targets, shift=shift
+        )
         self.samples = len(self.drawn.objects)
         self._fused = FusedObjects(self.drawn.objects, self.drawn.weights, self._model)
         self._sums = ObjectSums(self.drawn)
@@ -73,9 +78,18 @@ class ObjectEvaluator:
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the arguments: another process makes an evaluator of its own from them."""
-        what = self.space, self.prior, self.vehicle
-        targets, model, shift = self.targets, self._model, self._shift
-        return partial(type(self), *what, targets=targets, model=model, shift=shift), ()
+        targets = self.targets
+        model = self._model
+        shift = self._shift
+        return partial(
+            type(self),
+            self.space,
+            self.prior,
+            self.vehicle,
+            targets=targets,
+            model=model,
+            shift=shift,
+        ), ()
 
     def entropy(self, rig: Rig) -> float:
         """Return the object entropy of a rig [nats]."""
@@ -134,9 +148,9 @@ class ObjectEvaluator:
             whole.coverage,
             self._sums.standard_error(entropies, len(rig.groups)),
             self._sums.classes(entropies, visible),
-            self._sums.zones(entropies, visible),
-            {},
-            0,
+            per_zone=self._sums.zones(entropies, visible),
+            per_sensor={},
+            voxels=0,
             ap=self._sums.expected_ap(entropies),
             scatter=self._sums.scatter(entropies, visible),
         )
@@ -154,7 +168,7 @@ class ObjectEvaluator:
         remaining = [s.name for s in rig if s.name != name]
         failed = self._sums.part(*self._fused.entropies(rig, m, remaining)).entropy
         lost = rounded((failed if remaining else H_BLIND) - entropy)
-        return SensorScore(alone.entropy, alone.coverage, lost, 0, 0, {})
+        return SensorScore(alone.entropy, alone.coverage, lost, beams=0, occluded=0, occluded_by={})
 
     @cached_property
     def _lone(self) -> LoneObjects:

@@ -43,10 +43,7 @@ from .scene_layout import ground_rectangles, overlap, vehicle_rectangle
 BATCHES = 32
 """Number of batches of scenes, for the errors of differences; fewer for fewer scenes."""
 Bools = NDArray[np.bool_]
-SECTORS = (
-    *("front", "front left", "left", "rear left"),
-    *("rear", "rear right", "right", "front right"),
-)
+SECTORS = ("front", "front left", "left", "rear left", "rear", "rear right", "right", "front right")
 """Eighths of the circle, each centred on the direction that it is named after."""
 RING_M = 5.0
 RINGS = int(FARTHEST_M / RING_M)
@@ -59,7 +56,8 @@ class FusedObjects:
     """Fuses measurements of objects by a perception model; objects without weight are left out."""
 
     def __init__(self, objects: Objects, weights: Floats, model: PerceptionModel) -> None:
-        self._model, self._count = model, len(objects)
+        self._model = model
+        self._count = len(objects)
         self._distance = np.hypot(*objects.centers[:, :2].T)
         self._rows = {
             name: rows
@@ -82,7 +80,8 @@ class FusedObjects:
     ) -> tuple[Floats, NDArray[np.bool_]]:
         """Return the entropy (N,) of each object [nats], and whether any fusion group detects it.
         `members` names the sensors that are fused; all, by default."""
-        entropies, visible = np.full(self._count, H_BLIND), np.zeros(self._count, bool)
+        entropies = np.full(self._count, H_BLIND)
+        visible = np.zeros(self._count, bool)
         groups = []  # kind and sum (N,) of each fusion group, eq. 6
         for sensors in rig.groups.values():
             present = [m[s.name] for s in sensors if members is None or s.name in members]
@@ -105,8 +104,11 @@ class ObjectSums:
     """Means over the objects: all of them, by class, by zone."""
 
     def __init__(self, drawn: SampledObjects) -> None:
-        self._objects, self._weights, self._drawn = drawn.objects, drawn.weights, drawn
-        x, y = drawn.objects.centers[:, 0], drawn.objects.centers[:, 1]
+        self._objects = drawn.objects
+        self._weights = drawn.weights
+        self._drawn = drawn
+        x = drawn.objects.centers[:, 0]
+        y = drawn.objects.centers[:, 1]
         self._zones = {n: mask for n, mask in zone_masks(x, y).items() if self._mass(mask) > 0.0}
         self._classes = {
             name: mask
@@ -156,17 +158,23 @@ class ObjectSums:
         per_class = {}
         for name, mask in self._classes.items():
             per_class[name] = FoundClass(
-                int(mask.sum()),
-                rounded(self._mass(mask)),
-                rounded(self._mean(entropies, mask)),
-                self.standard_error(entropies, max(len(points), 1), mask),
-                rounded(self._mean(ap, mask)),
-                self._scatter(ap, mask),
-                {} if total is None else self._shares(total, mask),
-                reach(name),
+                objects=int(mask.sum()),
+                share=rounded(self._mass(mask)),
+                entropy=rounded(self._mean(entropies, mask)),
+                stderr=self.standard_error(entropies, max(len(points), 1), mask),
+                ap=rounded(self._mean(ap, mask)),
+                ap_stderr=self._scatter(ap, mask),
+                points={} if total is None else self._shares(total, mask),
+                reach=reach(name),
             )
-        whole = self.expected_ap(entropies), self._scatter(ap, None)
-        return ObjectScore(*whole, len(ap), self._drawn.scenes, traffic, per_class)
+        return ObjectScore(
+            self.expected_ap(entropies),
+            self._scatter(ap, None),
+            len(ap),
+            self._drawn.scenes,
+            traffic=traffic,
+            per_class=per_class,
+        )
 
     def expected_ap(self, entropies: Floats) -> float:
         """Return the expected AP of all objects, by their weights."""
@@ -192,7 +200,7 @@ class ObjectSums:
             self._scatter(ap, None),
             self._drawn.scenes,
             rings,
-            Scatter(self._digest, by_figure),
+            scatter=Scatter(self._digest, by_figure),
         )
 
     @cached_property
@@ -283,7 +291,9 @@ def ring_objects(drawn: SampledObjects, vehicle: Vehicle | None) -> RingObjects:
     beside = ~overlap(ground_rectangles(centers[:, :2], sizes, yaws), vehicle_rectangle(vehicle))
     labels = cells // (len(SECTORS) * RINGS)
     placed = [values[beside] for values in (centers, sizes, yaws)]
-    objects = Objects(placed[0], placed[1], placed[2], labels[beside], drawn.objects.class_names)
+    objects = Objects(
+        placed[0], placed[1], placed[2], labels[beside], class_names=drawn.objects.class_names
+    )
     return RingObjects(objects, cells[beside])
 
 
@@ -308,7 +318,8 @@ def _reach(means: list[float], min_ap: float = FOUND_AP) -> float:
     last = next((k for k in range(first, RINGS) if means[k] < min_ap), None)
     if last is None:
         return FARTHEST_M
-    above, below = means[last - 1], means[last]
+    above = means[last - 1]
+    below = means[last]
     return RING_M * (last - 0.5 + (above - min_ap) / (above - below))
 
 

@@ -29,7 +29,8 @@ from .scene_layout import (
     vehicle_rectangle,
 )
 
-VOXELS, OBJECTS = "voxels", "objects"
+VOXELS = "voxels"
+OBJECTS = "objects"
 TARGETS = (VOXELS, OBJECTS)
 MENU = (
     ("Voxels", "How well each voxel is measured: perception entropy, as in the paper"),
@@ -125,9 +126,14 @@ def sample_objects(
         boxes, labels = _each_once(prior, space, vehicle)
         scenes = np.arange(len(labels))
     else:
-        boxes, labels, scenes = _in_scenes(prior, space, vehicle, targets, shift)
+        boxes, labels, scenes = _in_scenes(prior, space, vehicle, targets, shift=shift)
     objects = Objects(
-        boxes.centers, boxes.sizes, boxes.yaws, labels, list(prior.class_names), scenes
+        boxes.centers,
+        boxes.sizes,
+        boxes.yaws,
+        labels,
+        class_names=list(prior.class_names),
+        scenes=scenes,
     )
     return SampledObjects(objects, read_only(_weights(prior, objects)), int(scenes.max()) + 1)
 
@@ -171,7 +177,9 @@ def _in_scenes(
     by_class = [_random_scenes(k, targets.scenes, shifts[n]) for n, k in counts.items()]
     scenes = np.concatenate(by_class)
     ground = (space.x[1] - space.x[0]) * (space.y[1] - space.y[0])
-    boxes = place_boxes(sources, labels, scenes, vehicle_rectangle(vehicle), ground, list(at_once))
+    boxes = place_boxes(
+        sources, labels, scenes, vehicle_rectangle(vehicle), ground_m2=ground, names=list(at_once)
+    )
     order = np.argsort(scenes, kind="stable")
     return boxes.subset(order), labels[order], scenes[order]
 
@@ -214,7 +222,8 @@ def _weights(prior: Prior, objects: Objects) -> Floats:
     weights = np.zeros(len(objects))
     for c, name in enumerate(objects.class_names):
         of_class = np.flatnonzero(objects.labels == c)
-        x, y = objects.centers[of_class, 0], objects.centers[of_class, 1]
+        x = objects.centers[of_class, 0]
+        y = objects.centers[of_class, 1]
         weights[of_class] = shares.get(name, 1.0) / max(counts[c], 1) * prior.focus_at(name, x, y)
     total = float(weights.sum())
     if not 0.0 < total < math.inf:

@@ -30,6 +30,10 @@ DECIMALS = 4
 SPREADS = 2.0
 """Sizes are normally distributed, cut off at so many standard deviations or half of the mean."""
 NORMAL = NormalDist()
+MAX_ATTEMPTS = 200
+"""How many positions are proposed for an object before placing it fails."""
+CAR_SIZE_M = (4.6, 1.9)
+"""Length and width of the rectangle that is kept free without a mesh of the vehicle."""
 
 
 class LaidOutBoxes(NamedTuple):
@@ -48,7 +52,10 @@ class ModelBoxes:
     """Boxes of a class of a prior's model; sizes and headings are the same in all attempts."""
 
     def __init__(self, cls: ObjectClass, space: PerceptionSpace, count: int, shift: float) -> None:
-        self._class, self._space, self._count, self._shift = cls, space, count, shift
+        self._class = cls
+        self._space = space
+        self._count = count
+        self._shift = shift
         u = scrambled_sobol(count, scrambles(shift, 0))
         spreads = (cls.length_spread, cls.width_spread, cls.height_spread)
         by_axis = zip((LENGTH, WIDTH, HEIGHT), cls.size, spreads, strict=True)
@@ -70,9 +77,11 @@ class LabelledBoxes:
     """Labelled boxes at their positions; only which of them are in a scene is sampled."""
 
     def __init__(self, boxes: LaidOutBoxes, count: int, shift: float) -> None:
-        x, y = boxes.centers[:, 0], boxes.centers[:, 1]
+        x = boxes.centers[:, 0]
+        y = boxes.centers[:, 1]
         self._boxes = boxes.subset(np.argsort(x * x + y * y, kind="stable"))
-        self._count, self._shift = count, shift
+        self._count = count
+        self._shift = shift
 
     def proposed(self, attempt: int) -> LaidOutBoxes:
         """Sample from the boxes, sorted by distance; others at each attempt."""
@@ -103,7 +112,8 @@ def _scattered(u: Floats, mean: float, spread: float) -> Floats:
     if spread == 0.0:
         return np.full(len(u), mean)
     max_spreads = min(SPREADS, mean / 2.0 / spread)
-    low, high = NORMAL.cdf(-max_spreads), NORMAL.cdf(max_spreads)
+    low = NORMAL.cdf(-max_spreads)
+    high = NORMAL.cdf(max_spreads)
     inside = (low + u * (high - low)).tolist()
     return mean + spread * np.array([NORMAL.inv_cdf(v) for v in inside])
 
@@ -137,37 +147,37 @@ def ground_rectangles(centers: Floats, sizes: Floats, yaws: Floats) -> GroundRec
     turns = yaws.tolist()
     cos, sin = (np.array([f(a) for a in turns]) for f in (math.cos, math.sin))
     return GroundRectangles(
-        centers[:, 0], centers[:, 1], cos, sin, sizes[:, 0] / 2.0, sizes[:, 1] / 2.0
+        centers[:, 0], centers[:, 1], cos, sin, along=sizes[:, 0] / 2.0, across=sizes[:, 1] / 2.0
     )
 
 
 def overlap(a: GroundRectangles, b: GroundRectangles) -> NDArray[np.bool_]:
     """Whether rectangles, broadcast together, overlap: no axis separates them. Separating axes are
     parallel to a side of either one. Rectangles that only touch do not overlap."""
-    dx, dy = b.x - a.x, b.y - a.y
-    turn, slant = np.abs(a.cos * b.cos + a.sin * b.sin), np.abs(a.cos * b.sin - a.sin * b.cos)
+    dx = b.x - a.x
+    dy = b.y - a.y
+    turn = np.abs(a.cos * b.cos + a.sin * b.sin)
+    slant = np.abs(a.cos * b.sin - a.sin * b.cos)
     overlaps = np.ones(np.broadcast(a.x, b.x).shape, bool)
     with np.errstate(invalid="ignore"):  # infinitely far away
         for one, other in ((a, b), (b, a)):
-            along, across = np.abs(dx * one.cos + dy * one.sin), np.abs(dy * one.cos - dx * one.sin)
+            along = np.abs(dx * one.cos + dy * one.sin)
+            across = np.abs(dy * one.cos - dx * one.sin)
             overlaps &= along < one.along + other.along * turn + other.across * slant
             overlaps &= across < one.across + other.along * slant + other.across * turn
     return overlaps
 
 
-MAX_ATTEMPTS = 200
-"""How many positions are proposed for an object before placing it fails."""
-CAR_SIZE_M = (4.6, 1.9)
-"""Length and width of the rectangle that is kept free without a mesh of the vehicle."""
-
-
 def vehicle_rectangle(vehicle: Vehicle | None) -> GroundRectangles:
     """Return the rectangle (1,) round the vehicle, seen from above."""
     if vehicle is None:
-        (length, width), x, y = CAR_SIZE_M, 0.0, 0.0
+        length, width = CAR_SIZE_M
+        x = 0.0
+        y = 0.0
     else:
         low, high = vehicle.bounds
-        (length, width), (x, y) = (high - low)[:2].tolist(), ((high + low) / 2.0)[:2].tolist()
+        length, width = (high - low)[:2].tolist()
+        x, y = ((high + low) / 2.0)[:2].tolist()
     return ground_rectangles(np.array([[x, y]]), np.array([[length, width, 0.0]]), np.zeros(1))
 
 
@@ -217,7 +227,8 @@ def place_boxes(
             if not len(waiting):
                 break
         else:
-            count, name = np.bincount(scenes).max(), names[labels[waiting[0]]]
+            count = np.bincount(scenes).max()
+            name = names[labels[waiting[0]]]
             _no_room(f"{count:,} in a scene, and no room for a {name} in {MAX_ATTEMPTS} places")
     return result
 

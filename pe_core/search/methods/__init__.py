@@ -19,7 +19,8 @@ METHODS: dict[str, Method] = {
     ),
 }
 """What menus list."""
-DEFAULT_METHOD, SCHEDULED_METHOD = "portfolio", "random"
+DEFAULT_METHOD = "portfolio"
+SCHEDULED_METHOD = "random"
 """The method of a search that names none, and the only one with a schedule."""
 
 

@@ -25,6 +25,13 @@ from typing import TypeVar
 from ..parametrization import Candidate, Parametrization
 from ..search_space import Schedule
 
+Answered = list[float | None]
+T = TypeVar("T")
+MAX_SAMPLED = 100
+"""Placements sampled for one candidate; where all of them break a rule, none is evaluated."""
+SCREENED_WITHIN = 0.003
+"""A candidate passes the screening up to so much above the incumbent [nats]."""
+
 
 @dataclass(frozen=True, slots=True)
 class Given:
@@ -71,7 +78,6 @@ class Question:
     ends: tuple[float, ...] = ()
 
 
-Answered = list[float | None]
 QuestionStream = Generator[Question, Answered, None]
 
 
@@ -96,7 +102,6 @@ class Method:
     samples: Callable[[int, int, int], tuple[int, ...]] = lambda samples, *_: (samples,)
 
 
-T = TypeVar("T")
 MethodPart = Generator[Question, Answered, T]
 """A part of a method: it yields questions, and returns its result."""
 
@@ -115,13 +120,10 @@ class Phase:
     ) -> MethodPart[list[float]]:
         """Evaluate the candidates, `below` levels lower; return one value for each: inf for one
         that is missing or not below the cutoff."""
-        shared = self.round, self.total, self.level - below, self.ends
-        answers = yield Question(candidates, cutoff, *shared)
+        answers = yield Question(
+            candidates, cutoff, self.round, self.total, level=self.level - below, ends=self.ends
+        )
         return [math.inf if answer is None else answer for answer in answers]
-
-
-MAX_SAMPLED = 100
-"""Placements sampled for one candidate; where all of them break a rule, none is evaluated."""
 
 
 def sampled_candidate(
@@ -137,10 +139,6 @@ def sampled_candidate(
     return None
 
 
-SCREENED_WITHIN = 0.003
-"""A candidate passes the screening up to so much above the incumbent [nats]."""
-
-
 class Incumbent:
     """The best placement so far, its entropy on the level in use [nats], and what was evaluated.
     Descents are incumbents of their own.
@@ -151,7 +149,9 @@ class Incumbent:
     """
 
     def __init__(self, best: Candidate, entropy: float) -> None:
-        self.best, self.entropy, self.count = best, entropy, 0
+        self.best = best
+        self.entropy = entropy
+        self.count = 0
         self.screened: float | None = None
 
     def raised(self, phase: Phase, screening: bool = False) -> MethodPart[None]:
@@ -174,5 +174,7 @@ class Incumbent:
             for (k, screened), value in zip(passed.items(), found, strict=True):
                 values[k] = value
                 if value < self.entropy:
-                    self.best, self.entropy, self.screened = candidates[k], value, screened
+                    self.best = candidates[k]
+                    self.entropy = value
+                    self.screened = screened
         return values

@@ -12,27 +12,34 @@ from .method import Given, Incumbent, MethodPart, Phase, QuestionStream
 from .portfolio_steps import EXPLORING, REFINING, MultiscaleDescent
 from .portfolio_survey import Survey, to_best_corners
 
-FEW, PER_SENSOR = (0, 375, 900, 1200), 375
+FEW = (0, 375, 900, 1200)
+PER_SENSOR = 375
 """Placements where no budget is given: for none to three sensors that move, and for each of
 more."""
-COARSENING, MIN_SAMPLES = 4, 2048
+COARSENING = 4
+MIN_SAMPLES = 2048
 """The first level evaluates a fourth of the voxels, but at least so many; the third evaluates four
 times as many."""
 BELOW_GRID = 65_536
 """Where the last level is the grid, the first level is as if the last had so many voxels."""
-RACING, PLACEMENTS_PER_START = 4, 80
+RACING = 4
+PLACEMENTS_PER_START = 80
 """Descents that race, but only one for each so many placements for each sensor. A budget for all of
 them is large: it comes so near an optimum that small steps and errors of the sample matter."""
-FIRST_LEVEL, RACE_SHARE = 0.4, 0.08
+FIRST_LEVEL = 0.4
+RACE_SHARE = 0.08
 """Share of the budget after which the first level ends; share of what is left then for each descent
 of the race, and twice that for each of the better half."""
-SURVEYS, SURVEYED = 2, 6
+SURVEYS = 2
+SURVEYED = 6
 """Surveys before the first descent, and places that each of them tries for each sensor,"""
 SURVEY_SHARE = 0.3
 """but at most this share of the budget in all."""
-NEAR, NEAR_COUNT = 0.3, 3
+NEAR = 0.3
+NEAR_COUNT = 3
 """Reach of the surveys between descents, as a share of each range, and places for each sensor."""
-STEP_SHARE, LAST_STEPS = 0.5, 30
+STEP_SHARE = 0.5
+LAST_STEPS = 30
 """After a race: share of the budget that is left for steps between two surveys, and the number of
 placements a sensor, from which on it is all that is left."""
 STALLED = 8
@@ -63,18 +70,21 @@ def ask(given: Given) -> QuestionStream:
     """Survey on few voxels; then descend on all voxels of the search until the budget is spent."""
     sensors = len(given.parametrization.blocks)
     total = given.evaluations or budget(sensors)
-    incumbent, survey = Incumbent(given.start, given.entropy), Survey(given)
+    incumbent = Incumbent(given.start, given.entropy)
+    survey = Survey(given)
     count = max(1, min(SURVEYED, int(SURVEY_SHARE * total / (SURVEYS * sensors))))
     for _ in range(SURVEYS):
         yield from survey.survey(incumbent, Phase(0, total), count)
         survey.reseed()
-    steps, ends = None, tuple[float, ...]()
+    steps = None
+    ends = tuple[float, ...]()
     if not survey.has_slots_alone:
-        incumbent, steps, ends = yield from _race(given, incumbent, survey, total, count)
+        incumbent, steps, ends = yield from _race(given, incumbent, survey, total, surveyed=count)
     else:
         for level in range(1, given.levels):
             yield from incumbent.raised(Phase(1, total, level), level > 1)
-    number, stalled = 1, 0
+    number = 1
+    stalled = 0
     while incumbent.count < total and stalled < STALLED:
         before = incumbent.count, incumbent.entropy
         phase = Phase(number, total, given.levels - 1, ends)
@@ -103,11 +113,13 @@ def _race(
     by less than 0.05 nats. The better half goes on to the last level. Returns the winner, its
     steps, and where each descent ended; a small budget has one descent, which tells nothing.
     """
-    first, last = Phase(0, total), Phase(1, total, given.levels - 1)
+    first = Phase(0, total)
+    last = Phase(1, total, given.levels - 1)
     second = Phase(1, total, min(1, last.level))
     runners = _runners(total, len(given.parametrization.blocks))
     stride = REFINING if runners == RACING else EXPLORING
-    racing, before = list[tuple[Incumbent, MultiscaleDescent]](), incumbent.count
+    racing = list[tuple[Incumbent, MultiscaleDescent]]()
+    before = incumbent.count
     for k in range(runners):
         begun = (given.start, given.entropy) if k % 2 else (incumbent.best, incumbent.entropy)
         own = Incumbent(*begun)

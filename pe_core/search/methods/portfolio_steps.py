@@ -23,7 +23,8 @@ from .method import Given, Incumbent, MethodPart, Phase, sampled_candidate
 BATCH = 8  # Placements that are tried at once
 SECOND = 0.7  # Probability that a second variable of the same sensor moves, too
 EVEN = 0.1  # Probability that a variable is chosen whatever its steps gained
-FULL_GAIN, MEMORY = 0.02, 0.1
+FULL_GAIN = 0.02
+MEMORY = 0.1
 """The gain of a step counts up to this [nats], with this weight beside those of earlier steps."""
 
 
@@ -39,7 +40,8 @@ class Stride(NamedTuple):
     hope: float
 
 
-EXPLORING, REFINING = Stride(9, 0.2, 0.2, 1.0), Stride(10, 0.1, 0.4, 0.1)
+EXPLORING = Stride(9, 0.2, 0.2, 1.0)
+REFINING = Stride(10, 0.1, 0.4, 0.1)
 """Of small budgets and of large ones: once beams of a LiDAR fall between those of another, steps of
 both gain several times as much as those of one."""
 
@@ -48,8 +50,10 @@ class MultiscaleDescent:
     """Steps of all lengths, the more of a variable the more its steps gained."""
 
     def __init__(self, given: Given, seed: Sequence[int], stride: Stride = EXPLORING) -> None:
-        self._parametrization, variables = given.parametrization, given.parametrization.variables
-        self._rng, self._stride = np.random.default_rng(seed), stride
+        self._parametrization = given.parametrization
+        variables = given.parametrization.variables
+        self._rng = np.random.default_rng(seed)
+        self._stride = stride
         movable = [v.low < v.high and v.unit != SHARE for v in variables]
         blocks = given.parametrization.blocks
         self._free = [
@@ -67,7 +71,8 @@ class MultiscaleDescent:
             tried = self._batch(incumbent.best)
             if not tried:
                 return
-            before, candidates = incumbent.entropy, [candidate for _, candidate in tried]
+            before = incumbent.entropy
+            candidates = [candidate for _, candidate in tried]
             values = yield from incumbent.tried(candidates, phase)
             for (number, _), value in zip(tried, values, strict=True):
                 gain = min(max(before - value, 0.0) / FULL_GAIN, 1.0)
@@ -89,15 +94,20 @@ class MultiscaleDescent:
         self, base: Candidate, sensor: list[int], first: int, alike: list[int]
     ) -> Candidate | None:
         others = [k for k in sensor if k != first]
-        copied, together = self._stride.copied, self._stride.together
+        copied = self._stride.copied
+        together = self._stride.together
 
         def sample() -> list[float]:
-            vector, moved = list(base.vector), [first]
+            vector = list(base.vector)
+            moved = [first]
             if others and self._rng.random() < SECOND:
                 moved.append(others[int(self._rng.integers(len(others)))])
-            way, away = 1.0, 0  # from a variable to that of the other sensor
+            # from a variable to that of the other sensor
+            way = 1.0
+            away = 0
             if alike:
-                way, away = self._rng.random(), alike[int(self._rng.integers(len(alike)))]
+                way = self._rng.random()
+                away = alike[int(self._rng.integers(len(alike)))]
             for k in moved:
                 variable = self._parametrization.variables[k]
                 step = (variable.high - variable.low) * self._step()
@@ -119,7 +129,8 @@ class MultiscaleDescent:
 
 def alike(parametrization: Parametrization) -> Iterator[list[int]]:
     """Yield, for each sensor, how far away the variables of those of the same model are."""
-    variables, blocks = parametrization.variables, parametrization.blocks
+    variables = parametrization.variables
+    blocks = parametrization.blocks
     units = ([variables[k].unit for k in block] for block in blocks)
     kinds = list(zip(parametrization.models, units, strict=True))
     for block, kind in zip(blocks, kinds, strict=True):

@@ -17,7 +17,8 @@ from .portfolio_steps import alike
 
 TWO_MOVED = 16  # Placements with two sensors in other slots, tried at once
 MAX_SLOTS = 16  # Slots evaluated in one turn; of a longer list, so many are sampled
-IMAGES, IMAGE_SHARE = 8, 0.02
+IMAGES = 8
+IMAGE_SHARE = 0.02
 """Places beside images that each sensor tries at once; all sensors at most this share of all."""
 BESIDE = (-1 / 16, 1 / 16, -1 / 32, 1 / 32, -1 / 64, 1 / 64)
 """How far beside an image, as shares of a range."""
@@ -27,7 +28,8 @@ class SlotTurn:
     """A turn of a sensor on a list of slots: all slots, the other sensors fixed."""
 
     def __init__(self, given: Given, index: int, seed: list[int]) -> None:
-        self._parametrization, self._index = given.parametrization, index
+        self._parametrization = given.parametrization
+        self._index = index
         self._rng = np.random.default_rng(seed)
         first = self._at_share(given.start, 0.0).vector[index]  # middle of the first slot's share
         self._count = round(0.5 / first)
@@ -61,7 +63,8 @@ class Survey:
     """
 
     def __init__(self, given: Given) -> None:
-        self._parametrization, blocks = given.parametrization, given.parametrization.blocks
+        self._parametrization = given.parametrization
+        blocks = given.parametrization.blocks
         self._rng = np.random.default_rng([given.seed, len(blocks)])
         first = [given.parametrization.variables[block[0]] for block in blocks]
         self._turns = {
@@ -109,12 +112,15 @@ class Survey:
                 yield from _evaluate(incumbent, phase, sampled)
 
     def _image(self, base: Candidate, number: int, others: list[int]) -> Candidate | None:
-        variables, block = self._parametrization.variables, self._parametrization.blocks[number]
+        variables = self._parametrization.variables
+        block = self._parametrization.blocks[number]
 
         def sample() -> list[float]:
-            vector, away = list(base.vector), others[int(self._rng.integers(len(others)))]
+            vector = list(base.vector)
+            away = others[int(self._rng.integers(len(others)))]
             for k in block:
-                own, other = vector[k], vector[k + away]
+                own = vector[k]
+                other = vector[k + away]
                 image = variables[k].mirrored * other
                 vector[k] = image if abs(own - image) < abs(own - other) else other
             k = block[int(self._rng.integers(len(block)))]
@@ -186,7 +192,8 @@ class Recurrence:
 def _within(variable: DesignVariable, value: float, reach: float, share: float) -> float:
     """Return the value at a share of the range within a reach of a value."""
     width = reach * (variable.high - variable.low)
-    low, high = max(variable.low, value - width), min(variable.high, value + width)
+    low = max(variable.low, value - width)
+    high = min(variable.high, value + width)
     return low + share * (high - low)
 
 

@@ -15,8 +15,10 @@ def ask(given: Given) -> QuestionStream:
     """Sample round by round, in the neighbourhood of the incumbent at the start of the round.
     Candidates are sampled uniformly in it, each coordinate clipped to its bounds; then the
     neighbourhood shrinks."""
-    schedule, rng = given.schedule, np.random.default_rng(given.seed)
-    best, entropy = given.start, given.entropy
+    schedule = given.schedule
+    rng = np.random.default_rng(given.seed)
+    best = given.start
+    entropy = given.entropy
     total = len(schedule.scales) * schedule.candidates
     for number, scale in enumerate(schedule.scales):
         center = best
@@ -26,7 +28,8 @@ def ask(given: Given) -> QuestionStream:
             answers = yield Question(candidates, entropy, number, total)
             for candidate, answer in zip(candidates, answers, strict=True):
                 if candidate is not None and answer is not None and answer < entropy:
-                    best, entropy = candidate, answer
+                    best = candidate
+                    entropy = answer
 
 
 def _neighbour(

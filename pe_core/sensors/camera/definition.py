@@ -67,7 +67,8 @@ ROUNDING_PX = 1e-6
 """Areas are sums of terms as large as the picture: a smaller result is only rounding."""
 ImagePoints = tuple[Floats, Floats]  # Image positions, right and down [px]
 PIECES = 8  # Straight pieces of an edge of a face
-BESIDE_SIDES, BESIDE_PIECES = 4.0, 32
+BESIDE_SIDES = 4.0
+BESIDE_PIECES = 32
 """Nearer than this many sides an edge covers 15 degrees and more: it has this many pieces."""
 BALL = math.sqrt(3.0) / 2.0  # Radius of the ball round a cube, in sides
 RIGHT_BEHIND = math.pi - 1e-3
@@ -103,7 +104,7 @@ def clipped_pixel_area(camera: Camera, axes: Floats, offsets: Floats, side: floa
     """
     depth, left, up = in_sensor_frame(axes, offsets)
     area = np.zeros(len(offsets))
-    near = np.flatnonzero(in_view(camera, depth, left, up, side))
+    near = np.flatnonzero(in_view(camera, depth, left, up, side=side))
     if len(near):
         area[near] = _area_in_view(camera, axes, offsets[near], side)
     return area
@@ -149,13 +150,16 @@ def _area_in_view(camera: Camera, axes: Floats, offsets: Floats, side: float) ->
     for k in range(3):  # row k of the axes: depth, left and up of ground axis k
         toward = -np.sign(offsets[:, k]) * half  # the face on the camera's side
         face = (depth + toward * axes[k, 0], left + toward * axes[k, 1], up + toward * axes[k, 2])
-        i, j = (k + 1) % 3, (k + 2) % 3
+        i = (k + 1) % 3
+        j = (k + 2) % 3
         corners = [
             _project(camera, face, (a * half) * axes[i] + (b * half) * axes[j]) for a, b in QUAD
         ]
         total = np.zeros(len(offsets))
         for (x0, y0), (x1, y1) in zip(corners, corners[1:] + corners[:1], strict=True):
-            total += clamped_integral(x0, y0, x1, y1, float(camera.width), float(camera.height))
+            total += clamped_integral(
+                x0, y0, x1, y1, width=float(camera.width), height=float(camera.height)
+            )
         area += np.where(np.abs(offsets[:, k]) > half, np.abs(total), 0.0)
     return np.where((depth > reach) & (area > ROUNDING_PX), area, 0.0)
 
@@ -163,7 +167,8 @@ def _area_in_view(camera: Camera, axes: Floats, offsets: Floats, side: float) ->
 def _project(camera: Camera, face: SensorAxes, corner: Floats) -> tuple[Floats, Floats]:
     """Image position [px], right and down, of the faces' corner at (3,) from their centres."""
     depth, left, up = (center + along for center, along in zip(face, corner, strict=True))
-    lens, safe = camera.projection, np.where(depth > 0.0, depth, 1.0)
+    lens = camera.projection
+    safe = np.where(depth > 0.0, depth, 1.0)
     scale = lens.fx / safe
     high = scale if lens.fx == lens.fy else lens.fy / safe
     return lens.cx - left * scale, lens.cy - up * high
@@ -176,9 +181,12 @@ def clamped_integral(
     run = x1 - x0
     level = run == 0.0
     slope = (y1 - y0) / np.where(level, 1.0, run)
-    xa, xb = np.clip(x0, 0.0, width), np.clip(x1, 0.0, width)
-    ya, yb = y0 + slope * (xa - x0), y0 + slope * (xb - x0)
-    ca, cb = np.clip(ya, 0.0, height), np.clip(yb, 0.0, height)
+    xa = np.clip(x0, 0.0, width)
+    xb = np.clip(x1, 0.0, width)
+    ya = y0 + slope * (xa - x0)
+    yb = y0 + slope * (xb - x0)
+    ca = np.clip(ya, 0.0, height)
+    cb = np.clip(yb, 0.0, height)
     # Between ya and yb the clamped line is a ramp with level ends, each weighted by its share of y.
     rise = yb - ya
     flat = np.abs(rise) < 1e-12
@@ -200,7 +208,7 @@ class Aperture:
         """Area (V,) inside the picture of outlines with corners (V, N) each."""
         x0, y0 = places
         x1, y1 = _next(places)
-        parts = clamped_integral(x0, y0, x1, y1, self.width, self.height)
+        parts = clamped_integral(x0, y0, x1, y1, width=self.width, height=self.height)
         return np.asarray(np.abs(parts.sum(axis=1)))
 
 
@@ -219,7 +227,8 @@ class RoundAperture(Aperture):
         the picture are first moved onto its border, where they have no area."""
         x, y = places
         inside = ((x >= 0.0) & (x <= self.width) & (y >= 0.0) & (y <= self.height)).all(axis=1)
-        area, centers = np.empty(len(x)), self._centers(places)
+        area = np.empty(len(x))
+        centers = self._centers(places)
         for some, folds in ((inside, False), (~inside, True)):
             held = x[some], y[some]
             right, down = self._folded(held) if folds else held
@@ -244,7 +253,9 @@ class RoundAperture(Aperture):
 
     def _folded(self, places: ImagePoints) -> ImagePoints:
         """Outlines clamped to the picture, with corners where they cross its sides: (V, 5 N)."""
-        starts, ends, shares = places, _next(places), [np.zeros_like(places[0])]
+        starts = places
+        ends = _next(places)
+        shares = [np.zeros_like(places[0])]
         for a, b, most in zip(starts, ends, (self.width, self.height), strict=True):
             run = np.where(a == b, np.inf, b - a)
             shares += [np.clip((side - a) / run, 0.0, 1.0) for side in (0.0, most)]
@@ -260,13 +271,17 @@ class RoundAperture(Aperture):
 
 def aperture_of(camera: Camera) -> Aperture:
     """Return the part of a camera's image that counts."""
-    lens, (width, height) = camera.projection, (float(camera.width), float(camera.height))
+    lens = camera.projection
+    width = float(camera.width)
+    height = float(camera.height)
     reach = float(lens.radius(np.asarray(lens.edge)))
-    wide, high = lens.fx * reach, lens.fy * reach
-    x, y = max(lens.cx, width - lens.cx), max(lens.cy, height - lens.cy)
+    wide = lens.fx * reach
+    high = lens.fy * reach
+    x = max(lens.cx, width - lens.cx)
+    y = max(lens.cy, height - lens.cy)
     if (x / wide) ** 2 + (y / high) ** 2 <= 1.0:
         return Aperture(width, height)
-    return RoundAperture(width, height, lens, wide, high)
+    return RoundAperture(width, height, lens, wide, high=high)
 
 
 def _next(places: ImagePoints) -> ImagePoints:
@@ -279,7 +294,8 @@ def _area_in_circle(places: ImagePoints) -> Floats:
     """Area (V,) inside the unit circle, of outlines with corners (V, N) each. Sums over the edges
     the triangle of edge and centre, cut by the circle: a sector where the edge is outside the
     circle, a triangle where it is inside."""
-    a, b = places, _next(places)
+    a = places
+    b = _next(places)
     step = b[0] - a[0], b[1] - a[1]
     length = np.maximum(step[0] ** 2 + step[1] ** 2, 1e-300)
     along = a[0] * step[0] + a[1] * step[1]
@@ -306,7 +322,8 @@ def bent_pixel_area(
     to the view. Arguments are those of `clipped_pixel_area`, and `pieces` of an edge: fewer are
     enough for distant cubes.
     """
-    area, edge = np.zeros(len(offsets)), camera.projection.edge
+    area = np.zeros(len(offsets))
+    edge = camera.projection.edge
     distance = np.sqrt(dot(offsets, offsets))
     shown = distance > BALL * side
     safe = np.where(shown, distance, 1.0)
@@ -318,12 +335,13 @@ def bent_pixel_area(
         near = np.flatnonzero(which)
         for start in range(0, len(near), CUBES_AT_ONCE):
             some = near[start : start + CUBES_AT_ONCE]
-            area[some] = _area(camera, axes, offsets[some], side, count)
+            area[some] = _area(camera, axes, offsets[some], side, pieces=count)
     return area
 
 
 def _area(camera: Camera, axes: Floats, offsets: Floats, side: float, pieces: int) -> Floats:
-    half, aperture = side / 2.0, aperture_of(camera)
+    half = side / 2.0
+    aperture = aperture_of(camera)
     area = np.zeros(len(offsets))
     for k in range(3):
         toward = -np.sign(offsets[:, k]) * half  # the face that faces the camera
@@ -374,7 +392,8 @@ def _beyond(camera: Camera, square: Floats) -> Mask:
 
 def count_pixels(sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None) -> Floats:
     """Return the pixels (V,) that cubes with centres (V, 3) and a side [m] cover: m of voxels."""
-    camera, position = camera_of(sensor), sensor.pose.position
+    camera = camera_of(sensor)
+    position = sensor.pose.position
     offsets = offsets_of(centers, position, side)
     exact = clipped_pixel_area if camera.projection.is_straight else bent_pixel_area
     area = exact(camera, axes_of(sensor.pose), offsets, side)

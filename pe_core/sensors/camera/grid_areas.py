@@ -66,7 +66,8 @@ class ColumnRuns(NamedTuple):
 
     def listed(self, nz: int) -> Ints:
         """Flat indices (V,) of all voxels of the runs, in an array of planes, rows and heights."""
-        first, end = self.first.reshape(-1), self.end.reshape(-1)
+        first = self.first.reshape(-1)
+        end = self.end.reshape(-1)
         some = np.flatnonzero(end > first)
         counts = end[some] - first[some]
         return np.repeat(some * nz + first[some], counts) + count_up(counts)
@@ -78,8 +79,11 @@ class _AreaPlanes:
     def __init__(
         self, camera: Camera, pose: Pose, space: PerceptionSpace, seen: VisibleMesh | None
     ) -> None:
-        self._camera, self._space, self._seen = camera, space, seen
-        side, self._axes = space.interval, axes_of(pose)
+        self._camera = camera
+        self._space = space
+        self._seen = seen
+        side = space.interval
+        self._axes = axes_of(pose)
         self._offsets = [offsets_of(space.centers(k), pose.position[k], side) for k in range(3)]
         self._aims = [aims_at(w, side, NUDGE[k]) for k, w in enumerate(self._offsets)]
         _, y, z = self._offsets
@@ -119,7 +123,9 @@ class CameraPlanes(_AreaPlanes):
         _, y, z = self._offsets
         self._depth = np.add.outer(self._forward[1] * y, self._forward[2] * z).astype(np.float32)
         below = np.tri(len(z) + 1, len(z), -1, dtype=np.int32)  # row k: 1 for heights below k
-        self._keep_below, self._keep_from = -below, below - 1  # masks: all bits set, or none
+        # masks: all bits set, or none
+        self._keep_below = -below
+        self._keep_from = below - 1
         self._shadow: PictureBins | None = None
         if seen is not None:
             self._shadow = PictureBins(camera, self._axes, seen.seen.triangles)
@@ -164,7 +170,9 @@ class CameraPlanes(_AreaPlanes):
 
     def _rows_in_view(self, planes: slice) -> slice:
         """Rows (y) with a voxel that may touch the picture, on any of the planes."""
-        x, y, z = self._offsets[0][planes], self._offsets[1], self._offsets[2]
+        x = self._offsets[0][planes]
+        y = self._offsets[1]
+        z = self._offsets[2]
         inside = np.ones(len(y), bool)
         for n, least in [(self._forward, 0.0), *self._at_sides(-1.0)]:
             most = max(n[0] * x[0], n[0] * x[-1]) + max(n[2] * z[0], n[2] * z[-1])
@@ -173,10 +181,13 @@ class CameraPlanes(_AreaPlanes):
 
     def _runs(self, planes: slice, rows: slice, half_spaces: list[HalfSpace]) -> ColumnRuns:
         """Runs of voxels that lie in all half spaces."""
-        x, y = self._offsets[0][planes], self._offsets[1][rows]
-        nz, step = len(self._offsets[2]), self._space.interval
+        x = self._offsets[0][planes]
+        y = self._offsets[1][rows]
+        nz = len(self._offsets[2])
+        step = self._space.interval
         lowest = self._offsets[2][0] / step
-        low, high = np.zeros((len(x), len(y))), np.full((len(x), len(y)), float(nz))
+        low = np.zeros((len(x), len(y)))
+        high = np.full((len(x), len(y)), float(nz))
         for n, least in half_spaces:
             slope = n[2] if abs(n[2]) > LEVEL else LEVEL
             scale = 1.0 / (slope * step)
@@ -192,7 +203,8 @@ class CameraPlanes(_AreaPlanes):
 
     def _filled(self, planes: slice, rows: slice, plain: ColumnRuns) -> Singles:
         """Areas by the closed form of `sample_areas` in the runs; 0 elsewhere."""
-        depth, away = self._depth[rows], self._away[rows]
+        depth = self._depth[rows]
+        away = self._away[rows]
         x = self._offsets[0][planes]
         area = np.empty((len(x), *depth.shape), np.float32)
         held = np.empty_like(depth)
@@ -285,8 +297,11 @@ class BentPlanes(_AreaPlanes):
     def _rows_in_view(self, planes: slice) -> slice:
         """Rows (y) with a voxel that may touch the field, on any of the planes. The cosine of the
         angle from the axis is at most maximum depth over minimum distance."""
-        x, y, z = self._offsets[0][planes], self._offsets[1], self._offsets[2]
-        forward, ball = self._axes[:, 0], BALL * self._space.interval
+        x = self._offsets[0][planes]
+        y = self._offsets[1]
+        z = self._offsets[2]
+        forward = self._axes[:, 0]
+        ball = BALL * self._space.interval
         depth = max(forward[0] * x[0], forward[0] * x[-1]) + forward[1] * y
         depth = depth + max(forward[2] * z[0], forward[2] * z[-1])
         near = _least(x) ** 2 + y * y + _least(z) ** 2
@@ -309,7 +324,7 @@ class BentPlanes(_AreaPlanes):
             away = self._away[rows] + np.float32(
                 distance_along(np.array(here), self._space.interval)
             )
-            found = self._sorter.sort(depth, left, up, distance, away)
+            found = self._sorter.sort(depth, left, up, distance, away=away)
             np.multiply(found.area, found.plain, out=plane)
             edges.append(np.flatnonzero(found.edge) + number * plane.size)
         return area, np.concatenate(edges) if edges else np.zeros(0, np.int64)

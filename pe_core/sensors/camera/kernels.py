@@ -64,11 +64,13 @@ class CameraGrid(GridKernel):
     """Measures areas on all voxels of a space."""
 
     def __init__(self, space: PerceptionSpace, vehicle: Vehicle | None, _: int = 0) -> None:
-        self._space, self._vehicle = space, vehicle
+        self._space = space
+        self._vehicle = vehicle
 
     def prepare(self, sensor: Sensor) -> ReadyCamera:
         """Prepare the measurement: the vehicle seen from the camera, and half spaces."""
-        camera, seen = camera_of(sensor), _seen(self._vehicle, sensor)
+        camera = camera_of(sensor)
+        seen = _seen(self._vehicle, sensor)
         kind = CameraPlanes if camera.projection.is_straight else BentPlanes
         return ReadyCamera(sensor, kind(camera, sensor.pose, self._space, seen))
 
@@ -89,7 +91,8 @@ class CameraGrid(GridKernel):
 
 def sampled_pixels(sensor: Sensor, centers: Floats, side: float, vehicle: Vehicle | None) -> Floats:
     """Return the areas (V,) of cubes with centres (V, 3), equal to the definition [px]."""
-    camera, seen = camera_of(sensor), _seen(vehicle, sensor)
+    camera = camera_of(sensor)
+    seen = _seen(vehicle, sensor)
     areas = pixel_areas if camera.projection.is_straight else bent_pixel_areas
     return areas(camera, sensor.pose, centers, side, seen)
 
@@ -127,8 +130,10 @@ class PostVisibility:
     """Tests which posts a camera sees."""
 
     def __init__(self, sensor: Sensor, view: GroundView) -> None:
-        self._camera, self._view = camera_of(sensor), view
-        self._position, self._axes = np.asarray(sensor.pose.position), axes_of(sensor.pose)
+        self._camera = camera_of(sensor)
+        self._view = view
+        self._position = np.asarray(sensor.pose.position)
+        self._axes = axes_of(sensor.pose)
         self._seen = _seen(view.vehicle, sensor)
         self._shadow: PictureBins | None = None
         if self._seen is not None and self._camera.projection.is_straight:
@@ -162,7 +167,8 @@ class PostVisibility:
     def _sees_points(self, offsets: Floats) -> Flags:
         """Whether points (N, 3) from the camera are in the picture, in range, and not hidden."""
         depth, left, up = in_sensor_frame(self._axes, offsets)
-        camera, lens = self._camera, self._camera.projection
+        camera = self._camera
+        lens = self._camera.projection
         if lens.is_straight:
             shown = (frustum_distance(camera, depth, left, up) >= 0.0) & (depth > IN_FRONT)
         else:
@@ -206,7 +212,9 @@ class CameraObjects(ObjectKernel):
 
     def measure(self, sensor: Sensor) -> Floats:
         """Measure the objects with a camera; equal to the definition."""
-        objects, camera, axes = self._view.objects, camera_of(sensor), axes_of(sensor.pose)
+        objects = self._view.objects
+        camera = camera_of(sensor)
+        axes = axes_of(sensor.pose)
         boxes = PlacedBoxes.of(objects, sensor.pose.position)
         which = np.flatnonzero(_may_be_visible(camera, axes, boxes, self._balls))
         images = box_images(camera, axes, boxes.take(which))
@@ -214,21 +222,23 @@ class CameraObjects(ObjectKernel):
             offsets = objects.centers[which] - np.asarray(sensor.pose.position)
             images.area[out_of_range(camera, offsets)] = 0.0
         area = np.zeros(len(objects))
-        area[which] = images.area * self._share(sensor, axes, boxes, which, images)
+        area[which] = images.area * self._share(sensor, axes, boxes, which, images=images)
         return area
 
     def _share(
         self, sensor: Sensor, axes: Floats, boxes: PlacedBoxes, which: Ints, images: BoxImages
     ) -> Floats:
         """Visible share of the images of boxes `which`."""
-        view, camera = self._view, camera_of(sensor)
+        view = self._view
+        camera = camera_of(sensor)
         seen = _seen(view.vehicle, sensor)
         image = images.some(shown := np.flatnonzero(images.area > 0.0))
         by_vehicle = np.full(len(image.area), seen is not None)
         if seen is not None and camera.projection.is_straight:
             bins = PictureBins(camera, axes, seen.seen.triangles)
             by_vehicle = bins.may_hide_in(image.low, image.high)
-        rivals, asked = None, by_vehicle
+        rivals = None
+        asked = by_vehicle
         if view.traffic:
             rivals = Rivals.near(boxes, view.objects.scenes, self._balls, which[shown])
             asked = by_vehicle | (rivals.count > 0)
@@ -242,9 +252,12 @@ class CameraObjects(ObjectKernel):
                 hidden |= behind_others(boxes, rivals, rays)
             return hidden
 
-        share, own = np.ones(len(which)), np.flatnonzero(asked)
+        share = np.ones(len(which))
+        own = np.flatnonzero(asked)
         placed = boxes.take(which[shown])
-        share[shown[own]] = visible_share(camera, axes, placed, image, own, is_hidden)
+        share[shown[own]] = visible_share(
+            camera, axes, placed, image, which=own, is_hidden=is_hidden
+        )
         return share
 
 

@@ -36,14 +36,31 @@ LENGTHS = {"brown-conrady": (4, 5, 8), "kannala-brandt": (4,), "f-theta": (1, 2,
 def read(name: str, table: Mapping[str, Any], folder: Path) -> Camera:
     """Build a camera from its table."""
     width, height = (PIXELS.checked(name, k, table.get(k)) for k in ("width", "height"))
-    ranges = table.get("min_range_m", NEAREST), table.get("max_range_m", math.inf)
+    min_range = table.get("min_range_m", NEAREST)
+    max_range = table.get("max_range_m", math.inf)
     if not LENS_KEYS & set(table):
         hfov = HFOV_DEG.checked(name, "hfov_deg", table.get("hfov_deg"))
-        return Camera(name, width, height, math.radians(hfov), None, *ranges)
+        return Camera(
+            name,
+            width,
+            height,
+            math.radians(hfov),
+            lens=None,
+            min_range=min_range,
+            max_range=max_range,
+        )
     if "hfov_deg" in table:
         key = sorted(LENS_KEYS & set(table))[0]
         raise InputError(name, "hfov_deg", f"either hfov_deg or a lens ({key})", "both")
-    return Camera(name, width, height, None, read_lens(name, table), *ranges)  # type: ignore[arg-type]
+    return Camera(
+        name,
+        width,
+        height,
+        hfov=None,
+        lens=read_lens(name, table),
+        min_range=min_range,
+        max_range=max_range,
+    )  # type: ignore[arg-type]
 
 
 def write(model: Camera) -> dict[str, Any]:
@@ -115,13 +132,15 @@ def _listed(name: str, values: Any, lens: type[Lens]) -> list[Any]:
 
 def summary(camera: Camera) -> str:
     """Return the resolution, and the field of view across and up, in one line."""
-    across, up = math.degrees(camera.hfov), math.degrees(camera.vfov)
+    across = math.degrees(camera.hfov)
+    up = math.degrees(camera.vfov)
     return f"{camera.width} x {camera.height} px, {across:.0f} x {up:.0f} deg"
 
 
 def figures(camera: Camera) -> list[str]:
     """Picture, field of view, focal length."""
-    across, up = math.degrees(camera.hfov), math.degrees(camera.vfov)
+    across = math.degrees(camera.hfov)
+    up = math.degrees(camera.vfov)
     wide = f"{across:g}" if camera.lens is None else f"{across:.4g}"
     lines = [
         f"image           {camera.width} x {camera.height} px",

@@ -33,7 +33,8 @@ MIN_SLOPE = 1e-9  # At its fold a radius has none
 ROUNDS = 5
 """Steps of Newton's method after the look-up: each doubles the digits, of which four are exact."""
 SHIFT_ROUNDS = 15  # Iterations that subtract the shift: each adds one or two digits
-RINGS, SPOKES = 1100, 32
+RINGS = 1100
+SPOKES = 32
 """Directions in which a lens is checked: number of angles from the axis, and number round it."""
 ROOM_PX = 1e-6
 """A corner beyond the edge of the field by at most this counts as on the edge."""
@@ -112,15 +113,19 @@ class Lens(ABC):
     def unproject(self, right: Floats, down: Floats) -> Floats:
         """Unit directions (..., 3), forward, left, up, of positions in the picture [px]. NaN for
         positions outside the image of the field."""
-        x, y = (right - self.cx) / self.fx, (down - self.cy) / self.fy
-        x0, y0 = x, y
+        x = (right - self.cx) / self.fx
+        y = (down - self.cy) / self.fy
+        x0 = x
+        y0 = y
         for _ in range(SHIFT_ROUNDS if self.shifts else 1):
             away = np.hypot(x, y)
             safe = np.where(away > 0.0, away, 1.0)
-            e, n = x / safe, y / safe
+            e = x / safe
+            n = y / safe
             theta = self._angle_at(away)
             moved = self.shift(theta, e, n)
-            x, y = x0 - moved[0], y0 - moved[1]
+            x = x0 - moved[0]
+            y = y0 - moved[1]
         theta = np.where(away > self._farthest * (1.0 + 1e-12), np.nan, theta)
         sine = np.sin(theta)
         return np.stack([np.cos(theta), -sine * e, -sine * n], axis=-1)
@@ -212,11 +217,13 @@ def field_outline(lens: Lens, width: int, height: int, places: int) -> Floats:
     There are `places` of them along each side of the picture. Where the border of the picture is
     outside the field, the edge of the field takes its place."""
     share = np.arange(places) / places
-    none, all_ = np.zeros(places), np.ones(places)
+    none = np.zeros(places)
+    all_ = np.ones(places)
     right = np.concatenate([share, all_, 1.0 - share, none]) * width
     down = np.concatenate([none, share, all_, 1.0 - share]) * height
     found = lens.unproject(right, down)
-    x, y = (right - lens.cx) / lens.fx, (down - lens.cy) / lens.fy
+    x = (right - lens.cx) / lens.fx
+    y = (down - lens.cy) / lens.fy
     away = np.maximum(np.hypot(x, y), 1e-12)
     sine = math.sin(lens.edge)
     edge = np.stack([np.full(len(x), math.cos(lens.edge)), -sine * x / away, -sine * y / away], 1)
@@ -301,7 +308,8 @@ class BrownConrady(Lens):
 
     def shift(self, theta: Floats, right: Floats, down: Floats) -> tuple[Floats, Floats]:
         """Return the tangential part."""
-        square, both = np.tan(theta) ** 2, 2.0 * right * down
+        square = np.tan(theta) ** 2
+        both = 2.0 * right * down
         x = self.p1 * both + self.p2 * (1.0 + 2.0 * right * right)
         y = self.p1 * (1.0 + 2.0 * down * down) + self.p2 * both
         return np.asarray(square * x), np.asarray(square * y)
@@ -311,9 +319,11 @@ class BrownConrady(Lens):
         theta, e, n = around_axis(depth, left, up)
         r = np.tan(np.minimum(theta, self.edge))
         above, below = self._sums(r * r)
-        factor, growth = above / below, self._growth(r * r)
+        factor = above / below
+        growth = self._growth(r * r)
         bend = growth - factor  # the derivative of the radial part along r is factor + bend
-        x, y = r * e, r * n
+        x = r * e
+        y = r * n
         xx = factor + bend * e * e + 2.0 * self.p1 * y + 6.0 * self.p2 * x
         yy = factor + bend * n * n + 6.0 * self.p1 * y + 2.0 * self.p2 * x
         xy = bend * e * n + 2.0 * self.p1 * x + 2.0 * self.p2 * y

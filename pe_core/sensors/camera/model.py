@@ -118,7 +118,8 @@ class Camera(SensorModel):
     @property
     def pixels_per_radian(self) -> float:
         """Pixels per radian on the axis: the root of those per steradian."""
-        ahead, aside = np.ones(1), np.zeros(1)
+        ahead = np.ones(1)
+        aside = np.zeros(1)
         return math.sqrt(self.projection.density(ahead, aside, aside)[0])
 
     @property
@@ -198,7 +199,8 @@ class PictureBins:
 
     def __init__(self, camera: Camera, axes: Floats, triangles: Floats) -> None:
         self._lens = lens = camera.projection
-        width, height = camera.width, camera.height
+        width = camera.width
+        height = camera.height
         self._wide = BORDER * (2.0 * max(lens.cx, width - lens.cx)) / 2.0 / lens.fx
         self._high = BORDER * (2.0 * max(lens.cy, height - lens.cy)) / 2.0 / lens.fy
         corners = rotate(axes.T, triangles).transpose(2, 1, 0)
@@ -206,7 +208,8 @@ class PictureBins:
         (i0, i1), (j0, j1) = _bins(depth, left / self._wide, up / self._high)
         high = j1 - j0 + 1
         n = (i1 - i0 + 1) * high
-        step, rows = count_up(n), np.repeat(high, n)
+        step = count_up(n)
+        rows = np.repeat(high, n)
         row = step // rows
         self._hit = np.zeros(CELLS * CELLS, bool)
         bins = (np.repeat(i0, n) + row) * CELLS + np.repeat(j0, n) + (step - row * rows)

@@ -54,7 +54,8 @@ FIBONACCI = np.array(
 )
 """Point i of a lattice of FIBONACCI[k] is at i / FIBONACCI[k] across, and at
 i * FIBONACCI[k - 1] / FIBONACCI[k] down."""
-HITS, PARTLY_HITS = 89, 144
+HITS = 89
+PARTLY_HITS = 144
 RAYS_AT_ONCE = 73_728
 SIDE_PLACES = np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, 15)] * 2), axis=-1).reshape(-1, 2)
 """Points on a side of a box, in half sides, that rays aim at if no lattice ray hits the box."""
@@ -78,7 +79,8 @@ def box_images(camera: Camera, axes: Floats, boxes: PlacedBoxes) -> BoxImages:
     """Return the images of boxes; a box that contains the camera has no area. `axes` (3, 3) rotate
     from the camera's frame to the ground frame (`definition.axes_of`)."""
     faces = _straight_faces if camera.projection.is_straight else _bent_faces
-    count, size = len(boxes.offsets), np.array([camera.width, camera.height], dtype=float)
+    count = len(boxes.offsets)
+    size = np.array([camera.width, camera.height], dtype=float)
     images = BoxImages(np.zeros(count), np.full((count, 2), np.inf), np.full((count, 2), -np.inf))
     for axis in range(3):
         toward = np.flatnonzero(np.abs(boxes.offsets[:, axis]) > boxes.halves[:, axis])
@@ -96,7 +98,9 @@ def along_camera(axes: Floats, boxes: PlacedBoxes, which: Ints, points: Floats) 
     """Convert points (P, ..., 3) from the axes of their boxes `which` (P,) to the camera's axes."""
     wide = (len(which), *(1,) * (points.ndim - 2))
     c, s = (w[which].reshape(wide) for w in boxes.headings.T)
-    x, y, z = points[..., 0], points[..., 1], points[..., 2]
+    x = points[..., 0]
+    y = points[..., 1]
+    z = points[..., 2]
     x, y = c * x - s * y, s * x + c * y
     return np.stack([a[0] * x + a[1] * y + a[2] * z for a in axes.T], axis=-1)
 
@@ -104,8 +108,10 @@ def along_camera(axes: Floats, boxes: PlacedBoxes, which: Ints, points: Floats) 
 def face_points(boxes: PlacedBoxes, which: Ints, axis: int, places: Floats) -> Floats:
     """(P, K, 3) points of the faces that face the sensor, along the boxes' own axes. The faces'
     normals are along `axis`; `places` (K, 2) are in half sides along the other two axes."""
-    i, j = (axis + 1) % 3, (axis + 2) % 3
-    offsets, halves = boxes.offsets[which], boxes.halves[which]
+    i = (axis + 1) % 3
+    j = (axis + 2) % 3
+    offsets = boxes.offsets[which]
+    halves = boxes.halves[which]
     points = np.repeat(offsets[:, None, :], len(places), axis=1)
     points[..., i] += halves[:, i, None] * places[:, 0]
     points[..., j] += halves[:, j, None] * places[:, 1]
@@ -132,11 +138,13 @@ def _in_front(corners: Floats, front: NDArray[np.bool_]) -> tuple[Floats, Floats
     """Starts and ends (P, 5, 3) of the edges of quadrilaterals, cut at depth `NEAREST_M`. Edges
     behind the cut become points. The last edge joins the two points where the outline crosses the
     cut."""
-    ends, front_too = np.roll(corners, -1, axis=1), np.roll(front, -1, axis=1)
+    ends = np.roll(corners, -1, axis=1)
+    front_too = np.roll(front, -1, axis=1)
     run = ends[..., :1] - corners[..., :1]
     share = (NEAREST_M - corners[..., :1]) / np.where(run == 0.0, 1.0, run)
     cut = corners + share * (ends - corners)
-    leaves, comes = front & ~front_too, ~front & front_too
+    leaves = front & ~front_too
+    comes = ~front & front_too
     exit_, entry = ((cut * w[..., None]).sum(axis=1, keepdims=True) for w in (leaves, comes))
     starts = np.where(front[..., None], corners, np.where(comes[..., None], cut, exit_))
     ends = np.where(front_too[..., None], ends, np.where(leaves[..., None], cut, exit_))
@@ -150,7 +158,7 @@ def _between(camera: Camera, starts: Floats, ends: Floats) -> tuple[Floats, Imag
         (lens.cx - p[..., 1] * lens.fx / p[..., 0], lens.cy - p[..., 2] * lens.fy / p[..., 0])
         for p in (starts, ends)
     )
-    parts = clamped_integral(x0, y0, x1, y1, float(camera.width), float(camera.height))
+    parts = clamped_integral(x0, y0, x1, y1, width=float(camera.width), height=float(camera.height))
     return np.asarray(np.abs(parts.sum(axis=1))), (x0, y0)
 
 
@@ -158,13 +166,14 @@ def _bent_faces(
     camera: Camera, axes: Floats, boxes: PlacedBoxes, which: Ints, axis: int
 ) -> Iterator[ImagedFaces]:
     """Images of faces through a lens with distortion; edges of near faces have more pieces."""
-    offsets, halves = boxes.offsets[which], boxes.halves[which]
+    offsets = boxes.offsets[which]
+    halves = boxes.halves[which]
     ratio = np.sqrt(dot(offsets, offsets) / dot(halves, halves))
     nearer = 0.0
     for farther, pieces in PIECES:
         some = which[(ratio >= nearer) & (ratio < farther)]
         if len(some):
-            yield some, *_outlined(camera, axes, boxes, some, axis, pieces)
+            yield some, *_outlined(camera, axes, boxes, some, axis=axis, pieces=pieces)
         nearer = farther
 
 
@@ -174,7 +183,8 @@ def _outlined(
     """Area of faces in the picture and the field, with so many pieces an edge; their outlines.
     Positions beyond the edge of the field are moved outwards. So a straight piece between two of
     them does not cross the picture, even if the edge of the face passes right behind the camera."""
-    aperture, lens = aperture_of(camera), camera.projection
+    aperture = aperture_of(camera)
+    lens = camera.projection
     outline = face_points(boxes, which, axis, round_a_face(pieces))
     depth, left, up = np.moveaxis(along_camera(axes, boxes, which, outline), -1, 0)
     theta = np.arctan2(np.hypot(left, up), depth)
@@ -185,9 +195,12 @@ def _outlined(
     area = aperture.area(places)
     behind = _holds_behind(axes, boxes, which, axis)
     if behind.any():
-        wide, high, shape = float(camera.width), float(camera.height), (1, x.shape[1])
+        wide = float(camera.width)
+        high = float(camera.height)
+        shape = (1, x.shape[1])
         picture = np.zeros(shape), np.full(shape, high)  # its last corner is repeated
-        picture[0][0, 1:3], picture[1][0, :2] = wide, 0.0
+        picture[0][0, 1:3] = wide
+        picture[1][0, :2] = 0.0
         area[behind] = aperture.area(picture)[0] - area[behind]
         for own, all_ in zip(places, picture, strict=True):
             own[behind] = all_
@@ -198,7 +211,8 @@ def _holds_behind(axes: Floats, boxes: PlacedBoxes, which: Ints, axis: int) -> N
     """Whether the direction opposite to the view meets faces."""
     back = np.broadcast_to(-axes[:, 0], (len(which), 3))
     speed = np.stack(boxes.along(which, back), axis=1)
-    offsets, halves = boxes.offsets[which], boxes.halves[which]
+    offsets = boxes.offsets[which]
+    halves = boxes.halves[which]
     plane = offsets[:, axis] - np.sign(offsets[:, axis]) * halves[:, axis]
     runs = speed[:, axis] * plane > 0.0
     distance = plane / np.where(runs, speed[:, axis], 1.0)
@@ -220,7 +234,7 @@ def visible_share(
     share = np.ones(len(which))
     some = np.arange(len(which))
     for hits in (HITS, PARTLY_HITS):
-        found = list(_met(camera, axes, boxes, images, which[some], hits))
+        found = list(_met(camera, axes, boxes, images, which=which[some], hits=hits))
         if not found:
             break
         rank, directions, distance = (np.concatenate(w) for w in zip(*found, strict=True))
@@ -245,7 +259,8 @@ def _met(
         lattice = np.stack([step / count, (step * turn / count) % 1.0], axis=1)
         for some in blocks(len(of_level), max(1, RAYS_AT_ONCE // count)):
             ranks = of_level[some]
-            low, high = images.low[which[ranks], None], images.high[which[ranks], None]
+            low = images.low[which[ranks], None]
+            high = images.high[which[ranks], None]
             places = (low + (high - low) * lattice).reshape(-1, 2)
             directions, exists = _through(camera, axes, places)
             rank = np.repeat(ranks, count)[exists]
@@ -254,14 +269,15 @@ def _met(
             yield (hit := rank[met]), directions[met], enter[met]
             missed = ranks[np.bincount(hit, minlength=len(which))[ranks] == 0]
             if len(missed):
-                yield _to_sides(camera, axes, boxes, which[missed], missed)
+                yield _to_sides(camera, axes, boxes, which[missed], rank=missed)
 
 
 def _to_sides(
     camera: Camera, axes: Floats, boxes: PlacedBoxes, which: Ints, rank: Ints
 ) -> tuple[Ints, Floats, Floats]:
     """Rays to points on the sides that face the camera; if none is in view, to the nearest one."""
-    sides, towards = [], []
+    sides = []
+    towards = []
     for axis in range(3):
         places = face_points(boxes, which, axis, SIDE_PLACES)
         sides.append(along_camera(axes, boxes, which, places))
@@ -277,7 +293,8 @@ def _to_sides(
 
 def _beyond_view(camera: Camera, points: Floats) -> Floats:
     """Distance of points (..., 3), camera's axes, from the camera's view [px]; 0 inside."""
-    lens, (depth, left, up) = camera.projection, np.moveaxis(points, -1, 0)
+    lens = camera.projection
+    depth, left, up = np.moveaxis(points, -1, 0)
     theta = np.arctan2(np.hypot(left, up), depth)
     inside = theta < (np.pi / 2.0 if lens.is_straight else lens.edge)
     safe = np.where(inside, depth, 1.0) if lens.is_straight else depth
@@ -289,7 +306,8 @@ def _beyond_view(camera: Camera, points: Floats) -> Floats:
 
 def _through(camera: Camera, axes: Floats, places: Floats) -> tuple[Floats, Ints]:
     """Unit directions, ground frame, through positions (P, 2) in the picture, and their indices."""
-    lens, (x, y) = camera.projection, places.T
+    lens = camera.projection
+    x, y = places.T
     if not lens.is_straight:
         rays = lens.unproject(x, y)
         exists = np.flatnonzero(~np.isnan(rays[:, 0]))
@@ -302,7 +320,8 @@ def count_object_pixels(
     sensor: Sensor, objects: Objects, vehicle: Vehicle | None, traffic: bool
 ) -> Floats:
     """(N,) pixels of each object's image that are in the picture and not occluded."""
-    camera, axes = camera_of(sensor), axes_of(sensor.pose)
+    camera = camera_of(sensor)
+    axes = axes_of(sensor.pose)
     boxes = PlacedBoxes.of(objects, sensor.pose.position)
     images = box_images(camera, axes, boxes)
     area = images.area
@@ -320,5 +339,5 @@ def count_object_pixels(
         return hidden
 
     shown = np.flatnonzero(area)
-    area[shown] *= visible_share(camera, axes, boxes, images, shown, is_hidden)
+    area[shown] *= visible_share(camera, axes, boxes, images, which=shown, is_hidden=is_hidden)
     return area

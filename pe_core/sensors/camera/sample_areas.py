@@ -90,7 +90,8 @@ class QuickLens:
         self._per_cosine = (ENTRIES - 1) / (1.0 - math.cos(last))
         cosine = 1.0 - (np.arange(ENTRIES) + 0.5) / self._per_cosine
         theta = np.maximum(np.arccos(np.clip(cosine, -1.0, 1.0)), 1e-6)
-        inside, sine = np.minimum(theta, lens.edge), np.sin(theta)
+        inside = np.minimum(theta, lens.edge)
+        sine = np.sin(theta)
         slope = lens.slope(inside)
         around = (lens.radius(inside) + slope * (theta - inside)) / sine
         most = np.maximum.accumulate(np.maximum(around, slope)) * max(lens.fx, lens.fy)
@@ -115,19 +116,24 @@ class QuickLens:
         lens = self._lens
         entry = ((1.0 - cosine) * np.float32(self._per_cosine)).astype(np.int32)
         around = np.take(self._around, entry, mode="clip") * per
-        x, y = around * -left, around * -up
+        x = around * -left
+        y = around * -up
         density = np.take(self._density, entry, mode="clip")
         if self._tilt is not None and isinstance(lens, BrownConrady):
             tilt = np.take(self._tilt, entry, mode="clip")
             density -= tilt * per * (np.float32(lens.p1) * up + np.float32(lens.p2) * left)
             safe = np.maximum(depth, np.float32(1e-3))
-            e, n = -left / safe, -up / safe
-            square, both = e * e + n * n, np.float32(2.0) * e * n
-            p1, p2 = np.float32(lens.p1), np.float32(lens.p2)
+            e = -left / safe
+            n = -up / safe
+            square = e * e + n * n
+            both = np.float32(2.0) * e * n
+            p1 = np.float32(lens.p1)
+            p2 = np.float32(lens.p2)
             x = x + (p1 * both + p2 * (square + 2 * e * e))
             y = y + (p1 * (square + 2 * n * n) + p2 * both)
         focal = np.float32(lens.fx), np.float32(lens.fy)
-        right, down = np.float32(lens.cx) + focal[0] * x, np.float32(lens.cy) + focal[1] * y
+        right = np.float32(lens.cx) + focal[0] * x
+        down = np.float32(lens.cy) + focal[1] * y
         tables = (self._stretch, self._uneven)
         return Imaged(right, down, density, *(np.take(t, entry, mode="clip") for t in tables))
 
@@ -154,7 +160,8 @@ def _unevenness(lens: Lens, last: float) -> tuple[Floats, Floats]:
 def _widest_in(camera: Camera) -> float:
     """Maximum angle from the axis of a point on the border of the picture [rad]."""
     share = np.linspace(0.0, 1.0, BORDER_PLACES)
-    none, all_ = np.zeros_like(share), np.ones_like(share)
+    none = np.zeros_like(share)
+    all_ = np.ones_like(share)
     right = np.concatenate([share, share, none, all_]) * camera.width
     down = np.concatenate([none, all_, share, share]) * camera.height
     depth = camera.projection.unproject(right, down)[:, 0]
@@ -168,7 +175,8 @@ def pixel_areas(
 ) -> Floats:
     """(V,) pixels covered by voxels with centres (V, 3) and a side [m]; 0 where hidden. `seen` is
     the vehicle from the camera's position; it hides a voxel by its centre."""
-    axes, area = axes_of(pose), np.zeros(len(centers))
+    axes = axes_of(pose)
+    area = np.zeros(len(centers))
     roughly = in_sensor_frame(axes, centers - np.asarray(pose.position))
     index = np.flatnonzero(in_view(camera, *roughly, side))
     offsets = offsets_of(centers[index], pose.position, side)
@@ -204,9 +212,11 @@ class Sorter:
 
     def __init__(self, camera: Camera, side: float) -> None:
         lens = camera.projection
-        self.lens, self._side = QuickLens(camera), side
+        self.lens = QuickLens(camera)
+        self._side = side
         self._size = camera.width, camera.height
-        self._edge, self._outer = np.cos(lens.edge), np.cos(self.lens.outer)
+        self._edge = np.cos(lens.edge)
+        self._outer = np.cos(self.lens.outer)
         self._cut = self.lens.outer >= lens.edge
 
     def sort(self, depth: Array, left: Array, up: Array, distance: Array, away: Array) -> Sorted:
@@ -214,7 +224,8 @@ class Sorter:
         side = np.float32(self._side)
         far = distance > np.float32(NEAR * self._side)
         per = np.float32(1.0) / np.maximum(distance, side)
-        cosine, ball = depth * per, np.float32(BALL * ROOM) * side * per
+        cosine = depth * per
+        ball = np.float32(BALL * ROOM) * side * per
         seen = self.lens.seen(cosine, depth, left, up, per)
         reach = seen.stretch * ball + np.float32(ROOM_PX)
         room = self._room(seen.right, seen.down)
@@ -236,7 +247,8 @@ def bent_pixel_areas(
     camera: Camera, pose: Pose, centers: Floats, side: float, seen: VisibleMesh | None
 ) -> Floats:
     """(V,) pixels covered by each voxel, as `pixel_areas`, through a lens with distortion."""
-    axes, offsets = axes_of(pose), offsets_of(centers, pose.position, side)
+    axes = axes_of(pose)
+    offsets = offsets_of(centers, pose.position, side)
     distance = np.sqrt(dot(offsets, offsets))
     away = np.maximum(np.abs(offsets) - side / 2.0, 0.0).sum(axis=1)
     found = Sorter(camera, side).sort(*in_sensor_frame(axes, offsets), distance, away)
@@ -253,6 +265,6 @@ def edge_areas(camera: Camera, axes: Floats, offsets: Floats, side: float) -> Fl
     """Areas (V,) by the definition; distant cubes have fewer pieces an edge."""
     area = np.empty(len(offsets))
     far = dot(offsets, offsets) > (NEAR * side) ** 2
-    area[far] = bent_pixel_area(camera, axes, offsets[far], side, FAR_PIECES)
+    area[far] = bent_pixel_area(camera, axes, offsets[far], side, pieces=FAR_PIECES)
     area[~far] = bent_pixel_area(camera, axes, offsets[~far], side)
     return area

@@ -16,6 +16,16 @@ from ...geometry.culling import Ends, FaceLook
 from ...geometry.occlusion_map import OcclusionMap
 from ...scene.vehicle import VisibleMesh
 
+Mask = NDArray[np.bool_]
+MAX_BINS = 512
+MIN_BINS = 64
+"""Bins along a side of a face."""
+VOXELS_A_BIN = 256  # Number of the space's voxels for each bin
+ALIGNED = 1e-8
+"""A ray that passes a triangle's corner within this distance (in u and v) is cast: rounding decides
+which of the triangles at the corner it hits, and it may hit none."""
+EVERYWHERE = ((-1.0, 1.0), (-1.0, 1.0))
+
 
 def positions_of(
     axes: list[Floats], index: Ints, shape: tuple[int, ...], first: tuple[int, int]
@@ -31,18 +41,6 @@ def positions_of(
 def distance_along(offset: Floats, side: float) -> Floats:
     """Distance from the camera to voxels along one axis; 0 beside a voxel [m]."""
     return np.maximum(np.abs(offset) - side / 2.0, 0.0)
-
-
-Mask = NDArray[np.bool_]
-
-MAX_BINS, MIN_BINS = 512, 64
-"""Bins along a side of a face."""
-VOXELS_A_BIN = 256  # Number of the space's voxels for each bin
-ALIGNED = 1e-8
-"""A ray that passes a triangle's corner within this distance (in u and v) is cast: rounding decides
-which of the triangles at the corner it hits, and it may hit none."""
-
-EVERYWHERE = ((-1.0, 1.0), (-1.0, 1.0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,14 +71,17 @@ class VoxelOcclusion:
     `corners` (4, 3) directions to the corners of the picture, or of a larger one."""
 
     def __init__(self, offsets: list[Floats], seen: VisibleMesh, corners: Floats) -> None:
-        self._offsets, self._seen, self._corners = offsets, seen, corners
+        self._offsets = offsets
+        self._seen = seen
+        self._corners = corners
         self._highest = float(np.abs(offsets[2]).max())
         self._faces: dict[CubeFace, FaceOcclusion] = {}
         self._lock = threads().RLock()
 
     def classify(self, planes: slice, rows: slice) -> OcclusionFlags:
         """Classify the voxels of some planes (x) and rows (y)."""
-        x, y = self._offsets[0][planes], self._offsets[1][rows]
+        x = self._offsets[0][planes]
+        y = self._offsets[1][rows]
         flags = OcclusionFlags.none((len(x), len(y), len(self._offsets[2])))
         for number, depth in enumerate(x):
             self._classify_plane(float(depth), rows, y, flags[number])
@@ -116,7 +117,8 @@ def _view(corners: Floats, face: CubeFace) -> Ends:
     depth, u, v = face.split(corners.T)
     if depth.min() <= 0.0:
         return EVERYWHERE
-    u, v = np.clip(u / depth, -1.0, 1.0), np.clip(v / depth, -1.0, 1.0)
+    u = np.clip(u / depth, -1.0, 1.0)
+    v = np.clip(v / depth, -1.0, 1.0)
     return (float(u.min()), float(u.max())), (float(v.min()), float(v.max()))
 
 
@@ -141,7 +143,8 @@ class FaceOcclusion:
     """The occlusion of voxels in the directions of one side of the cube round the camera."""
 
     def __init__(self, look: FaceLook, view: Ends, offsets: list[Floats]) -> None:
-        self._ends, self._offsets = look.ends(), offsets
+        self._ends = look.ends()
+        self._offsets = offsets
         self._cover = None if self._ends is None else _cover(look, self._ends, view, offsets)
         if self._cover is not None:
             self._aims, self._heights = self._corners(look)
@@ -194,7 +197,8 @@ class AcrossX(FaceOcclusion):
         if self._ends is None:
             return
         depth = abs(x)
-        u, v = self._offsets[1][rows] / depth, self._offsets[2] / depth
+        u = self._offsets[1][rows] / depth
+        v = self._offsets[2] / depth
         flags[_spans(u, v, self._ends)].mark_unsure(slice(None))
         if self._cover is None:
             return
@@ -219,7 +223,8 @@ class AlongX(FaceOcclusion):
             self._shown = _within(u, self._ends[0])
         if self._cover is not None:
             raster = self._cover.raster
-            self._inside, self._bins = _within(u, raster.u), raster.rows(u) * raster.count
+            self._inside = _within(u, raster.u)
+            self._bins = raster.rows(u) * raster.count
 
     def classify(self, x: float, rows: slice, flags: OcclusionFlags) -> None:
         """Compare voxels with the bins of each row's column."""
@@ -233,7 +238,8 @@ class AlongX(FaceOcclusion):
             return
         raster = self._cover.raster
         j = span(_within(v, raster.v))
-        here, flags = _moved(j, rows.start), flags[j]
+        here = _moved(j, rows.start)
+        flags = flags[j]
         found = OcclusionFlags.none(flags.hidden.shape)
         self._settle(
             self._cover, self._bins[here] + raster.columns(v[j])[:, None], depth[j, None], found

@@ -60,12 +60,13 @@ class BeamField(ShortRepr):
 
 def beam_field(sensor: Sensor, vehicle: Vehicle | None) -> BeamField:
     """Cast all beams of a LiDAR against a vehicle; None: every beam ends at its maximum range."""
-    directions, max_range = beam_directions(sensor), lidar_of(sensor).max_range
+    directions = beam_directions(sensor)
+    max_range = lidar_of(sensor).max_range
     if vehicle is None:
         return BeamField(directions, np.full(len(directions), max_range), max_range)
     hits = vehicle.first_hit(sensor.pose.position, directions, sensor.model.sees_through_glass)
     ends = np.minimum(hits.distance, max_range)
-    return BeamField(directions, ends, max_range, hits, vehicle)
+    return BeamField(directions, ends, max_range, hits, _vehicle=vehicle)
 
 
 @dataclass(frozen=True)
@@ -127,7 +128,9 @@ class LazyEnds:
 
     def __init__(self, sensor: Sensor, beams: RotatedBeams, vehicle: Vehicle) -> None:
         model = lidar_of(sensor)
-        self._sensor, self._beams, self._vehicle = sensor, beams, vehicle
+        self._sensor = sensor
+        self._beams = beams
+        self._vehicle = vehicle
         self._mesh = vehicle.seen_from(sensor.pose.position, model.sees_through_glass)
         count = model.beam_count
         self._hits = Hits(np.full(count, np.inf), np.full(count, -1))
@@ -156,11 +159,14 @@ class LazyEnds:
         """Cast the remaining beams and return all."""
         self._cast(np.flatnonzero(self._uncast))
         ends = np.minimum(self._hits.distance, self.max_range)
-        return BeamField(self._beams.directions, ends, self.max_range, self._hits, self._vehicle)
+        return BeamField(
+            self._beams.directions, ends, self.max_range, self._hits, _vehicle=self._vehicle
+        )
 
     def _cast(self, beams: Ints) -> None:
         hits = self._mesh.first_hit(self._beams.take(beams))
-        self._hits.distance[beams], self._hits.face[beams] = hits.distance, hits.face
+        self._hits.distance[beams] = hits.distance
+        self._hits.face[beams] = hits.face
         self._uncast[beams] = False
 
 

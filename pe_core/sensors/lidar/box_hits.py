@@ -61,12 +61,14 @@ class BoxTester:
             some = beam[block]
             enter, leave = self.boxes.crossing(box[block], self.beams.take(some))
             index = np.flatnonzero((enter < leave) & (enter <= self.lidar.max_range))
-            some, enter = some[index], enter[index]
+            some = some[index]
+            enter = enter[index]
             occludable = np.flatnonzero(self.ends.occludable[some])
             if len(occludable):
                 kept = np.ones(len(index), bool)
                 kept[occludable] = enter[occludable] <= self.ends.take(some[occludable])
-                index, enter = index[kept], enter[kept]
+                index = index[kept]
+                enter = enter[kept]
             parts.append((index + block.start, enter))
         index, enter = (np.concatenate(w) for w in zip(*parts, strict=True))
         return index, enter
@@ -98,7 +100,8 @@ def concatenated(parts: list[BoxHits]) -> BoxHits:
 
 def box_windows(tester: BoxTester) -> Windows:
     """Return the windows (N,) of all boxes."""
-    boxes, axes = tester.boxes, tester.sensor.pose.ground_from_sensor
+    boxes = tester.boxes
+    axes = tester.sensor.pose.ground_from_sensor
     center = rotate(axes.T, boxes.in_ground(boxes.offsets)).T
     half_axes = zip(boxes.halves.T, boxes.axes_in(axes), strict=True)
     return windows_of(center, [half * axis for half, axis in half_axes])
@@ -106,7 +109,8 @@ def box_windows(tester: BoxTester) -> Windows:
 
 def candidate_hits(tester: BoxTester) -> Iterator[BoxHits]:
     """Yield all hits of all boxes, by testing the beams in each box's window."""
-    windows, lattice = box_windows(tester), lattice_of(tester.lidar)
+    windows = box_windows(tester)
+    lattice = lattice_of(tester.lidar)
     all_round = windows.half_azimuth > np.pi
     yield tester.hits_of_all_beams(np.flatnonzero(all_round))
     boxes = np.flatnonzero(~all_round)
@@ -141,7 +145,8 @@ class FanBeams:
     @classmethod
     def of(cls, fan: Fan, lattice: Lattice, ends: BeamEnds, range_unsure: Flags) -> FanBeams:
         """Index a fan's beams, and cast those that the vehicle may occlude."""
-        first, position = fan.channels * lattice.width, lattice.position
+        first = fan.channels * lattice.width
+        position = lattice.position
         return cls(first, position, _occlusion(first, position, ends), range_unsure)
 
     def needs_check(self, block: RunBlock) -> Flags:
@@ -175,7 +180,8 @@ class FanBeams:
         """Test all beams of runs; for an unsure run the beams of all channels."""
         low = np.where(runs.unsure, 0, runs.low).astype(np.int64)
         n = np.where(runs.unsure, len(self.first), runs.high - low)
-        run, channel = np.repeat(np.arange(len(n)), n), np.repeat(low, n) + count_up(n)
+        run = np.repeat(np.arange(len(n)), n)
+        channel = np.repeat(low, n) + count_up(n)
         beam = self.first[channel] + self.position[runs.column[run]]
         index, enter = tester.hit_pairs(runs.box[run], beam)
         return RunHits(run[index], channel[index], beam[index], enter)
@@ -199,8 +205,11 @@ def _occlusion(first: Ints, position: Ints, ends: BeamEnds) -> FanOcclusion | No
     occluded = np.flatnonzero(end < ends.max_range)
     if not len(occluded):
         return None
-    step, channel, end = exists[step[occluded]], channel[occluded], end[occluded]
-    flags, farthest = np.zeros((len(position), len(first)), bool), np.zeros(len(position))
+    step = exists[step[occluded]]
+    channel = channel[occluded]
+    end = end[occluded]
+    flags = np.zeros((len(position), len(first)), bool)
+    farthest = np.zeros(len(position))
     flags[step, channel] = True
     np.maximum.at(farthest, step, end)
     cumulative = np.zeros((len(position), len(first) + 1), np.int16)

@@ -22,7 +22,8 @@ from ...geometry.bins import blocks
 Counts = NDArray[np.int32]
 
 BOUND_BINS = 1 << 16
-FIRST_BIN, LAST_BIN = np.float32(0), np.float32(BOUND_BINS - 1)
+FIRST_BIN = np.float32(0)
+LAST_BIN = np.float32(BOUND_BINS - 1)
 BOUND_MARGIN = np.float32(4e-6)
 """Relative rounding of a slope that is bounded, with room to spare."""
 MARGIN = np.float32(4e-6)
@@ -39,9 +40,12 @@ ON_AXIS = np.float32(1e-25)
 along the axis has a slope of 1e16."""
 MIN_FLAT = np.float32(1e-3)
 """Replaces smaller distances of an inner window from the axis."""
-ONE, SIGN_BIT = np.float32(1.0), np.uint32(1 << 31)
-MIN_SHARE, MAX_SHARE = np.float32(0.85), np.float32(1.0 - 1e-5)
+ONE = np.float32(1.0)
+SIGN_BIT = np.uint32(1 << 31)
+MIN_SHARE = np.float32(0.85)
+MAX_SHARE = np.float32(1.0 - 1e-5)
 """Limits of the inner window's width, as a share of the slice's width."""
+FIELDS = ("lower", "upper", "row", "rows", "column", "columns")
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +68,8 @@ class SlopeBounds:
         slack = float(BOUND_MARGIN) * (1.0 + np.abs(edges))
         below = np.searchsorted(slopes, edges[:-1] - slack[:-1], side="left")
         upto = np.searchsorted(slopes, edges[1:] + slack[1:], side="right")
-        below[0], upto[-1] = 0, len(slopes)
+        upto[-1] = len(slopes)
+        below[0] = 0
         scale = BOUND_BINS / (edges[-1] - edges[0])
         return cls(float(edges[0]), float(scale), below.astype(np.int32), upto.astype(np.int32))
 
@@ -89,9 +94,6 @@ class Bracket:
     rows: Counts
     column: Counts
     columns: Counts
-
-
-FIELDS = ("lower", "upper", "row", "rows", "column", "columns")
 
 
 def bracket(
@@ -146,7 +148,8 @@ class Silhouettes:
         )
         flat = np.sqrt(x * x + y * y)
         inverse = ONE / np.maximum(flat, np.float32(0.1))
-        c, s = x * inverse, y * inverse
+        c = x * inverse
+        s = y * inverse
         if not flat.all():
             c[flat == 0.0] = 1.0  # a cube on the axis needs some azimuth; any will do
         half = rotation * np.float32(0.5)
@@ -158,22 +161,40 @@ class Silhouettes:
         depth, width = (np.abs(a) + np.abs(b) + np.abs(c) for a, b, c in (radial, lateral))
         middle = np.arctan2(y, x) / step
         up = half[:, 2]
-        return cls(flat, z, middle, step, radial, lateral, up, depth, width, np.abs(up).sum())
+        return cls(
+            flat=flat,
+            z=z,
+            middle=middle,
+            step=step,
+            radial=radial,
+            lateral=lateral,
+            up=up,
+            depth=depth,
+            width=width,
+            height=np.abs(up).sum(),
+        )
 
 
 def _bounds(seen: Silhouettes, slopes: SlopeBounds, count: int) -> tuple[Counts, ...]:
     """Compute the fields of a `Bracket`."""
-    depth, width, height = seen.depth + SLACK, seen.width + SLACK, seen.height + SLACK
-    near, far = np.maximum(seen.flat - depth, ON_AXIS), _hypotenuse(seen.flat + depth, width)
+    depth = seen.depth + SLACK
+    width = seen.width + SLACK
+    height = seen.height + SLACK
+    near = np.maximum(seen.flat - depth, ON_AXIS)
+    far = _hypotenuse(seen.flat + depth, width)
     on_axis = np.flatnonzero(seen.flat <= depth * np.float32(1.1))
-    near[on_axis], far[on_axis] = ON_AXIS, seen.flat[on_axis] + BALL
-    near, far = ONE / near, ONE / far
+    far[on_axis] = seen.flat[on_axis] + BALL
+    near[on_axis] = ON_AXIS
+    near = ONE / near
+    far = ONE / far
     slack = np.abs(seen.middle) * MARGIN + MARGIN
     reach = np.minimum(width * near * ((1 + MARGIN) / seen.step) + slack, np.float32(count))
-    first, last = np.ceil(seen.middle - reach), np.floor(seen.middle + reach)
+    first = np.ceil(seen.middle - reach)
+    last = np.floor(seen.middle + reach)
     columns = np.minimum(last - first + ONE, np.float32(count)).astype(np.int32)
     columns[on_axis] = count  # the cube may surround the axis
-    high, low = seen.z + height, seen.z - height
+    high = seen.z + height
+    low = seen.z - height
     row = slopes.below[slopes.bins(np.minimum(low * near, low * far))]
     rows = slopes.upto[slopes.bins(np.maximum(high * near, high * far))]
     rows = np.maximum(rows - row, 0)
@@ -195,14 +216,16 @@ def _inner_window(seen: Silhouettes, slopes: SlopeBounds, slack: Singles) -> Cou
     drift = np.abs(recess)
     near = ONE / np.maximum(seen.flat - drift, MIN_FLAT)
     far = ONE / _hypotenuse(seen.flat + drift + MIN_FLAT, width)
-    high, low = seen.z + height, seen.z - height
+    high = seen.z + height
+    low = seen.z - height
     rows = slopes.below[slopes.bins(np.minimum(high * near, high * far))]
     rows = np.maximum(rows - slopes.upto[slopes.bins(np.maximum(low * near, low * far))], 0)
     left, right = (
         width / np.maximum(reach, MIN_FLAT) for reach in (seen.flat + recess, seen.flat - recess)
     )
     # atan(t) >= t - t^3 / 3, so no arc tangent is needed
-    third, scale = np.float32(1.0 / 3.0), (1 - MARGIN) / seen.step
+    third = np.float32(1.0 / 3.0)
+    scale = (1 - MARGIN) / seen.step
     left, right = ((t - t * t * t * third) * scale for t in (left, right))
     columns = np.floor(seen.middle + left - slack) - np.ceil(seen.middle - right + slack) + ONE
     return rows * np.maximum(columns, 0).astype(np.int32)
@@ -234,7 +257,9 @@ def _rectangle(tilt: list[Singles], up: Singles) -> tuple[Singles, Singles]:
     1/2`` for its three axes k. A tilted slice has no height at its full width; from the share
     ``1 - up_k`` of the width on, k being the second most upright axis, it has about the cube's.
     """
-    half, quarter, tiny = np.float32(0.5), np.float32(0.25), np.float32(1e-9)
+    half = np.float32(0.5)
+    quarter = np.float32(0.25)
+    tiny = np.float32(1e-9)
     widest = quarter / np.maximum(np.maximum(np.maximum(tilt[0], tilt[1]), tilt[2]), tiny)
     share = np.clip(np.float32(1.0) - np.sort(up)[1], MIN_SHARE, MAX_SHARE)
     width = widest * share

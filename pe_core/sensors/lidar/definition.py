@@ -130,8 +130,10 @@ def cube_crossing(offsets: Floats, directions: Floats) -> tuple[Floats, Floats]:
     (P, 3) are the cubes' centres, in sides. The first distance is at least 0; it is not below the
     second where the ray misses."""
     components = without_zeros(directions)
-    t0, t1 = (offsets - 0.5) / components, (offsets + 0.5) / components
-    enter, leave = np.minimum(t0, t1), np.maximum(t0, t1)
+    t0 = (offsets - 0.5) / components
+    t1 = (offsets + 0.5) / components
+    enter = np.minimum(t0, t1)
+    leave = np.maximum(t0, t1)
     return np.maximum(enter.max(axis=1), 0.0), leave.min(axis=1)
 
 
@@ -181,9 +183,14 @@ def counts_in_bands(hits: BoxHits, parts: BodyParts, min_range: float) -> Floats
     Without beams that may end below the minimum range [m]."""
     body, layer, band = (w[hits.box] for w in (parts.objects.scenes, parts.layers, parts.bands))
     order = np.lexsort((hits.box, hits.enter, layer, hits.beam, body))
-    body, beam = body[order], hits.beam[order]
-    layer, band, enter, box = layer[order], band[order], hits.enter[order], hits.box[order]
-    is_ray, is_layer = np.ones(len(order), bool), np.ones(len(order), bool)
+    body = body[order]
+    beam = hits.beam[order]
+    layer = layer[order]
+    band = band[order]
+    enter = hits.enter[order]
+    box = hits.box[order]
+    is_ray = np.ones(len(order), bool)
+    is_layer = np.ones(len(order), bool)
     is_ray[1:] = (beam[1:] != beam[:-1]) | (body[1:] != body[:-1])
     is_layer[1:] = is_ray[1:] | (layer[1:] != layer[:-1])
     ray = np.cumsum(is_ray) - 1
@@ -202,7 +209,8 @@ def first_of_scene(hits: BoxHits, scenes: Ints) -> BoxHits:
     """Return the nearest hit of each beam in each scene; of equal hits that of the lowest box."""
     scene = scenes[hits.box]
     order = np.lexsort((hits.box, hits.enter, hits.beam, scene))
-    beam, scene = hits.beam[order], scene[order]
+    beam = hits.beam[order]
+    scene = scene[order]
     first = np.ones(len(order), bool)
     first[1:] = (beam[1:] != beam[:-1]) | (scene[1:] != scene[:-1])
     kept = order[first]
@@ -211,8 +219,10 @@ def first_of_scene(hits: BoxHits, scenes: Ints) -> BoxHits:
 
 def _box_hits(boxes: PlacedBoxes, directions: Floats, ends: Floats) -> BoxHits:
     """Return all hits of boxes: beams that enter a box before they end at `ends` (B,) [m]."""
-    offsets, parts = boxes.in_ground(boxes.offsets), []
-    distance, balls = np.sqrt(dot(offsets, offsets)), np.sqrt(dot(boxes.halves, boxes.halves))
+    offsets = boxes.in_ground(boxes.offsets)
+    parts = []
+    distance = np.sqrt(dot(offsets, offsets))
+    balls = np.sqrt(dot(boxes.halves, boxes.halves))
     for block in blocks(len(offsets), max(1, MAX_BEAM_TESTS // len(directions))):
         box, beam = _near_pairs(offsets[block], distance[block], balls[block], directions)
         box += block.start

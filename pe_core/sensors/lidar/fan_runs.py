@@ -153,7 +153,7 @@ class RotatedFan:
         """Rotate a fan of `count` azimuths by a yaw [rad]."""
         angles = np.arange(count) * step + (fan.offset + yaw)
         one_turn = np.stack([np.cos(angles), np.sin(angles)])
-        return cls(fan.slopes, fan.offset + yaw, step, count, np.tile(one_turn, 2))
+        return cls(fan.slopes, fan.offset + yaw, step, count, rays=np.tile(one_turn, 2))
 
     def columns(self, begin: Floats, end: Floats) -> Iterator[tuple[Ints, NDArray[np.int32]]]:
         """Yield the azimuth steps that boxes span, in blocks of boxes with about as many steps.
@@ -167,7 +167,9 @@ class RotatedFan:
         counts = np.minimum(last - first + 1, self.count)
         order = np.argsort(-counts, kind="stable")
         order = order[: np.count_nonzero(counts > 0)]
-        first, counts, start = first[order] % self.count, counts[order], 0
+        first = first[order] % self.count
+        counts = counts[order]
+        start = 0
         while start < len(order):
             width = int(counts[start])
             block = slice(start, start + max(1, RUN_BLOCK // width))

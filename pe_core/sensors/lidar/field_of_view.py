@@ -29,11 +29,14 @@ def beam_patch(lidar: Lidar, step: float) -> ViewPatch:
     """Return the region between a LiDAR's beams as triangles of about `step` [rad]."""
     band = _lattice_band if lidar.azimuth_count >= MIN_AZIMUTHS else _pattern_band
     azimuths, low, high, closed = band(lidar, step)
-    middle, half = (low + high) / 2.0, np.maximum((high - low) / 2.0, MIN_EXTENT / 2.0)
-    low, high = np.maximum(middle - half, -np.pi / 2.0), np.minimum(middle + half, np.pi / 2.0)
+    middle = (low + high) / 2.0
+    half = np.maximum((high - low) / 2.0, MIN_EXTENT / 2.0)
+    low = np.maximum(middle - half, -np.pi / 2.0)
+    high = np.minimum(middle + half, np.pi / 2.0)
     rows = max(math.ceil(float((high - low).max()) / step), 1) + 1
     elevation = low + np.linspace(0.0, 1.0, rows)[:, None] * (high - low)
-    x, y = np.cos(elevation) * np.cos(azimuths), np.cos(elevation) * np.sin(azimuths)
+    x = np.cos(elevation) * np.cos(azimuths)
+    y = np.cos(elevation) * np.sin(azimuths)
     directions = np.stack([x, y, np.sin(elevation)], axis=-1).reshape(-1, 3)
     index = np.arange(len(directions)).reshape(rows, -1)
     for row, angles in ((0, -low), (-1, high)):
@@ -45,7 +48,8 @@ def beam_patch(lidar: Lidar, step: float) -> ViewPatch:
 
 def _lattice_band(lidar: Lidar, step: float) -> tuple[Floats, Floats, Floats, bool]:
     """Azimuths of columns, lowest and highest elevation at each [rad], and whether they close."""
-    steps, offsets = lidar.azimuth_steps, lidar.azimuth_offsets
+    steps = lidar.azimuth_steps
+    offsets = lidar.azimuth_offsets
     closed = len(steps) == lidar.azimuth_count
     first = float(steps[0]) * lidar.azimuth_step + float(offsets.min())
     last = float(steps[-1]) * lidar.azimuth_step + float(offsets.max())
@@ -56,9 +60,11 @@ def _lattice_band(lidar: Lidar, step: float) -> tuple[Floats, Floats, Floats, bo
 
 def _pattern_band(lidar: Lidar, step: float) -> tuple[Floats, Floats, Floats, bool]:
     """As `_lattice_band`, for beams at any azimuth: no column lies in the widest gap."""
-    azimuths, elevations = np.mod(lidar.azimuth_offsets, 2.0 * np.pi), lidar.elevations
+    azimuths = np.mod(lidar.azimuth_offsets, 2.0 * np.pi)
+    elevations = lidar.elevations
     order = np.argsort(azimuths, kind="stable")
-    azimuths, elevations = azimuths[order], elevations[order]
+    azimuths = azimuths[order]
+    elevations = elevations[order]
     gaps = np.diff(azimuths, append=azimuths[0] + 2.0 * np.pi)
     after = int(np.argmax(gaps)) + 1
     closed = float(gaps.max()) < 4.0 * step
@@ -67,7 +73,8 @@ def _pattern_band(lidar: Lidar, step: float) -> tuple[Floats, Floats, Floats, bo
     columns = _columns(float(azimuths[0]), float(azimuths[-1]), step, closed)
     spacing = columns[1] - columns[0]
     column = np.rint((azimuths - columns[0]) / spacing).astype(np.int64) % len(columns)
-    low, high = np.full(len(columns), np.inf), np.full(len(columns), -np.inf)
+    low = np.full(len(columns), np.inf)
+    high = np.full(len(columns), -np.inf)
     np.minimum.at(low, column, elevations)
     np.maximum.at(high, column, elevations)
     filled = np.isfinite(low)
@@ -81,7 +88,8 @@ def _columns(first: float, last: float, step: float, closed: bool) -> Floats:
     if closed:
         count = max(math.ceil(2.0 * math.pi / step), 3)
         return first + np.arange(count) * (2.0 * math.pi / count)
-    middle, half = (first + last) / 2.0, max((last - first) / 2.0, MIN_EXTENT / 2.0)
+    middle = (first + last) / 2.0
+    half = max((last - first) / 2.0, MIN_EXTENT / 2.0)
     return np.linspace(middle - half, middle + half, max(math.ceil(2.0 * half / step), 1) + 1)
 
 
@@ -113,7 +121,8 @@ def range_picture(
 ) -> RangePicture:
     """Return the range image of a mounted LiDAR. `sensor`: A LiDAR. `vehicle`: The vehicle it is
     mounted on. `things`: Other bodies in the scene, as parts of one mesh."""
-    lidar, position = lidar_of(sensor), sensor.pose.position
+    lidar = lidar_of(sensor)
+    position = sensor.pose.position
     directions = rotate(sensor.pose.ground_from_sensor, lidar.directions)
     ground = np.full(len(directions), np.inf)
     if position[2] > 0.0:
@@ -121,7 +130,8 @@ def range_picture(
     body = np.full(len(directions), np.inf)
     if vehicle is not None:
         body = vehicle.first_hit(position, directions).distance
-    thing, part = np.full(len(directions), np.inf), np.full(len(directions), -1)
+    thing = np.full(len(directions), np.inf)
+    part = np.full(len(directions), -1)
     if things is not None:
         hits = things.first_hit_from(np.asarray(position), directions)
         thing = hits.distance
@@ -142,7 +152,7 @@ def range_picture(
         as_image(occluded),
         as_image(np.where(on_thing, part, -1)),
         lidar.elevations[rows],
-        columns_around(lidar)[columns],
+        azimuths=columns_around(lidar)[columns],
     )
 
 
@@ -193,11 +203,13 @@ def _through(sensor: Sensor, center: Floats, side: float) -> tuple[Floats, Float
 def _in_view(lidar: Lidar, sensor: Sensor, offset: Floats, side: float) -> bool:
     """Whether a cube lies between the lowest and highest channel, and among the azimuths."""
     x, y, z = rotate(sensor.pose.ground_from_sensor.T, offset).tolist()
-    distance, flat = math.hypot(x, y, z), math.hypot(x, y)
+    distance = math.hypot(x, y, z)
+    flat = math.hypot(x, y)
     if distance <= BALL * side:
         return True
     margin = math.asin(BALL * side / distance)
-    low, high = float(lidar.elevations.min()), float(lidar.elevations.max())
+    low = float(lidar.elevations.min())
+    high = float(lidar.elevations.max())
     if not low - margin <= math.atan2(z, flat) <= high + margin:
         return False
     half_width = math.asin(min(1.0, BALL * side / flat)) if flat else math.pi

@@ -76,7 +76,7 @@ class BeamGrid:
         """Add the beams of one sensor at `origin` (3,) [m] to the counts. `directions` (B, 3) are
         unit vectors, ground frame. A beam does not count in voxels that it enters farther away than
         its end (B,), or leaves nearer than the minimum range [m]."""
-        paths = _clip(origin, directions, ends, self.space, min_range)
+        paths = _clip(origin, directions, ends, self.space, min_range=min_range)
         self._saturable.append(_around(paths.origin, self._padded.shape))
         if min_range > 0.0:  # beams that are inside the space at their minimum range count there
             inside = paths.start == paths.min_range
@@ -151,11 +151,12 @@ def _clip(
     leave = np.asarray(ends, dtype=float) / space.interval
     for axis, size in enumerate(space.shape):
         speed = components[:, axis]
-        t0, t1 = -position[axis] / speed, (size - position[axis]) / speed
+        t0 = -position[axis] / speed
+        t1 = (size - position[axis]) / speed
         enter = np.maximum(enter, np.minimum(t0, t1))
         leave = np.minimum(leave, np.maximum(t0, t1))
     keep = np.flatnonzero(enter <= leave)
-    return Paths(position, components[keep], enter[keep], leave[keep], start)
+    return Paths(position, components[keep], enter[keep], leave[keep], min_range=start)
 
 
 @dataclass(slots=True)
@@ -177,7 +178,8 @@ class _Sweep:
     @classmethod
     def of(cls, paths: Paths, shape: tuple[int, ...], axis: int, sign: int) -> "_Sweep":
         """Advance the beams to their first plane."""
-        origin, speed = paths.origin[axis], sign * paths.directions[:, axis]
+        origin = paths.origin[axis]
+        speed = sign * paths.directions[:, axis]
         first = math.floor(origin) + 1 if sign > 0 else math.ceil(origin) - 1
         first = max(first, 0) if sign > 0 else min(first, shape[axis])
         ahead = sign * (first - origin)
@@ -188,13 +190,16 @@ class _Sweep:
         last = np.minimum(np.floor(paths.end * speed - ahead), max_planes)
         moving = np.flatnonzero((speed > 0.0) & (last >= arrival))
         order = moving[np.argsort(-last[moving], kind="stable")]
-        last, arrival = last[order].astype(np.int64), arrival[order].astype(np.int64)
+        last = last[order].astype(np.int64)
+        arrival = arrival[order].astype(np.int64)
         count = int(last[0]) + 1 if len(order) else 0
         active = np.searchsorted(-last, -np.arange(count), side="right")
         slopes = np.stack([paths.directions[order, a] / speed[order] for a in _other_axes(axis)])
         at = _fixed_points(paths.origin[_other_axes(axis), None], slopes * ahead)
         planes = [first + sign * k for k in range(count)]
-        return cls(planes, active.tolist(), at, _fixed(slopes), arrival if arrival.any() else None)
+        return cls(
+            planes, active.tolist(), at, _fixed(slopes), arrival=arrival if arrival.any() else None
+        )
 
     def split(self, max_beams: int) -> "Iterator[_Sweep]":
         """Yield parts of at most `max_beams` beams."""
@@ -203,7 +208,7 @@ class _Sweep:
             active = [(count - k + n - 1) // n for count in self.active]
             at, step = (np.ascontiguousarray(w[:, k::n]) for w in (self.at, self.step))
             arrival = None if self.arrival is None else self.arrival[k::n]
-            yield _Sweep(self.planes, active, at, step, arrival)
+            yield _Sweep(self.planes, active, at, step, arrival=arrival)
 
     def __iter__(self) -> Iterator[tuple[int, Ints]]:
         """Yield each plane with the cells (2, N) of the padded grid where beams cross it."""

@@ -51,14 +51,17 @@ class LidarObjects(ObjectKernel):
     """Counts beams that end on objects."""
 
     def __init__(self, view: ObjectView) -> None:
-        self._view, self.cache = view, BeamCache(view.vehicle)
+        self._view = view
+        self.cache = BeamCache(view.vehicle)
 
     def measure(self, sensor: Sensor) -> Floats:
         """Count the beams (N,) that end on each object; equal to the definition."""
-        lidar, objects = lidar_of(sensor), self._view.objects
+        lidar = lidar_of(sensor)
+        objects = self._view.objects
         scenes = objects.scenes if self._view.traffic else None
         if lidar.returns == ROAD:
-            hits, alone = self.crossings(sensor), np.arange(len(objects))
+            hits = self.crossings(sensor)
+            alone = np.arange(len(objects))
             beams = hits.box, hits.beam, hits.enter
             scenes = alone if scenes is None else scenes
             return expected_points(beams, objects, scenes, lidar.min_range)
@@ -91,26 +94,32 @@ def _count(tester: BoxTester, scenes: Ints | None) -> Ints:
     others = tester.hits_of_all_beams(np.flatnonzero(~outside))
     if scenes is None:
         return tester.count(others) + _count_alone(tester, runs)
-    return _count_traffic(tester, runs, others, scenes, np.unique(scenes[~outside]))
+    return _count_traffic(tester, runs, others, scenes, unsorted_scenes=np.unique(scenes[~outside]))
 
 
 def _runs(tester: BoxTester, fans: Sequence[Fan]) -> tuple[Flags, Iterator[FanBlock]]:
     """Return which boxes (N,) the LiDAR is clearly outside of, and all runs through them by fan."""
-    lidar, boxes = tester.lidar, tester.boxes
-    step, count = lidar.azimuth_step, lidar.azimuth_count
+    lidar = tester.lidar
+    boxes = tester.boxes
+    step = lidar.azimuth_step
+    count = lidar.azimuth_count
     roll, pitch, yaw = tester.sensor.pose.rpy
     if roll == 0.0 and pitch == 0.0:
         planar = PlanarBoxes.of(boxes)
-        outside, distance = planar.beside, planar.distance
+        outside = planar.beside
+        distance = planar.distance
         among = outside
 
         def blocks_of(fan: Fan) -> Iterator[RunBlock]:
             return upright_runs(RotatedFan.of(fan, yaw, step, count), boxes, planar, which)
     else:
         tilted = TiltedBoxes.of(boxes, tester.sensor.pose.ground_from_sensor)
-        outside, distance, windows = tilted.outside, 1.0 / tilted.near, box_windows(tester)
+        outside = tilted.outside
+        distance = 1.0 / tilted.near
+        windows = box_windows(tester)
         spans = windows.azimuth - windows.half_azimuth, windows.azimuth + windows.half_azimuth
-        lowest, highest = lidar.elevations.min(), lidar.elevations.max()
+        lowest = lidar.elevations.min()
+        highest = lidar.elevations.max()
         among = outside & (windows.low <= highest) & (windows.high >= lowest)
 
         def blocks_of(fan: Fan) -> Iterator[RunBlock]:
@@ -135,7 +144,8 @@ def _count_alone(tester: BoxTester, blocks: Iterator[FanBlock]) -> Ints:
     counts = np.zeros(len(tester.boxes.offsets), np.int64)
     unchecked: dict[int, tuple[FanBeams, list[ChannelRuns]]] = {}
     for fan, block in blocks:
-        needs_check, number = fan.needs_check(block), block.high - block.low
+        needs_check = fan.needs_check(block)
+        number = block.high - block.low
         number[needs_check] = 0
         counts[block.box] += number.sum(axis=0)
         unchecked.setdefault(id(fan), (fan, []))[1].append(block.take(needs_check))
@@ -164,14 +174,15 @@ def _count_traffic(
     the scene of each box. `others` are hits of boxes that have no runs: those above, below or round
     the sensor. Their scenes, `unsorted_scenes`, are compared beam by beam."""
     counts = np.zeros(len(scenes), np.int64)
-    hits, traffic = [others], dict[int, tuple[FanBeams, list[ChannelRuns]]]()
+    hits = [others]
+    traffic = dict[int, tuple[FanBeams, list[ChannelRuns]]]()
     for fan, block in blocks:
         runs = fan.existing(block.take(block.unsure | (block.low < block.high)))
         traffic.setdefault(id(fan), (fan, []))[1].append(runs)
     for fan, parts in traffic.values():
         runs = ChannelRuns.concatenated(parts)
         in_unsorted = np.isin(scenes[runs.box], unsorted_scenes)
-        undecided = _count_sorted(tester, fan, runs, scenes, in_unsorted, counts)
+        undecided = _count_sorted(tester, fan, runs, scenes, in_unsorted=in_unsorted, counts=counts)
         hits.append(_tested(tester, fan, runs.take(undecided)))
     return counts + tester.count(first_of_scene(concatenated(hits), scenes))
 
@@ -195,7 +206,8 @@ def _count_sorted(
     max_range = tester.lidar.max_range  # no beam ends beyond
     distance = np.minimum(1.0 / np.maximum(runs.near, MIN_INVERSE), max_range)
     order = np.argsort(ray + distance / (max_range + 1.0))
-    nearer, farther = order[:-1], order[1:]
+    nearer = order[:-1]
+    farther = order[1:]
     with np.errstate(divide="ignore"):  # of unsure runs
         separate = 1.0 / runs.far[nearer] + MIN_GAP_M < 1.0 / runs.near[farther]
     separate &= ~(runs.unsure[nearer] | runs.unsure[farther])
@@ -239,7 +251,8 @@ def _not_taken_before(ray: Ints, bits: Bits) -> Bits:
     """Bits (R, W) that no earlier run of the same ray has; rays ascend."""
     starts = np.flatnonzero(np.diff(ray, prepend=-1))
     sizes = np.diff(starts, append=len(ray))
-    taken, visible = bits[starts].copy(), bits.copy()
+    taken = bits[starts].copy()
+    visible = bits.copy()
     for rank in range(1, int(sizes.max(initial=0))):
         longer = np.flatnonzero(sizes > rank)
         run = starts[longer] + rank

@@ -46,7 +46,8 @@ from .voxel_beams import CUBE_RADIUS, PlacedLidar, VoxelPoints, count_pairs, cou
 BEAM_BYTES = 100  # Memory of a cast beam, measured: its direction, its end and its hit
 MIN_RANGE_BLOCK = 64
 """Voxels tested together; all beams may pass a voxel next to the sensor."""
-SPACING_M, MAX_SPACING_M = 0.05, 0.15
+SPACING_M = 0.05
+MAX_SPACING_M = 0.15
 """Distance between the points of a segment; larger if there were more than MAX_POINTS points."""
 MAX_POINTS = 2_000_000
 DIRECTION_BINS = 1e11
@@ -76,7 +77,9 @@ class LidarGrid(GridKernel):
     def __init__(
         self, space: PerceptionSpace, vehicle: Vehicle | None, saturation_count: int
     ) -> None:
-        self._space, self._vehicle, self._saturation_count = space, vehicle, saturation_count
+        self._space = space
+        self._vehicle = vehicle
+        self._saturation_count = saturation_count
 
     @cached_property
     def _grid(self) -> BeamGrid:
@@ -138,7 +141,9 @@ class LidarSample(SampleKernel):
     """Counts beams through sampled voxels; from `saturation_count` on not exactly."""
 
     def __init__(self, voxels: Voxels, vehicle: Vehicle | None, saturation_count: int) -> None:
-        self._space, self._vehicle, self._centers = voxels.space, vehicle, voxels.centers
+        self._space = voxels.space
+        self._vehicle = vehicle
+        self._centers = voxels.centers
         self._saturation_count = saturation_count
         self._points = VoxelPoints(voxels.index)
         self.cache = BeamCache(vehicle)
@@ -167,8 +172,8 @@ class LidarSample(SampleKernel):
             position_in_voxels(sensor.pose.position, self._space.origin, side),
             sensor.pose.ground_from_sensor,
             self.cache.rotated(sensor),
-            ends,
-            side,
+            ends=ends,
+            side=side,
         )
 
 
@@ -208,7 +213,8 @@ class LidarGround(GroundKernel):
 
     def mark(self, sensor: Sensor) -> VisibleGround:
         """Mark the squares of beams between the ground and the posts' height."""
-        beams, rotated = self.cache.cast(sensor), self.cache.rotated(sensor)
+        beams = self.cache.cast(sensor)
+        rotated = self.cache.rotated(sensor)
         components = rotated.components(np.arange(lidar_of(sensor).beam_count))
         first, last = self._low_parts(sensor, components)
         low = np.flatnonzero(first <= last)
@@ -216,10 +222,13 @@ class LidarGround(GroundKernel):
         last[occludable] = np.minimum(last[occludable], beams.ends.take(occludable))
         low = low[first[low] <= last[low]]
         x, y, first, last = merged(*(w[low] for w in (*components[:2], first, last)))
-        segments = GroundSegments.of(self._view.grid, sensor.pose.position, (x, y), first, last)
+        segments = GroundSegments.of(
+            self._view.grid, sensor.pose.position, (x, y), first, last=last
+        )
         grid = self._view.grid
         marked = np.zeros(grid.shape, bool)
-        flat, finest = marked.reshape(-1), SPACING_M / grid.step
+        flat = marked.reshape(-1)
+        finest = SPACING_M / grid.step
         spacing = np.clip(segments.length / MAX_POINTS, finest, MAX_SPACING_M / grid.step)
         flat[segments.subdivided(float(spacing)).squares(0.0, grid.shape)] = True
         flat[segments.squares(1.0, grid.shape)] = True
@@ -227,13 +236,16 @@ class LidarGround(GroundKernel):
 
     def _low_parts(self, sensor: Sensor, components: list[Floats]) -> tuple[Floats, Floats]:
         """Distances (B,) between which beams are low enough, above the grid and in range [m]."""
-        lidar, grid = lidar_of(sensor), self._view.grid
+        lidar = lidar_of(sensor)
+        grid = self._view.grid
         first = np.full(lidar.beam_count, lidar.min_range)
         last = np.full(lidar.beam_count, lidar.max_range)
-        low, high = (*grid.origin, 0.0), (*grid.end, self._view.height)
+        low = (*grid.origin, 0.0)
+        high = (*grid.end, self._view.height)
         axes = zip(components, sensor.pose.position, low, high, strict=True)
         for component, origin, a, b in axes:
-            t0, t1 = (a - origin) / component, (b - origin) / component
+            t0 = (a - origin) / component
+            t1 = (b - origin) / component
             np.maximum(first, np.minimum(t0, t1), out=first)
             np.minimum(last, np.maximum(t0, t1), out=last)
         return first, last
@@ -244,7 +256,10 @@ def merged(x: Floats, y: Floats, first: Floats, last: Floats) -> tuple[Floats, .
     (L,) lie from `first` to `last` times a direction (x, y) from the sensor. Returns fewer such
     segments, along unit vectors."""
     length = np.maximum(np.sqrt(x * x + y * y), MIN_LENGTH)
-    x, y, first, last = x / length, y / length, first * length, last * length
+    x = x / length
+    y = y / length
+    first = first * length
+    last = last * length
     turned = y / (np.abs(x) + np.abs(y))  # rises with the azimuth where x > 0
     direction = np.round(np.where(x < 0.0, 2.0 - turned, turned) * DIRECTION_BINS)
     order = np.lexsort((first, direction))
@@ -280,7 +295,8 @@ class GroundSegments:
         last: Floats,
     ) -> "GroundSegments":
         """Return the segments from `first` to `last` (L,) [m] along directions from a position."""
-        start, extent = [], []
+        start = []
+        extent = []
         for origin, low, direction in zip(position, grid.origin, directions, strict=False):
             start.append((origin - low + direction * first) / grid.step)
             extent.append(direction * (last - first) / grid.step)

@@ -30,7 +30,8 @@ FITTED = {
 PointRCNN's detections in KITTI's tracking sequences (from the public AB3DMOT repository), AP at 40
 recalls by KITTI's overlaps (0.7 for cars, 0.5 for the others). The detector was trained on drives
 that overlap with these, so its AP is rather high."""
-PLOT_ROWS, BAR_WIDTH = 24, 48
+PLOT_ROWS = 24
+BAR_WIDTH = 48
 KEYS = frozenset(
     {
         "angles",
@@ -58,15 +59,15 @@ def read(name: str, table: Mapping[str, Any], folder: Path) -> Lidar:
         step = STEP_DEG.checked(name, "azimuth_step_deg", table.get("azimuth_step_deg"))
         azimuths = round(360.0 / step)
     fov = table.get("horizontal_fov_deg", (-180.0, 180.0))
-    low, high = map(math.radians, vector(name, "horizontal_fov_deg", fov, 2, DEGREES))
+    low, high = map(math.radians, vector(name, "horizontal_fov_deg", fov, count=2, rule=DEGREES))
     return Lidar(
         name,
         elevations,
         azimuths,
         RANGE.checked(name, "max_range_m", table.get("max_range_m")),
-        offsets,  # type: ignore[arg-type]
-        (low, high),
-        table.get("min_range_m", NEAREST),
+        azimuth_offsets=offsets,  # type: ignore[arg-type]
+        horizontal_fov=(low, high),
+        min_range=table.get("min_range_m", NEAREST),
     )
 
 
@@ -117,7 +118,8 @@ def _radians(name: str, table: Mapping[str, Any], key: str) -> np.ndarray:
 
 def figures(model: Lidar) -> list[str]:
     """Return the channels, azimuths, number of beams and range, a line each."""
-    low, high = math.degrees(model.elevations.min()), math.degrees(model.elevations.max())
+    low = math.degrees(model.elevations.min())
+    high = math.degrees(model.elevations.max())
     left, right = (math.degrees(a) for a in model.horizontal_fov)
     min_range = f"{model.min_range:g} to " if model.min_range > 0.0 else ""
     return [

@@ -78,16 +78,16 @@ class Lattice:
         full_circle = len(lidar.azimuth_steps) == lidar.azimuth_count
         regular = full_circle and lidar.azimuth_count > 1 and not lidar.azimuth_offsets.any()
         return cls(
-            channels,
-            lidar.elevations[channels],
-            lidar.azimuth_offsets[channels],
-            lidar.azimuth_step,
-            lidar.azimuth_count,
-            position,
-            len(lidar.azimuth_steps),
-            SlopeBounds.of(lidar.elevations) if regular else None,
-            SlopeCounts.of(lidar.elevations, lidar.azimuth_count) if regular else None,
-            BeamBands.of(lidar.directions) if lidar.azimuth_count == 1 else None,
+            channels=channels,
+            elevations=lidar.elevations[channels],
+            offsets=lidar.azimuth_offsets[channels],
+            step=lidar.azimuth_step,
+            count=lidar.azimuth_count,
+            position=position,
+            width=len(lidar.azimuth_steps),
+            slope_bounds=SlopeBounds.of(lidar.elevations) if regular else None,
+            slope_counts=SlopeCounts.of(lidar.elevations, lidar.azimuth_count) if regular else None,
+            bands=BeamBands.of(lidar.directions) if lidar.azimuth_count == 1 else None,
         )
 
     def window_beams(self, bounds: Bracket, voxels: Ints) -> tuple[Ints, Ints]:
@@ -96,7 +96,8 @@ class Lattice:
         rows, columns = (n[voxels].astype(np.int64) for n in (bounds.rows, bounds.columns))
         voxel = np.repeat(np.arange(len(voxels)), rows)
         row = np.repeat(bounds.row[voxels], rows) + count_up(rows)
-        n, first = columns[voxel], bounds.column[voxels].astype(np.int64) % self.count
+        n = columns[voxel]
+        first = bounds.column[voxels].astype(np.int64) % self.count
         column = np.repeat(first[voxel], n) + count_up(n)
         column[column >= self.count] -= self.count
         return np.repeat(voxel, n), np.repeat(self.channels[row] * self.width, n) + column
@@ -128,11 +129,13 @@ def windows_of(center: Floats, half_axes: Sequence[Floats]) -> Windows:
     x, y, z = center
     flat = np.sqrt(x * x + y * y)
     safe = np.maximum(flat, WINDOW_MARGIN)
-    c, s = x / safe, y / safe
+    c = x / safe
+    s = y / safe
     radial = sum(np.abs(a[0] * c + a[1] * s) for a in half_axes)
     lateral = sum(np.abs(a[1] * c - a[0] * s) for a in half_axes)
     up = sum(np.abs(a[2]) for a in half_axes)
-    near, far = flat - radial, np.sqrt((flat + radial) ** 2 + lateral**2)
+    near = flat - radial
+    far = np.sqrt((flat + radial) ** 2 + lateral**2)
     off_axis = near > WINDOW_MARGIN  # not above, below or round the sensor
     safe_near = np.where(off_axis, near, 1.0)
     high = np.arctan2(z + up, np.where(z + up > 0.0, safe_near, far))
@@ -167,14 +170,18 @@ class BeamBands:
         azimuth = np.arctan2(directions[:, 1], directions[:, 0])
         band = _band(elevation)
         turns = [band * STRIDE + azimuth + turn for turn in (-TURN, 0.0, TURN)]
-        keys, beams = np.concatenate(turns), np.tile(np.arange(len(directions)), 3)
+        keys = np.concatenate(turns)
+        beams = np.tile(np.arange(len(directions)), 3)
         order = np.argsort(keys, kind="stable")
         return cls(keys[order], beams[order])
 
     def candidates(self, windows: Windows) -> tuple[Ints, Ints]:
         """Return (voxel, beam) pairs (P,) of the beams that may lie in each voxel's window. A half
         width of pi or more is all round; elevations beyond +-90 degrees are allowed."""
-        azimuth, half, low, high = windows.azimuth, windows.half_azimuth, windows.low, windows.high
+        azimuth = windows.azimuth
+        half = windows.half_azimuth
+        low = windows.low
+        high = windows.high
         first = _band(np.maximum(low, -math.pi / 2))
         n = _band(np.minimum(high, math.pi / 2)) - first + 1
         voxel = np.repeat(np.arange(len(n)), n)

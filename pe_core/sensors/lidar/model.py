@@ -18,7 +18,8 @@ FULL_CIRCLE = (-math.pi, math.pi)
 STEPS = Whole(1, 360_000, "azimuths")
 RANGE = Number(SHORTEST_RANGE_M, cap=1e5, unit="m", noun="length")
 FOV = Angle(-720.0, 720.0)
-ALL, ROAD = "all", "road"
+ALL = "all"
+ROAD = "road"
 RETURNS = (ALL, ROAD)
 MAX_BEAMS = 10_000_000
 """A frame of more is a typing error: it has sixty times the beams of the catalogue's largest."""
@@ -127,7 +128,12 @@ class Lidar(SensorModel):
         elevations = [math.atan2(z, math.hypot(x, y)) for x, y, z in beams.tolist()]
         azimuths = [math.atan2(y, x) for x, y, _ in beams.tolist()]
         return cls(
-            name, np.array(elevations), 1, max_range, np.array(azimuths), min_range=min_range
+            name,
+            np.array(elevations),
+            azimuth_count=1,
+            max_range=max_range,
+            azimuth_offsets=np.array(azimuths),
+            min_range=min_range,
         )
 
     @property

@@ -42,7 +42,8 @@ def occlusion_candidates(
     marks = np.zeros((len(lattice.channels) + 1, 2 * lattice.count + 1), np.int32)
     for windows in _windows(mesh, ground_from_sensor, lattice):
         _mark(marks, windows)
-    once, again = marks[:, : lattice.count], marks[:, lattice.count : -1]
+    once = marks[:, : lattice.count]
+    again = marks[:, lattice.count : -1]
     again[:, 0] += once.sum(axis=1)  # windows that go on into a second turn
     once += again
     for row, before in zip(once[1:], once, strict=False):
@@ -55,7 +56,8 @@ def _windows(
     mesh: VisibleTriangles, ground_from_sensor: Floats, lattice: "Lattice"
 ) -> Iterator[BeamWindows]:
     """Yield windows that together cover every visible triangle of the vehicle."""
-    tree, level = mesh.tree, len(mesh.tree.boxes) - 1
+    tree = mesh.tree
+    level = len(mesh.tree.boxes) - 1
     nodes = np.arange(len(tree.boxes[level])) if level >= 0 else np.zeros(0, np.int64)
     while level >= 0 and len(nodes):
         low, high = tree.boxes[level][nodes].transpose(1, 0, 2) - mesh.origin
@@ -76,7 +78,8 @@ def _box_windows(low: Floats, high: Floats, axes: Floats, lattice: "Lattice") ->
     x, y, z = rotate(axes.T, (low + high) / 2.0).T
     half = ((high - low) / 2.0).T
     flat = np.sqrt(x * x + y * y)
-    c, s = x / np.maximum(flat, MIN_DISTANCE_M), y / np.maximum(flat, MIN_DISTANCE_M)
+    c = x / np.maximum(flat, MIN_DISTANCE_M)
+    s = y / np.maximum(flat, MIN_DISTANCE_M)
     depth = _sum3(h * np.abs(a[0] * c + a[1] * s) for h, a in zip(half, axes, strict=True))
     width = _sum3(h * np.abs(a[1] * c - a[0] * s) for h, a in zip(half, axes, strict=True))
     height = _sum3(h * abs(float(a[2])) for h, a in zip(half, axes, strict=True))
@@ -85,8 +88,11 @@ def _box_windows(low: Floats, high: Floats, axes: Floats, lattice: "Lattice") ->
     near = np.where(off_axis, flat - depth, 1.0)
     ball = flat + np.sqrt(_sum3(h * h for h in half)) * (1.0 + MARGIN) + MIN_DISTANCE_M
     far = np.where(off_axis, np.sqrt((flat + depth) ** 2 + width * width), ball)
-    low_row, high_row = _rows(z - height, z + height, np.where(off_axis, near, 0.0), far, lattice)
-    middle, reach = np.arctan2(y, x), np.where(off_axis, np.arctan2(width, near), np.pi)
+    low_row, high_row = _rows(
+        z - height, z + height, np.where(off_axis, near, 0.0), far, lattice=lattice
+    )
+    middle = np.arctan2(y, x)
+    reach = np.where(off_axis, np.arctan2(width, near), np.pi)
     return np.stack([low_row, high_row, *_columns(middle - reach, middle + reach, lattice)])
 
 
@@ -96,11 +102,14 @@ def _triangle_windows(corners: Floats, lattice: "Lattice") -> BeamWindows:
     azimuth = np.arctan2(y, x)
     turned = azimuth - azimuth[0]
     turned -= 2.0 * np.pi * np.round(turned / (2.0 * np.pi))
-    first, last = corner_min(turned), corner_max(turned)
+    first = corner_min(turned)
+    last = corner_max(turned)
     off_axis = last - first < np.pi * (1.0 - MARGIN)  # else it may surround the sensor's axis
     near = corner_min(np.stack([_edge_distance(x, y, i, (i + 1) % 3) for i in range(3)]))
     far = corner_max(np.sqrt(x * x + y * y))
-    low, high = _rows(corner_min(z), corner_max(z), np.where(off_axis, near, 0.0), far, lattice)
+    low, high = _rows(
+        corner_min(z), corner_max(z), np.where(off_axis, near, 0.0), far, lattice=lattice
+    )
     first = np.where(off_axis, azimuth[0] + first, -np.pi)
     last = np.where(off_axis, azimuth[0] + last, np.pi)
     return np.stack([low, high, *_columns(first, last, lattice)])
@@ -108,7 +117,8 @@ def _triangle_windows(corners: Floats, lattice: "Lattice") -> BeamWindows:
 
 def _edge_distance(x: Floats, y: Floats, i: int, j: int) -> Floats:
     """Distance (N,) of the edges from corner i to corner j to the sensor's axis [m]."""
-    along_x, along_y = x[j] - x[i], y[j] - y[i]
+    along_x = x[j] - x[i]
+    along_y = y[j] - y[i]
     size = np.maximum(along_x * along_x + along_y * along_y, MIN_DISTANCE_M**2)
     t = np.clip(-(x[i] * along_x + y[i] * along_y) / size, 0.0, 1.0)
     return np.hypot(x[i] + t * along_x, y[i] + t * along_y)
@@ -142,7 +152,8 @@ def _columns(first: Floats, last: Floats, lattice: "Lattice") -> tuple[Ints, Int
 
 def _mark(marks: NDArray[np.int32], windows: BeamWindows) -> None:
     """Add windows to a table whose cumulative sums are the number of windows that hold a beam."""
-    width, flat = marks.shape[1], marks.reshape(-1)
+    width = marks.shape[1]
+    flat = marks.reshape(-1)
     low, high, first, last = windows[:, windows[2] <= windows[3]]
     for row, column, sign in (
         (low, first, 1),

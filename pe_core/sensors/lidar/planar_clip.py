@@ -40,7 +40,9 @@ ZERO_RISE = 1e-12
 """A pair of sides whose inverse distances differ by less per slope is decided by azimuth alone."""
 SMALL_RISE = 1e-6  # A box with a pair between ZERO_RISE and this is unsure
 TINY_RISE = 1e-30  # Replaces a rise of 0 as a divisor
-NEAR, FAR, MAX_PAIRS = 3, 6, 9
+NEAR = 3
+FAR = 6
+MAX_PAIRS = 9
 """Sides that may face a sensor and away from it, and the most pairs of them that differ."""
 DISTANCE_MARGIN_M = 1e-3
 """Distances of a box's nearest and farthest point are moved apart by this, against rounding."""
@@ -66,8 +68,10 @@ class PlanarBoxes:
     @classmethod
     def of(cls, boxes: PlacedBoxes) -> "PlanarBoxes":
         """Project boxes on the ground."""
-        (x, y, _), (long, wide, _) = boxes.offsets.T, boxes.halves.T
-        out_x, out_y = np.abs(x) - long, np.abs(y) - wide
+        x, y, _ = boxes.offsets.T
+        long, wide, _ = boxes.halves.T
+        out_x = np.abs(x) - long
+        out_y = np.abs(y) - wide
         first, last = _azimuths(boxes)
         return cls(
             first,
@@ -81,10 +85,14 @@ class PlanarBoxes:
 
 def _azimuths(boxes: PlacedBoxes) -> tuple[Floats, Floats]:
     """First and last azimuth (N,) of the corners [rad], where the sensor is beside the box."""
-    (x, y, _), (long, wide, _), (c, s) = boxes.offsets.T, boxes.halves.T, boxes.headings.T
-    square, turns = x * x + y * y, []
+    x, y, _ = boxes.offsets.T
+    long, wide, _ = boxes.halves.T
+    c, s = boxes.headings.T
+    square = x * x + y * y
+    turns = []
     for side in (1.0, -1.0):
-        across, along = side * x * wide - y * long, x * long + side * y * wide
+        across = side * x * wide - y * long
+        along = x * long + side * y * wide
         turns += [np.arctan2(across, square + along), np.arctan2(-across, square - along)]
     middle = np.arctan2(s * x + c * y, c * x - s * y)
     return middle + np.minimum.reduce(turns), middle + np.maximum.reduce(turns)
@@ -94,7 +102,9 @@ def _sides(
     boxes: PlacedBoxes, out_x: Flags, out_y: Flags
 ) -> tuple[tuple[SideLines, SideLines], tuple[SideLines, SideLines, SideLines]]:
     """Near and far sides; `out_x`, `out_y` flag a sensor outside the strip between two sides."""
-    (x, y, _), (long, wide, _), (c, s) = boxes.offsets.T, boxes.halves.T, boxes.headings.T
+    x, y, _ = boxes.offsets.T
+    long, wide, _ = boxes.halves.T
+    c, s = boxes.headings.T
     long, wide = (np.copysign(half, at) for half, at in ((long, x), (wide, y)))
     with np.errstate(divide="ignore"):  # of boxes that the sensor is not beside
         ends = 1.0 / (x - long), 1.0 / (x + long)
@@ -121,15 +131,17 @@ def upright_runs(
         box = index[block]
         x, y = (np.take(w, column) for w in fan.rays)
         buffer = np.empty(column.shape)
-        near, flank = (_inverse(side, box, x, y, buffer) for side in planar.near)
+        near, flank = (_inverse(side, box, x, y, buffer=buffer) for side in planar.near)
         np.minimum(near, flank, out=near)
-        far, *others = (_inverse(side, box, x, y, buffer) for side in planar.far)
+        far, *others = (_inverse(side, box, x, y, buffer=buffer) for side in planar.far)
         for other in others:
             np.maximum(far, other, out=far)
         gap = near - far
-        middle, half = boxes.offsets[box, 2], boxes.halves[box, 2]
+        middle = boxes.offsets[box, 2]
+        half = boxes.halves[box, 2]
         bottom, top = (z * fan.slopes.scale for z in (middle - half, middle + half))
-        one, other = bottom * near, bottom * far
+        one = bottom * near
+        other = bottom * far
         low, low_unsure = fan.slopes.below(np.minimum(one, other, out=one))
         np.multiply(top, near, out=one)
         np.multiply(top, far, out=other)
@@ -138,7 +150,7 @@ def upright_runs(
         high[gap <= 0.0] = 0
         np.maximum(high, low, out=high)
         column[column >= fan.count] -= fan.count
-        yield RunBlock(box, column, low, high, near, far, unsure)
+        yield RunBlock(box, column, low, high, near=near, far=far, unsure=unsure)
 
 
 def _inverse(side: SideLines, box: Ints, x: Floats, y: Floats, buffer: Floats) -> Floats:
@@ -169,7 +181,8 @@ class TiltedBoxes:
         """Pair the near and far sides of boxes."""
         out = np.abs(boxes.offsets) - boxes.halves
         near, far = _inverse_distances(boxes, boxes.axes_in(ground_from_sensor), out)
-        bounds, unsure = [], np.abs(out).min(axis=1) < IN_LINE_M
+        bounds = []
+        unsure = np.abs(out).min(axis=1) < IN_LINE_M
         for first, second in _different_pairs(out):
             rows = np.arange(len(out))
             x, y, rise = (near[first, :, rows] - far[second, :, rows]).T
@@ -183,7 +196,7 @@ class TiltedBoxes:
         corner = np.abs(boxes.offsets) + boxes.halves
         farthest = np.sqrt(dot(corner, corner)) + DISTANCE_MARGIN_M
         outside = out.max(axis=1) > IN_LINE_M
-        return cls(tuple(bounds), unsure, outside, 1.0 / distance, 1.0 / farthest)
+        return cls(tuple(bounds), unsure, outside, 1.0 / distance, far=1.0 / farthest)
 
 
 def _different_pairs(out: Floats) -> Iterator[Ints]:
@@ -202,12 +215,14 @@ def _inverse_distances(
 ) -> tuple[Floats, Floats]:
     """Inverse distances (3, 3, N) of sides that may face the sensor, and (6, 3, N) of far sides. A
     near side that does not face it is replaced by one that does."""
-    near, far = [], []
+    near = []
+    far = []
     with np.errstate(divide="ignore", invalid="ignore"):  # of sides that face the other way
         for k, axis in enumerate(axes):
             at = boxes.offsets[:, k]
             half = np.copysign(boxes.halves[:, k], at)
-            back, front = axis / (at + half), axis / (at - half)
+            back = axis / (at + half)
+            front = axis / (at - half)
             near.append(front)
             far += [back, np.where(out[:, k] > 0.0, back, front)]
     best = np.argmax(out, axis=1)  # a side that faces the sensor
@@ -223,9 +238,11 @@ def tilted_runs(
     boxes that the sensor is `outside` of, `spans` the first and last azimuths (N,) of all boxes
     [rad]. Fast because each pair of sides costs two products and a sum for a run."""
     for block, column in fan.columns(spans[0][index], spans[1][index]):
-        box, scale = index[block], fan.slopes.scale
+        box = index[block]
+        scale = fan.slopes.scale
         x, y = (np.take(w, column) for w in fan.rays)
-        low, high = np.full(column.shape, -np.inf), np.full(column.shape, np.inf)
+        low = np.full(column.shape, -np.inf)
+        high = np.full(column.shape, np.inf)
         for bound in boxes.bounds:
             a, b, lower, upper = (w[box] for w in bound)
             value = a * x
@@ -239,4 +256,4 @@ def tilted_runs(
         column[column >= fan.count] -= fan.count
         near, far = (np.broadcast_to(w[box], column.shape) for w in (boxes.near, boxes.far))
         unsure = first_unsure | last_unsure | boxes.unsure[box]
-        yield RunBlock(box, column, first, last, near, far, unsure)
+        yield RunBlock(box, column, first, last, near=near, far=far, unsure=unsure)

@@ -78,7 +78,9 @@ def passed(box: Ints, beam: Ints, enter: Floats, scenes: Ints, fill: Floats) -> 
     """Return the share (H,) of each beam that nearer boxes of its scene have let through. A beam
     enters a box at a distance, (H,) each; `scenes` (N,) are those of the boxes, `fill` (H,)."""
     order = np.lexsort((box, enter, beam, scenes[box]))
-    beam, scene, kept = beam[order], scenes[box][order], 1.0 - fill[order]
+    beam = beam[order]
+    scene = scenes[box][order]
+    kept = 1.0 - fill[order]
     same = np.zeros(len(order), bool)
     same[1:] = (beam[1:] == beam[:-1]) & (scene[1:] == scene[:-1])
     index = np.arange(len(order))

@@ -172,8 +172,10 @@ def _any_in_window(flags: NDArray[np.bool_], bounds: Bracket, voxels: Ints) -> N
     for row, before in zip(sums[1:], sums, strict=False):
         row += before  # five times as fast as np.cumsum along the first axis
     np.add(sums[:, 1 : width + 1], sums[:, width : width + 1], out=sums[:, width + 1 :])
-    r0, c0 = bounds.row[voxels], bounds.column[voxels] % width
-    r1, c1 = r0 + bounds.rows[voxels], c0 + bounds.columns[voxels]
+    r0 = bounds.row[voxels]
+    c0 = bounds.column[voxels] % width
+    r1 = r0 + bounds.rows[voxels]
+    c1 = c0 + bounds.columns[voxels]
     any_flag: NDArray[np.bool_] = sums[r1, c1] - sums[r0, c1] > sums[r1, c0] - sums[r0, c0]
     return any_flag
 
@@ -183,7 +185,8 @@ def count_pairs(
 ) -> Ints:
     """Count for each voxel (V,) the (voxel, beam) pairs (P,) whose beam passes it; exact. `offsets`
     (V, 3) are the voxels' centres seen from the sensor, in sides."""
-    counts, occludable = np.zeros(len(offsets), np.int64), []
+    counts = np.zeros(len(offsets), np.int64)
+    occludable = []
     for block in blocks(len(voxel), PAIR_BLOCK):
         through, enter = _through(offsets, lidar, voxel[block], beam[block])
         pairs = voxel[block][through], beam[block][through]
@@ -201,10 +204,12 @@ def count_pairs(
 def _through(offsets: Floats, lidar: PlacedLidar, voxel: Ints, beam: Ints) -> tuple[Ints, Floats]:
     """Pairs whose beam enters its cube in range, and the distance there, in sides. The arithmetic
     of `definition.cube_crossing`, axis by axis."""
-    enter, leave = np.zeros(len(voxel)), np.full(len(voxel), np.inf)
+    enter = np.zeros(len(voxel))
+    leave = np.full(len(voxel), np.inf)
     for axis, step in enumerate(lidar.beams.components(beam)):
         center = offsets[voxel, axis]
-        t0, t1 = (center - 0.5) / step, (center + 0.5) / step
+        t0 = (center - 0.5) / step
+        t1 = (center + 0.5) / step
         np.maximum(enter, np.minimum(t0, t1), out=enter)
         np.minimum(leave, np.maximum(t0, t1), out=leave)
     through = np.flatnonzero((enter < leave) & (enter <= lidar.max_range))

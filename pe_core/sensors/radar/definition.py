@@ -74,7 +74,9 @@ def mode_signal(
     `angles` are azimuths and elevations in the sensor frame [rad], `loss_db` the loss of covers one
     way, None for none."""
     reach = mode.reach(*angles)
-    snr = signal_to_noise(rcs, distance, reach, radar.anchor, radar.attenuation_db_km)
+    snr = signal_to_noise(
+        rcs, distance, reach, radar.anchor, attenuation_db_km=radar.attenuation_db_km
+    )
     if loss_db is not None:
         snr = snr * np.exp(-math.log(10.0) / 5.0 * loss_db)  # both ways
     pd = counted(detection_probability(snr, radar.false_alarm))
@@ -98,7 +100,8 @@ def measure_voxels(sensor: Sensor, centers: Floats, side: float, fan: RayFan) ->
     """Return m (V,) of cubes with centres (V, 3) and a side [m]."""
     offsets = centers - (np.asarray(sensor.pose.position) + NUDGE_M)
     distance = np.maximum(np.sqrt(dot(offsets, offsets)), NEAR_M)
-    m, radar = np.zeros(len(centers)), radar_of(sensor)
+    m = np.zeros(len(centers))
+    radar = radar_of(sensor)
     reached = (distance <= radar.max_range) & (distance >= radar.min_range)
     cosine = math.cos(min(radar.cone, math.pi))
     if cosine > -1.0:  # cheap, and never too few
@@ -107,7 +110,7 @@ def measure_voxels(sensor: Sensor, centers: Floats, side: float, fan: RayFan) ->
     which = np.flatnonzero(reached)
     if len(which):
         angles = angles_of(sensor, offsets[which])
-        m[which] = measure_directions(radar, angles, distance[which], side, fan)
+        m[which] = measure_directions(radar, angles, distance[which], side, fan=fan)
     return m
 
 
@@ -134,9 +137,11 @@ def target_detections(
     for mode in radar.modes:
         ahead = mode.faces(angles[0])
         some = np.flatnonzero(ahead.any(axis=1) if ahead.ndim > 1 else ahead)
-        part, far = (angles[0][some], angles[1][some]), distance[some]
-        cells, loss = cells_of(mode, sizes, far), None if loss_db is None else loss_db[some]
-        m[some] += cells * mode_signal(radar, mode, part, far, rcs / cells, loss)
+        part = (angles[0][some], angles[1][some])
+        far = distance[some]
+        cells = cells_of(mode, sizes, far)
+        loss = None if loss_db is None else loss_db[some]
+        m[some] += cells * mode_signal(radar, mode, part, far, rcs=rcs / cells, loss_db=loss)
     return m if radar.list_length is None else np.minimum(m, radar.list_length)
 
 
@@ -168,8 +173,11 @@ def measure_objects(
     """Return m (N,) of objects."""
     boxes = PlacedBoxes.of(objects, sensor.pose.position)
     scenes = objects.scenes if traffic else np.arange(len(objects))
-    fan, everything = fan_of(sensor, vehicle), np.arange(len(objects))
-    return objects_seen(sensor, objects, fan, boxes, everything, lambda own: Rivals.of(scenes, own))
+    fan = fan_of(sensor, vehicle)
+    everything = np.arange(len(objects))
+    return objects_seen(
+        sensor, objects, fan, boxes, which=everything, near=lambda own: Rivals.of(scenes, own)
+    )
 
 
 def objects_seen(
@@ -179,7 +187,7 @@ def objects_seen(
     m = np.zeros(len(objects))
     for some in blocks(len(which), OBJECTS_AT_ONCE):
         own = which[some]
-        m[own] = _block(sensor, objects, boxes, own, fan, near(own))
+        m[own] = _block(sensor, objects, boxes, own, fan=fan, near=near(own))
     return m
 
 
@@ -190,7 +198,8 @@ def _block(
     radar = radar_of(sensor)
     own_boxes = boxes.take(own)
     sizes, far, aspect = seen_sizes(own_boxes)
-    rcs, labels = np.zeros(len(own)), objects.labels[own]
+    rcs = np.zeros(len(own))
+    labels = objects.labels[own]
     for number in np.unique(labels).tolist():
         some = labels == number
         reflectivity = radar.reflectivity(objects.class_names[number])
@@ -200,10 +209,13 @@ def _block(
     angles = angles_of(sensor, sides.directions)
     free, loss = seen_through(fan, angles, sides.distance)
     free &= ~behind_others(boxes, near, sides)
-    m, missed = np.zeros(len(own)), np.ones(len(own))
+    m = np.zeros(len(own))
+    missed = np.ones(len(own))
     for mode in radar.modes:
         cells = cells_of(mode, sizes, far)
-        pd = mode_signal(radar, mode, angles, sides.distance, (rcs / cells)[sides.item], loss)
+        pd = mode_signal(
+            radar, mode, angles, sides.distance, rcs=(rcs / cells)[sides.item], loss_db=loss
+        )
         mean = silhouette.mean(free * pd, len(own))
         m += cells * mean
         missed *= np.maximum(1.0 - mean, 0.0) ** cells  # at most so often no cell detects it
@@ -233,7 +245,8 @@ class _BodyOutline:
     def mean(self, values: Floats, count: int) -> Floats:
         """Return the mean of values (R,) over the silhouettes of `count` boxes; of a cautious radar
         a lower bound."""
-        items, solid = self.rays.item, self.solid
+        items = self.rays.item
+        solid = self.solid
         if self.is_cautious:
             items = items[:: (SIDE_PATCHES + 1) ** 2].repeat(SIDE_PATCHES**2)
             solid = np.mean(_corners_of_patches(solid), axis=0)
@@ -273,7 +286,7 @@ def measure_view(sensor: Sensor, view: ObjectView, fan: RayFan) -> Floats:
             return Rivals.of(alone, own)
         return Rivals.near(boxes, objects.scenes, balls, own)
 
-    return objects_seen(sensor, objects, fan, boxes, which, near)
+    return objects_seen(sensor, objects, fan, boxes, which=which, near=near)
 
 
 def measure_columns(
@@ -291,7 +304,7 @@ def measure_columns(
     )
     angles = np.arctan2(left, ahead), np.arctan2(up, np.sqrt(ahead * ahead + left * left))
     distance = np.maximum(np.sqrt(x * x + y * y + z * z), NEAR_M)
-    return measure_directions(radar_of(sensor), angles, distance, side, fan)
+    return measure_directions(radar_of(sensor), angles, distance, side, fan=fan)
 
 
 def detects_points(sensor: Sensor, points: Floats, fan: RayFan) -> Flags:
@@ -305,7 +318,7 @@ def detects_points(sensor: Sensor, points: Floats, fan: RayFan) -> Flags:
     rcs = np.full(len(points), 10.0 ** (LOW_DBSM["pedestrian"] / 10.0))
     found = np.zeros(len(points), bool)
     for mode in radar.modes:
-        pd = mode_signal(radar, mode, angles, distance, rcs, loss)
+        pd = mode_signal(radar, mode, angles, distance, rcs=rcs, loss_db=loss)
         found |= pd >= radar.detection_probability * (1.0 - 1e-12)
     return found & free
 

@@ -52,8 +52,12 @@ CAR_CURVE = OBJECT_CURVES[TARGET]
 VOXEL_CURVE = ApCurve(CAR_CURVE.a, CAR_CURVE.b + CAR_CURVE.a * math.log(VOXELS_A_CAR))
 """The curve of voxels whose AP is that of the reference car they are part of."""
 OWN = (
-    *("reference_rcs_dbsm", "detection_probability", "false_alarm", "list_length"),
-    *("cover_loss_db", "attenuation_db_km"),
+    "reference_rcs_dbsm",
+    "detection_probability",
+    "false_alarm",
+    "list_length",
+    "cover_loss_db",
+    "attenuation_db_km",
 )
 """Keys that are fields of the model."""
 MODE_FIELDS = {
@@ -141,7 +145,8 @@ def _mode_table(mode: RadarMode) -> dict[str, Any]:
 def figures(model: Radar) -> list[str]:
     """Return the figures of each mode, and those of the radar, a line each."""
     lines = [f"{mode.name:<15} {_mode_text(mode)}" for mode in model.modes]
-    rcs, pd = model.reference_rcs_dbsm, model.detection_probability
+    rcs = model.reference_rcs_dbsm
+    pd = model.detection_probability
     lines.append(f"reference       {rcs:g} dBsm at Pd {pd:g}, Pfa {model.false_alarm:g}")
     if model.list_length is not None:
         lines.append(f"list            {model.list_length} detections")
@@ -152,8 +157,10 @@ def figures(model: Radar) -> list[str]:
 
 def _mode_text(mode: RadarMode) -> str:
     """Return the figures of a mode in one line."""
-    left, right = math.degrees(mode.azimuths[0]), math.degrees(mode.azimuths[-1])
-    low, high = math.degrees(mode.elevations[0]), math.degrees(mode.elevations[-1])
+    left = math.degrees(mode.azimuths[0])
+    right = math.degrees(mode.azimuths[-1])
+    low = math.degrees(mode.elevations[0])
+    high = math.degrees(mode.elevations[-1])
     cells = [] if mode.range_resolution is None else [f"{mode.range_resolution:g} m"]
     for angle in (mode.azimuth_resolution, mode.elevation_resolution):
         cells += [] if angle is None else [f"{math.degrees(angle):g} deg"]
@@ -193,7 +200,8 @@ def covers_met(sensor: Sensor, vehicle: Vehicle) -> Mapping[str, tuple[float, fl
 
 def field_picture(sensor: Sensor, vehicle: Vehicle | None) -> FieldPicture:
     """Return the expected detections of a reference car by range and azimuth."""
-    radar, fan = radar_of(sensor), fan_of(sensor, vehicle)
+    radar = radar_of(sensor)
+    fan = fan_of(sensor, vehicle)
 
     def measured(centers: Floats) -> tuple[Floats, Floats]:
         offsets = centers - np.asarray(sensor.pose.position)
@@ -204,7 +212,7 @@ def field_picture(sensor: Sensor, vehicle: Vehicle | None) -> FieldPicture:
         return np.where(free, m, 0.0), target_detections(radar, angles, distance, None)
 
     target = TARGET, SIZES[TARGET][2] / 2.0
-    return field_picture_of(sensor, radar.window, radar.max_range, target, measured)
+    return field_picture_of(sensor, radar.window, radar.max_range, target, measured=measured)
 
 
 RADAR = Kind(

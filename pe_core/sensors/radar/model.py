@@ -34,7 +34,8 @@ LOSS = Number(0.0, 100.0, unit="dB")
 ATTENUATION = Number(0.0, 1e4, unit="dB/km")
 BANDWIDTH = Number(0.1, cap=1e6, unit="MHz", noun="bandwidth")
 LIST = Whole(1, 1_000_000, "detections")
-MAX_AZIMUTH_DEG, MAX_ELEVATION_DEG = 180.0, 89.0
+MAX_AZIMUTH_DEG = 180.0
+MAX_ELEVATION_DEG = 89.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,11 +75,12 @@ class RadarMode:
 
     def __post_init__(self) -> None:
         name = A_NAME.checked("radar", "mode.name", self.name)
-        who, put = f"mode {name!r}", object.__setattr__
+        who = f"mode {name!r}"
+        put = object.__setattr__
         azimuths = _angles(who, "azimuth_deg", self.azimuths, MAX_AZIMUTH_DEG)
         elevations = _angles(who, "elevation_deg", self.elevations, MAX_ELEVATION_DEG)
-        ranges = _one_each(who, "range_m", self.ranges, len(azimuths), RANGE)
-        scales = _one_each(who, "elevation_scale", self.scales, len(elevations), SCALE)
+        ranges = _one_each(who, "range_m", self.ranges, len(azimuths), rule=RANGE)
+        scales = _one_each(who, "elevation_scale", self.scales, len(elevations), rule=SCALE)
         far = self.max_range
         far = float(ranges.max()) if far is None else RANGE.checked(who, "max_range_m", far)
         near = MIN_RANGE.checked(who, "min_range_m", self.min_range) + 0.0
@@ -86,7 +88,10 @@ class RadarMode:
             found = f"{near:g}"
             raise InputError(who, "min_range_m", f"a length below {far:g} m", found)
         checked = {
-            **{"azimuths": azimuths, "ranges": ranges, "elevations": elevations, "scales": scales},
+            "azimuths": azimuths,
+            "ranges": ranges,
+            "elevations": elevations,
+            "scales": scales,
             "min_range": near,
             "max_range": far,
         }
@@ -155,7 +160,8 @@ class Radar(SensorModel):
     is_cautious: bool = False
 
     def __post_init__(self) -> None:
-        name, put = A_NAME.checked("radar", "name", self.name), object.__setattr__
+        name = A_NAME.checked("radar", "name", self.name)
+        put = object.__setattr__
         modes = tuple(self.modes)
         if not modes:
             raise InputError(name, "mode", "at least one mode", "none")
@@ -218,7 +224,8 @@ class Radar(SensorModel):
     def cone(self) -> float:
         """Half the angle of a cone round the axis that contains the field of view [rad]."""
         (left, right), (low, high) = self.window
-        across, up = max(abs(left), abs(right)), max(abs(low), abs(high))
+        across = max(abs(left), abs(right))
+        up = max(abs(low), abs(high))
         return across if across >= math.pi / 2.0 else math.acos(math.cos(across) * math.cos(up))
 
 

@@ -68,7 +68,8 @@ class Ultrasonic(SensorModel):
     max_incidence: float = RIGHT_ANGLE
 
     def __post_init__(self) -> None:
-        name, put = A_NAME.checked("ultrasonic", "name", self.name), object.__setattr__
+        name = A_NAME.checked("ultrasonic", "name", self.name)
+        put = object.__setattr__
         near, far = checked_ranges(name, self.min_range, self.max_range, RANGE)
         for key, rule in (("hfov", CONE), ("vfov", CONE), ("max_incidence", INCIDENCE)):
             put(self, key, rule.checked(name, key, getattr(self, key)))
@@ -78,7 +79,8 @@ class Ultrasonic(SensorModel):
     @property
     def window(self) -> AngleWindow:
         """Azimuths and elevations between which the cone is [rad]."""
-        across, up = self.hfov / 2.0, self.vfov / 2.0
+        across = self.hfov / 2.0
+        up = self.vfov / 2.0
         return (-across, across), (-up, up)
 
 
@@ -110,7 +112,8 @@ def returns_echo(sensor: Sensor, fan: RayFan, offsets: Floats) -> Flags:
 
 def in_cone(model: Ultrasonic, azimuth: Floats, elevation: Floats) -> Flags:
     """Whether directions (N,) are in the elliptic cone."""
-    across, up = azimuth / (model.hfov / 2.0), elevation / (model.vfov / 2.0)
+    across = azimuth / (model.hfov / 2.0)
+    up = elevation / (model.vfov / 2.0)
     return np.asarray(across * across + up * up <= 1.0)
 
 
@@ -129,7 +132,8 @@ def measure_objects(
 
 def objects_heard(sensor: Sensor, objects: Objects, fan: RayFan, traffic: bool) -> Floats:
     """Return m (N,) of objects by the rays of a fan: only those near the sensor can be heard."""
-    model, boxes = ultrasonic_of(sensor), PlacedBoxes.of(objects, sensor.pose.position)
+    model = ultrasonic_of(sensor)
+    boxes = PlacedBoxes.of(objects, sensor.pose.position)
     gap = np.maximum(np.abs(boxes.offsets) - boxes.halves, 0.0)
     near = np.flatnonzero(dot(gap, gap) <= model.max_range**2)
     m = np.zeros(len(objects))
@@ -187,7 +191,8 @@ def measure_columns(
     sensor: Sensor, columns: Floats, heights: Floats, side: float, fan: RayFan
 ) -> Floats:
     """Return m (C, Z) of cubes in columns (C, 2) at heights (Z,) [m]: 1 or 0."""
-    up, across = len(heights), len(columns)
+    up = len(heights)
+    across = len(columns)
     centers = np.column_stack([np.repeat(columns, up, axis=0), np.tile(heights, across)])
     return measure_voxels(sensor, centers, side, fan).reshape(across, up)
 
@@ -280,7 +285,8 @@ def missed(sensor: Sensor, center: Floats, side: float) -> str:
 
 def field_picture(sensor: Sensor, vehicle: Vehicle | None) -> FieldPicture:
     """Return where a thin post at the sensor's height returns an echo."""
-    model, position = ultrasonic_of(sensor), np.asarray(sensor.pose.position)
+    model = ultrasonic_of(sensor)
+    position = np.asarray(sensor.pose.position)
     fans = fan_of(sensor, vehicle), RayFan.free(model.window)
 
     def measured(centers: Floats) -> tuple[Floats, Floats]:
@@ -288,7 +294,7 @@ def field_picture(sensor: Sensor, vehicle: Vehicle | None) -> FieldPicture:
         return with_body.astype(float), without.astype(float)
 
     target = "post", float(position[2])
-    return field_picture_of(sensor, model.window, model.max_range, target, measured)
+    return field_picture_of(sensor, model.window, model.max_range, target, measured=measured)
 
 
 ULTRASONIC = Kind(

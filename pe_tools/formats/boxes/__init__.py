@@ -63,7 +63,8 @@ def _read_folder(path: Path) -> list[Labels]:
 
 def _read_file(path: Path, may_be_empty: bool = False) -> Labels:
     """Read one file. In a folder an empty one is a frame without objects."""
-    source, data = str(path), read_bytes(path, LABEL_BYTES)
+    source = str(path)
+    data = read_bytes(path, LABEL_BYTES)
     if is_binary(data):
         raise InputError(source, "file", LAYOUTS, "binary data")
     text = decode_text(data)

@@ -45,11 +45,13 @@ def read_kitti(source: str, lines: Sequence[tuple[int, str]]) -> Labels:
     skipped = 2 if tracking else 0
     expected = "frame, id and 15 columns" if tracking else "15 columns"
     for number, line in lines:
-        where, cells = f"line {number}", line.split()
+        where = f"line {number}"
+        cells = line.split()
         if len(cells) - skipped not in (COLUMNS, COLUMNS + 1):
             kitti = f"KITTI's {expected}, and perhaps a score"
             raise InputError(source, where, kitti, f"{len(cells)} columns")
-        name, cells = cells[skipped].lower(), cells[skipped:]
+        name = cells[skipped].lower()
+        cells = cells[skipped:]
         if name == UNLABELLED:
             labels.left_out["marked DontCare"] += 1
             continue

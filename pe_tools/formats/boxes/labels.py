@@ -61,7 +61,16 @@ class Labels:
         try:
             x, y, z, length, width, height, yaw = columns
             return Boxes(
-                names, x, y, z, length, width, height, yaw, origin=origin, left_out=left_out
+                names=names,
+                x=x,
+                y=y,
+                z=z,
+                length=length,
+                width=width,
+                height=height,
+                yaw=yaw,
+                origin=origin,
+                left_out=left_out,
             )
         except InputError as error:
             raise error.at(self.source) from None

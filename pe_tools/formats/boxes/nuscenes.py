@@ -82,9 +82,9 @@ def _class_of(name: str) -> str | None:
 
 
 def _row(source: str, where: str, box: Mapping[str, Any]) -> BoxNumbers:
-    x, y, z = _numbers(source, where, box, "translation", 3)
-    width, length, height = _numbers(source, where, box, "size", 3)
-    w, i, j, k = _numbers(source, where, box, "rotation", 4)
+    x, y, z = _numbers(source, where, box, "translation", count=3)
+    width, length, height = _numbers(source, where, box, "size", count=3)
+    w, i, j, k = _numbers(source, where, box, "rotation", count=4)
     if not any((w, i, j, k)):
         raise InputError(source, f"{where}.rotation", "a quaternion", "zeros alone")
     yaw = math.atan2(2.0 * (w * k + i * j), w * w + i * i - j * j - k * k)

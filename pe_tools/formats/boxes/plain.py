@@ -19,7 +19,7 @@ def read_csv(source: str, lines: Sequence[tuple[int, str]]) -> Labels:
     """Read boxes from numbered lines; columns are in any order, other columns are ignored."""
     separator, rows = separated(lines)
     labels = Labels(source)
-    for where, cells in csv_rows(source, rows, (CLASS, *COLUMNS), separator, _column):
+    for where, cells in csv_rows(source, rows, (CLASS, *COLUMNS), separator, column=_column):
         x, y, z, length, width, height, yaw = (
             parse_number(source, where, column, cells[column]) for column in COLUMNS
         )

@@ -79,7 +79,8 @@ def read_mesh(path: str | Path, axes: MeshAxes | None = None) -> Mesh:
         if row is None:
             mesh, said = read_with_plugin(path, data)
         else:
-            mesh, said = row.read(path, data), row.axes(data)
+            mesh = row.read(path, data)
+            said = row.axes(data)
         fit = replace(mesh, part_names=fit_names(mesh.part_names))
         return oriented(str(path), fit, said, axes or MeshAxes())
 

@@ -22,6 +22,7 @@ _COMMENT = re.compile(
     rb"^#.*?([+-]?)([xyz])[ -]*(forward|up)\b(?:.*?([+-]?)([xyz])[ -]*(up)\b)?",
     re.IGNORECASE | re.MULTILINE,
 )
+_TEXT = re.compile(r"faces ([+-][xyz]) \((.*?)\), up is ([+-][xyz]) \((.*?)\)")
 
 
 class SaidAxes(NamedTuple):
@@ -47,7 +48,8 @@ def said_in_comments(data: bytes) -> SaidAxes:
             if word:
                 name = f"{(sign or b'+').decode()}{axis.decode().lower()}"
                 axis_by_word.setdefault(word.decode().lower(), name)
-    up, forward = axis_by_word.get("up"), axis_by_word.get("forward")
+    up = axis_by_word.get("up")
+    forward = axis_by_word.get("forward")
     if up is None or forward is None or up[1] == forward[1]:
         return UNSAID
     return SaidAxes(up, "file", forward, "file")
@@ -65,7 +67,8 @@ def oriented(source: str, mesh: Mesh, said: SaidAxes, axes: MeshAxes) -> Mesh:
     if any(axes.rotation_deg or ()):
         turn = Pose.from_degrees((0, 0, 0), axes.rotation_deg or ())
         triangles = rotate(turn.ground_from_sensor, triangles)
-    up_by, forward_by = chosen.up_by or "assumed", chosen.forward_by or "assumed"
+    up_by = chosen.up_by or "assumed"
+    forward_by = chosen.forward_by or "assumed"
     text = f"faces {chosen.forward} ({forward_by}), up is {chosen.up} ({up_by})"
     return replace(mesh, triangles=triangles, axes="" if chosen == OURS else text)
 
@@ -122,7 +125,8 @@ def _turned(triangles: Floats, up: str, forward: str) -> Floats:
     """Triangles with forward, left, up as x, y, z; coordinates are only swapped and negated."""
     if (up, forward) == ("+z", "+x"):
         return triangles
-    ahead, above = _unit(forward), _unit(up)
+    ahead = _unit(forward)
+    above = _unit(up)
     turned = np.empty_like(triangles)
     for k, axis in enumerate((ahead, np.cross(above, ahead), above)):
         source = int(np.argmax(np.abs(axis)))
@@ -137,9 +141,6 @@ def _unit(name: str) -> NDArray[np.int64]:
     axis = np.zeros(3, np.int64)
     axis["xyz".index(name[1])] = 1 if name[0] == "+" else -1
     return axis
-
-
-_TEXT = re.compile(r"faces ([+-][xyz]) \((.*?)\), up is ([+-][xyz]) \((.*?)\)")
 
 
 def axes_in_text(text: str) -> SaidAxes:

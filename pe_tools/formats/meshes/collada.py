@@ -62,7 +62,7 @@ def read_dae(path: Path, data: bytes) -> FoundMesh:
     except Exception as error:  # errors of pycollada, and others that damaged files cause
         raise InputError(source, "file", "Collada", f"{type(error).__name__}: {error}") from error
     notes = mesh_notes(skipped, np.concatenate([np.zeros(0, np.int64), *few]), crossing)
-    return found(source, pieces, metres, up, notes)
+    return found(source, pieces, metres, up, notes=notes)
 
 
 def _tag(element: ElementTree.Element) -> str:

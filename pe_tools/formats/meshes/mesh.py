@@ -20,6 +20,9 @@ from pe_core.scene.mesh import Mesh
 from .axes import SaidAxes
 
 MAX_TRIANGLES = 25_000_000  # Maximum triangles of a mesh: cars have up to some millions
+INSTEAD = "?"  # Replacement of an unprintable character, and of a name without a printable one
+MAX_NUMBER_DIGITS = 12  # Characters kept free for a number behind a name
+MESH_PLUGIN = "mesh"
 
 
 def make_mesh(
@@ -86,10 +89,6 @@ def mesh_notes(skipped: Mapping[str, int], counts: NDArray[Any], crossing: int) 
     return tuple(notes)
 
 
-INSTEAD = "?"  # Replacement of an unprintable character, and of a name without a printable one
-MAX_NUMBER_DIGITS = 12  # Characters kept free for a number behind a name
-
-
 def fit_names(names: Sequence[str]) -> tuple[str, ...]:
     """Return a name for each of different names: printable, on one line and not too long. Valid
     names are unchanged. In other names `INSTEAD` replaces characters that cannot be printed (line
@@ -145,10 +144,7 @@ def found(
     triangles, parts = joined(pieces)
     if metres != 1.0:
         triangles = triangles * metres
-    return FoundMesh(triangles, parts, [piece.name for piece in pieces], up, notes)
-
-
-MESH_PLUGIN = "mesh"
+    return FoundMesh(triangles, parts, [piece.name for piece in pieces], up, notes=notes)
 
 
 class FoundMesh(NamedTuple):
@@ -168,10 +164,10 @@ def read_with_plugin(path: Path, data: bytes) -> tuple[Mesh, SaidAxes]:
     suffix = path.suffix.lower()
     hint = install_hint(MESH_PLUGIN, suffix[1:])
     expected = f"a reader for it ({hint}), or the mesh imported into Blender"
-    point, reader = required_plugin(MESH_PLUGIN, suffix[1:], str(path), "suffix", expected)
+    point, reader = required_plugin(MESH_PLUGIN, suffix[1:], str(path), "suffix", expected=expected)
     found = call_plugin(point, reader, path, data)
     if not isinstance(found, FoundMesh):
         raise InputError(plugin_name(point), "result", "a FoundMesh", shown(found))
-    mesh = make_mesh(str(path), found.triangles, found.parts, found.part_names, found.notes)
+    mesh = make_mesh(str(path), found.triangles, found.parts, found.part_names, notes=found.notes)
     forward = "+x" if found.up != "+x" else "+z"
     return mesh, SaidAxes(found.up, "file", forward, "")

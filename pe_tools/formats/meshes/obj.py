@@ -16,8 +16,10 @@ from .mesh import make_mesh, mesh_notes, require_room
 from .polygons import triangle_count, triangulate
 from .whole_numbers import refusing_unread_text
 
-VERTEX, FACE = b"v ", b"f "
-OBJECT, GROUP = b"o", b"g"
+VERTEX = b"v "
+FACE = b"f "
+OBJECT = b"o"
+GROUP = b"g"
 SKIPPED = {b"l": "line", b"p": "point", b"curv": "curve", b"curv2": "curve", b"surf": "surface"}
 """Statements with geometry that is no polygon, and what it is."""
 COMMENT_LINE = re.compile(rb"^[ \t]*#.*", re.MULTILINE)
@@ -52,7 +54,7 @@ def read_obj(path: Path, data: bytes) -> Mesh:
     names, labels = _labels(path.stem, lines, is_face)
     skipped = Counter(SKIPPED[word] for word in _other_words(lines) if word in SKIPPED)
     notes = mesh_notes(skipped, counts, found.crossing)
-    return make_mesh(source, found.triangles, labels[found.polygons], names, notes)
+    return make_mesh(source, found.triangles, labels[found.polygons], names, notes=notes)
 
 
 def _statements(data: bytes) -> list[bytes]:

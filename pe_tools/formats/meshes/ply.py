@@ -23,7 +23,8 @@ TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4"
 TYPES |= {"float": "f4", "double": "f8", "int8": "i1", "uint8": "u1", "int16": "i2"}
 TYPES |= {"uint16": "u2", "int32": "i4", "uint32": "u4", "float32": "f4", "float64": "f8"}
 CORNERS = ("vertex_indices", "vertex_index")
-POINTS, FACES = "vertex", "face"
+POINTS = "vertex"
+FACES = "face"
 SKIPPED = {"edge": "edge", "tristrips": "set of triangle strips"}
 """Elements with geometry that is no polygon, and what it is."""
 
@@ -111,7 +112,7 @@ def read_ply(path: Path, data: bytes) -> Mesh:
     require_room(source, triangle_count(counts))
     cut = triangulate(source, points[corners], counts)
     notes = mesh_notes(skipped, counts, cut.crossing)
-    return make_mesh(source, cut.triangles, np.zeros_like(cut.polygons), [path.stem], notes)
+    return make_mesh(source, cut.triangles, np.zeros_like(cut.polygons), [path.stem], notes=notes)
 
 
 def _header(source: str, data: bytes) -> tuple[list[_Element], _PlyBody]:

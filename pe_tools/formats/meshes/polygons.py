@@ -21,7 +21,9 @@ MAX_CONCAVE_CORNERS = 5_000  # Cutting ears takes time with the square of the co
 ON_LINE = 1e-12  # Product of two areas, of points that are within 1 of each other, that counts as 0
 CHUNK_CORNERS = 1 << 18  # Corners of the polygons that are worked on together
 ROUNDING = 1e-9  # Share of a polygon's area by which the areas of its triangles may differ
-EAR, FLAT = 1, 2  # A corner without area is cut off first: it may be the end of a spike
+# A corner without area is cut off first: it may be the end of a spike
+EAR = 1
+FLAT = 2
 CLOSED, OPEN, CONVEX, ANY = range(4)
 STRICTNESS = (CLOSED, CLOSED, OPEN, OPEN, CONVEX, ANY)
 """What an ear must be, level by level; each level begins with a count of all ears. No other corner
@@ -94,7 +96,8 @@ def joined_ring(rings: Sequence[Floats]) -> Corners:
     flat /= max(float(flat.max()), np.finfo(float).tiny)
     firsts = np.cumsum([0, *(len(ring) for ring in rings)])
     orders = [np.arange(a, b) for a, b in pairwise(firsts)]
-    outer, holes = orders[0], orders[1:]
+    outer = orders[0]
+    holes = orders[1:]
     following = np.concatenate([np.roll(order, -1) for order in orders])
     for hole in sorted(holes, key=lambda order: -flat[order, 0].max()):
         turned = hole if _area(flat[hole]) < 0.0 else hole[::-1]
@@ -110,7 +113,8 @@ def joined_ring(rings: Sequence[Floats]) -> Corners:
 def _bridge(outer: Floats, start: Floats, begins: Floats, ends: Floats) -> int:
     """Position in a ring (N, 2) of the nearest corner to which an edge from `start` meets none of
     the edges from `begins` (E, 2) to `ends`, and beside which the edge is inside the ring."""
-    before, after = np.roll(outer, 1, axis=0), np.roll(outer, -1, axis=0)
+    before = np.roll(outer, 1, axis=0)
+    after = np.roll(outer, -1, axis=0)
     for at in np.argsort(((outer - start) ** 2).sum(axis=1), kind="stable").tolist():
         there = outer[at]
         sides = _cross(there - start, begins - start) * _cross(there - start, ends - start)
@@ -187,7 +191,8 @@ def _plane(normal: Floats) -> tuple[int, int]:
     """Two coordinate axes in which a ring with this normal turns to the left. Points are only
     copied: corners on a line stay on a line, to the last bit."""
     across = int(np.argmax(np.abs(normal)))
-    u, v = (across + 1) % 3, (across + 2) % 3
+    u = (across + 1) % 3
+    v = (across + 2) % 3
     return (u, v) if normal[across] >= 0.0 else (v, u)
 
 
@@ -245,8 +250,8 @@ class _ClippedRings:
             np.tile(np.roll(order, 1), (count, 1)),
             np.tile(np.roll(order, -1), (count, 1)),
             np.ones((count, size), np.bool_),
-            np.zeros((count, size), np.int8),
-            np.zeros(count, np.int64),
+            ears=np.zeros((count, size), np.int8),
+            level=np.zeros(count, np.int64),
         )
 
     def count_ears(self, rows: Corners) -> None:
@@ -256,7 +261,8 @@ class _ClippedRings:
 
     def cut_off(self, rows: Corners, corner: Corners) -> Corners:
         """Cut an ear off each ring; return its corners (P, 3)."""
-        before, after = self.before[rows, corner], self.after[rows, corner]
+        before = self.before[rows, corner]
+        after = self.after[rows, corner]
         self.after[rows, before] = after
         self.before[rows, after] = before
         self.is_left[rows, corner] = False
@@ -286,7 +292,8 @@ def _inside(points: Floats, triangles: Floats, is_open: NDArray[np.bool_]) -> ND
     `is_open` (P, 1), on its border. Points at its corners are not."""
     inside = np.ones(points.shape[:2], np.bool_)
     for k in range(3):
-        begin, end = triangles[:, k, None], triangles[:, (k + 1) % 3, None]
+        begin = triangles[:, k, None]
+        end = triangles[:, (k + 1) % 3, None]
         side = _cross(end - begin, points - begin)
         inside &= (side > 0.0) | ((side == 0.0) & ~is_open)
         inside &= (points != begin).any(axis=2)

@@ -43,7 +43,7 @@ def read_usd(path: Path, _data: bytes) -> FoundMesh:
         del diagnostics
     up = "+y" if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.y else "+z"
     notes = mesh_notes(reading.skipped, np.array(reading.counts), reading.crossing)
-    return found(source, pieces, UsdGeom.GetStageMetersPerUnit(stage), up, notes)
+    return found(source, pieces, UsdGeom.GetStageMetersPerUnit(stage), up, notes=notes)
 
 
 @dataclass(slots=True)

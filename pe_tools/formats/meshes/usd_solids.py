@@ -29,24 +29,28 @@ def _sphere(of: Attributes) -> Floats:
 
 
 def _cylinder(of: Attributes) -> Floats:
-    radius, half = float(of("radius")), float(of("height")) / 2.0
+    radius = float(of("radius"))
+    half = float(of("height")) / 2.0
     profile = np.array([(0.0, -half), (radius, -half), (radius, half), (0.0, half)])
     return _along(_turned(profile), of("axis"))
 
 
 def _cone(of: Attributes) -> Floats:
-    radius, half = float(of("radius")), float(of("height")) / 2.0
+    radius = float(of("radius"))
+    half = float(of("height")) / 2.0
     return _along(_turned(np.array([(0.0, -half), (radius, -half), (0.0, half)])), of("axis"))
 
 
 def _capsule(of: Attributes) -> Floats:
-    radius, half = float(of("radius")), float(of("height")) / 2.0
+    radius = float(of("radius"))
+    half = float(of("height")) / 2.0
     ends = _arc(radius, -half, -90.0, 0.0), _arc(radius, half, 0.0, 90.0)
     return _along(_turned(np.concatenate(ends)), of("axis"))
 
 
 def _plane(of: Attributes) -> Floats:
-    x, y = float(of("width")) / 2.0, float(of("length")) / 2.0
+    x = float(of("width")) / 2.0
+    y = float(of("length")) / 2.0
     corners = np.array([(-x, -y, 0.0), (x, -y, 0.0), (x, y, 0.0), (-x, y, 0.0)])
     return _along(corners[[(0, 1, 2), (0, 2, 3)]], of("axis"))
 
@@ -76,7 +80,8 @@ def _turned(profile: Floats) -> Floats:
     points = np.empty((len(profile), len(ring), 3))
     points[..., :2] = profile[:, None, :1] * ring
     points[..., 2] = profile[:, None, 1]
-    low, high = points[:-1], points[1:]
+    low = points[:-1]
+    high = points[1:]
     first = np.stack([low[:, :-1], low[:, 1:], high[:, 1:]], axis=2).reshape(-1, 3, 3)
     second = np.stack([low[:, :-1], high[:, 1:], high[:, :-1]], axis=2).reshape(-1, 3, 3)
     return np.concatenate([first, second])

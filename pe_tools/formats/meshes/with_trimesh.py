@@ -18,7 +18,9 @@ from .gltf_instances import INSTANCING, instance_count, with_instances_as_nodes
 from .mesh import Piece, fit_names, joined, make_mesh, mesh_notes, placed, require_room
 from .whole_numbers import refusing_unread_text
 
-MAX_NODES, MAX_PLACED, MAX_JSON_BYTES = 200_000, 20_000, 32 << 20
+MAX_NODES = 200_000
+MAX_PLACED = 20_000
+MAX_JSON_BYTES = 32 << 20
 """Limits of a glTF scene: nodes, surfaces of all that have a mesh, and bytes of JSON."""
 UNNAMED = re.compile(r"geometry(_\d+)?|GLTF(_\d+)?")  # Names that trimesh gives to what has none
 NO_TRIANGLES = {"PointCloud": "set of points", "Path3D": "set of lines"}
@@ -40,7 +42,8 @@ def read_scene(path: Path, data: bytes) -> Mesh:
     also reverses the triangles. Whatever trimesh raises becomes an `InputError`."""
     import trimesh
 
-    source, kind = str(path), path.suffix[1:].lower()
+    source = str(path)
+    kind = path.suffix[1:].lower()
     options: dict[str, Any] = {}
     if kind in _PREPARED:
         data, options = _PREPARED[kind](source, data)
@@ -60,7 +63,7 @@ def read_scene(path: Path, data: bytes) -> Mesh:
     triangles, parts = joined(pieces)
     names = [path.stem if UNNAMED.fullmatch(name) else name for name, _ in pieces]
     notes = mesh_notes(_skipped(scene), np.zeros(0), 0)
-    return make_mesh(source, triangles, parts, names, notes)
+    return make_mesh(source, triangles, parts, names, notes=notes)
 
 
 def _placements(graph: Any) -> Iterator[tuple[str, Floats, str]]:
@@ -69,7 +72,8 @@ def _placements(graph: Any) -> Iterator[tuple[str, Floats, str]]:
     links = graph.transforms
     worlds = {graph.base_frame: np.eye(4)}
     for placed_node in graph.nodes_geometry:
-        node, way = placed_node, []
+        node = placed_node
+        way = []
         while node not in worlds:
             way.append(node)
             node = links.parents[node]

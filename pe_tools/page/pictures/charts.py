@@ -9,6 +9,7 @@ from ..markup import MINUS, number
 from .svg import Canvas
 
 AxisMap = Callable[[float], float]  # Maps a value to its position on the drawing
+Points = Sequence[tuple[float, float]]
 
 
 def round_steps() -> Iterator[float]:
@@ -31,7 +32,8 @@ def ticks(low: float, high: float, most: int = 4) -> list[float]:
         high = low + max(abs(low), 1.0) * 1e-3
     least = (high - low) / most * (1.0 - 1e-9)
     step = next(step for step in round_steps() if step >= least)
-    first, last = math.floor(low / step), math.ceil(high / step)
+    first = math.floor(low / step)
+    last = math.ceil(high / step)
     return [round(k * step, 12) for k in range(first, last + 1)]
 
 
@@ -40,7 +42,12 @@ def step_curve(
 ) -> Markup:
     """Return a step curve: each value holds until the next point, the last until `end`. `points`
     are (x, y) in order of x; `x` and `y` are labels of the axes."""
-    width, height, left, right, top, bottom = 720.0, 260.0, 54.0, 706.0, 14.0, 222.0
+    width = 720.0
+    height = 260.0
+    left = 54.0
+    right = 706.0
+    top = 14.0
+    bottom = 222.0
     canvas = Canvas(width, height, alt, "curve")
     values = [value for _, value in points]
     tick_values = ticks(min(values), max(values))
@@ -58,7 +65,8 @@ def step_curve(
             canvas.text(to_x(tick), height - 22.0, f"{tick:,.0f}", text_anchor="middle")
     start = to_y(values[0])
     path = "".join(f"H{to_x(at):.1f}V{to_y(value):.1f}" for at, value in points[1:])
-    begin, stop = f"M{to_x(first):.1f} {start:.1f}", f"H{to_x(max(end, points[-1][0])):.1f}"
+    begin = f"M{to_x(first):.1f} {start:.1f}"
+    stop = f"H{to_x(max(end, points[-1][0])):.1f}"
     canvas.add("path", css="start", d=f"M{left:.0f} {start:.1f}H{right:.0f}")
     canvas.add("path", css="step", d=f"{begin}{path}{stop}")
     canvas.add("circle", css="end", cx=to_x(points[-1][0]), cy=to_y(values[-1]), r=4.0)
@@ -67,12 +75,13 @@ def step_curve(
     return canvas.svg()
 
 
-Points = Sequence[tuple[float, float]]
-
-
 def pareto_plot(front: Points, others: Points, labels: tuple[str, str], alt: str) -> Markup:
     """Return designs by two objectives: those of the front with their numbers."""
-    size, left, right, top, bottom = 330.0, 62.0, 316.0, 12.0, 286.0
+    size = 330.0
+    left = 62.0
+    right = 316.0
+    top = 12.0
+    bottom = 286.0
     canvas = Canvas(size, size, alt, "fronts")
     x_ticks, y_ticks = (ticks_around([point[k] for point in (*others, *front)]) for k in (0, 1))
     to_x = linear_map(x_ticks[0], x_ticks[-1], left, right)
@@ -98,10 +107,12 @@ def pareto_plot(front: Points, others: Points, labels: tuple[str, str], alt: str
 
 def ticks_around(values: Sequence[float]) -> list[float]:
     """Return a few round numbers, the first below all values and the last above."""
-    low, high = min(values), max(values)
+    low = min(values)
+    high = max(values)
     width = (high - low) or max(abs(high), 1.0) * 0.1
     step = next(step for step in round_steps() if width / step <= 4)
-    first, last = math.ceil(low / step - 1e-9) - 1, math.floor(high / step + 1e-9) + 1
+    first = math.ceil(low / step - 1e-9) - 1
+    last = math.floor(high / step + 1e-9) + 1
     return [round(k * step, 12) for k in range(first, last + 1)]
 
 

@@ -18,18 +18,28 @@ from .svg import Canvas
 
 PlanBounds = tuple[tuple[float, float], tuple[float, float]]
 
-WIDTH, MAX_HEIGHT = 440.0, 330.0
-OUTLINE_M, MAX_SQUARES = 0.04, 600
+WIDTH = 440.0
+MAX_HEIGHT = 330.0
+OUTLINE_M = 0.04
+MAX_SQUARES = 600
 """Cell size of the grid an outline is computed on, and the limit of cells along a side."""
 TICKS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)
-MAX_NUMBERS, NUMBER_HEIGHT = 9, 16.0
+MAX_NUMBERS = 9
+NUMBER_HEIGHT = 16.0
 """Numbers along x at most, and distance of two numbers along y at least."""
 RINGS = (10.0, 40.0)  # Radii between the zones near, middle and far [m]
-KEY_HEIGHT, KEY_WIDTH = 34.0, 210.0
+KEY_HEIGHT = 34.0
+KEY_WIDTH = 210.0
 COUNT_NAMES = ("none", "1", "2", "3 or more")
 MAX_CHANGE = 8.0  # Difference at the ends of the colour scale [nats]
-LEFT, RIGHT, TOP, BOTTOM = 36.0, 20.0, 8.0, 24.0
+LEFT = 36.0
+RIGHT = 20.0
+TOP = 8.0
+BOTTOM = 24.0
 """Space around a plan for its numbers."""
+ABOUT_ENTROPY = "in nats, averaged over height as in the score; lower is better"
+SEEN = "share of the height that at least one sensor sees"
+TWO_KINDS = "that see a location; two kinds fail in different ways"
 
 
 class PlanDrawing:
@@ -39,11 +49,14 @@ class PlanDrawing:
         self, bounds: PlanBounds, alt: str, below: float = 0.0, width: float = WIDTH
     ) -> None:
         (self.x0, self.x1), (self.y0, self.y1) = bounds
-        length, breadth = self.x1 - self.x0, self.y1 - self.y0
+        length = self.x1 - self.x0
+        breadth = self.y1 - self.y0
         room = width - LEFT - RIGHT
         self.scale = min(room / length, MAX_HEIGHT / breadth)
-        self.width, self.height = length * self.scale, breadth * self.scale
-        self.left, self.top = LEFT + (room - self.width) / 2.0, TOP
+        self.width = length * self.scale
+        self.height = breadth * self.scale
+        self.left = LEFT + (room - self.width) / 2.0
+        self.top = TOP
         self.bottom = self.top + self.height
         self.canvas = Canvas(width, self.bottom + BOTTOM + below, alt)
 
@@ -120,7 +133,8 @@ def outline_of(vehicle: pe.Vehicle) -> tuple[Floats, ...]:
 
 
 def _ticks(low: float, high: float, step: float) -> list[float]:
-    first, last = math.ceil(low / step), math.floor(high / step)
+    first = math.ceil(low / step)
+    last = math.floor(high / step)
     return [k * step for k in range(first, last + 1)]
 
 
@@ -132,12 +146,9 @@ class MapLayer(NamedTuple):
     quantity: str = graphics.SENSORS
 
 
-ABOUT_ENTROPY = "in nats, averaged over height as in the score; lower is better"
 ENTROPY = MapLayer("Entropy", ABOUT_ENTROPY, graphics.ENTROPY)
-SEEN = "share of the height that at least one sensor sees"
 COVERAGE = MapLayer("Coverage", SEEN, graphics.COVERAGE)
 SENSORS = MapLayer("Number of sensors", "that see a location at any height")
-TWO_KINDS = "that see a location; two kinds fail in different ways"
 KINDS = MapLayer("Number of sensor kinds", TWO_KINDS)
 LAYERS = (ENTROPY, COVERAGE, SENSORS, KINDS)
 
@@ -153,7 +164,7 @@ def ground_map(
     if layer.quantity == graphics.SENSORS:
         classes = zip(key.classes, COUNT_NAMES, strict=True)
         key = replace(key, classes=tuple((color, name) for (color, _), name in classes))
-    return _map(ground, shape.sheet.image, key, key.values, vehicle, alt)
+    return _map(ground, shape.sheet.image, key, key.values, vehicle=vehicle, alt=alt)
 
 
 def difference_map(
@@ -166,10 +177,11 @@ def difference_map(
     """Return a map of where the second rig has less entropy (blue) or more (orange) than the first.
     `ends` are the texts at the ends of the key. Both arguments must have the same cells."""
     change = np.clip((second.entropy - first.entropy) / MAX_CHANGE, -1.0, 1.0).T
-    known, scale = np.isfinite(change), graphics.DIFFERENCE[::-1]
+    known = np.isfinite(change)
+    scale = graphics.DIFFERENCE[::-1]
     colors = graphics.on_scale(0.5 + 0.5 * np.where(known, change, 0.0), scale)
     key = graphics.ColorKey("", graphics.swatches_of(scale))
-    return _map(second, np.dstack([colors, known]), key, ends, vehicle, alt)
+    return _map(second, np.dstack([colors, known]), key, ends, vehicle=vehicle, alt=alt)
 
 
 def _map(

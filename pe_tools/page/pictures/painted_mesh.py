@@ -86,7 +86,8 @@ def loft(rings: Sequence[Floats]) -> Floats:
     """(F, 3, 3) triangles between rings of equally many points (N, 3), without degenerate ones."""
     faces = []
     for low, high in pairwise(rings):
-        low_next, high_next = np.roll(low, -1, axis=0), np.roll(high, -1, axis=0)
+        low_next = np.roll(low, -1, axis=0)
+        high_next = np.roll(high, -1, axis=0)
         faces += [np.stack([low, low_next, high_next], 1), np.stack([low, high_next, high], 1)]
     triangles = np.concatenate(faces)
     normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
@@ -95,10 +96,13 @@ def loft(rings: Sequence[Floats]) -> Floats:
 
 def rounded_box(half: Floats) -> Floats:
     """(F, 3, 3) triangles of a box of half sizes (3,) with bevelled edges."""
-    (_, _, z), cut, rings = half.tolist(), BEVEL * float(half.min()), []
+    _, _, z = half.tolist()
+    cut = BEVEL * float(half.min())
+    rings = []
     for inset, height in ((cut, -z), (0.0, cut - z), (0.0, z - cut), (cut, z)):
         x, y = (half[:2] - inset).tolist()
-        a, b = x - cut, y - cut
+        a = x - cut
+        b = y - cut
         flat = [(x, -b), (x, b), (a, y), (-a, y), (-x, b), (-x, -b), (-a, -y), (a, -y)]
         rings.append(np.array([(*point, height) for point in flat]))
     return capped(rings)

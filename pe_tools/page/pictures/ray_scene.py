@@ -12,7 +12,9 @@ from pe_core.base.arrays import Floats, Ints
 
 from .painted_mesh import PaintedMesh
 
-NOTHING, SKY, GROUND = -2, -1, 0
+NOTHING = -2
+SKY = -1
+GROUND = 0
 """Surfaces of rays that meet no solid: outside the lens, sky, ground. Solids count from 1."""
 PixelRays = Callable[[Floats, Floats], Floats]
 """Maps positions in the picture (right, down) [px] to unit directions (N, 3), ground frame; NaN
@@ -57,11 +59,12 @@ class Viewpoint:
         focal = self.focal_px(width)
 
         def rays_through(across: Floats, down: Floats) -> Floats:
-            x, y = (across - width / 2.0) / focal, (height / 2.0 - down) / focal
+            x = (across - width / 2.0) / focal
+            y = (height / 2.0 - down) / focal
             rays = ahead + x[:, None] * right + y[:, None] * up
             return rays / np.sqrt((rays * rays).sum(axis=1))[:, None]
 
-        return RayCamera(np.array(self.eye), width, height, rays_through, 1.0 / focal)
+        return RayCamera(np.array(self.eye), width, height, rays_through, pixel_rad=1.0 / focal)
 
     def focal_px(self, width: int) -> float:
         """Return the focal length of a picture of that width [px]."""
@@ -99,13 +102,16 @@ class RayScene:
 
     def first_hits(self, camera: RayCamera, directions: Floats) -> RayHits:
         """Return the first hits of rays from a camera in unit directions (N, 3) or NaN."""
-        eye, count = camera.eye, len(directions)
+        eye = camera.eye
+        count = len(directions)
         valid = np.isfinite(directions[:, 0])
         surface = np.where(valid, SKY, NOTHING)
-        distance, face = np.full(count, np.inf), np.full(count, -1)
+        distance = np.full(count, np.inf)
+        face = np.full(count, -1)
         down = valid & (directions[:, 2] < -1e-9)
         if eye[2] > 0.0:
-            distance[down], surface[down] = -eye[2] / directions[down, 2], GROUND
+            distance[down] = -eye[2] / directions[down, 2]
+            surface[down] = GROUND
         valid_rays = np.flatnonzero(valid)
         rays = directions[valid_rays]
         for number, solid in enumerate(self.solids, 1):
@@ -115,10 +121,13 @@ class RayScene:
                 hits = solid.mesh.first_hit_from(eye, rays)
             nearer = hits.distance < distance[valid_rays]
             at = valid_rays[nearer]
-            surface[at], distance[at], face[at] = number, hits.distance[nearer], hits.face[nearer]
+            surface[at] = number
+            distance[at] = hits.distance[nearer]
+            face[at] = hits.face[nearer]
         points = eye + directions * np.where(np.isfinite(distance), distance, 0.0)[:, None]
         normals = np.tile([0.0, 0.0, 1.0], (count, 1))
-        part, color = np.full(count, -1), np.zeros((count, 3))
+        part = np.full(count, -1)
+        color = np.zeros((count, 3))
         for number, solid in enumerate(self.solids, 1):
             at = np.flatnonzero(surface == number)
             part[at] = solid.mesh.parts[face[at]]
@@ -126,4 +135,6 @@ class RayScene:
             color[at] = solid.colors[part[at]]
         away = (normals * directions).sum(axis=1) > 0.0
         normals = np.where(away[:, None], -normals, normals)
-        return RayHits(directions, surface, part, points, normals, color, distance)
+        return RayHits(
+            directions, surface, part, points, normals=normals, color=color, distance=distance
+        )

@@ -15,7 +15,8 @@ from .painted_mesh import GLASS, TYRE, PaintedMesh, Rgb, rounded_box
 
 PERSON_M = (0.5, 0.5, 1.75)  # Length, width and height of a person
 CAR_M = (4.5, 1.8, 1.5)  # Length, width and height of a car; about the mean of cars on the road
-SKIN, COAT = (0.55, 0.36, 0.25), (0.80, 0.36, 0.02)
+SKIN = (0.55, 0.36, 0.25)
+COAT = (0.80, 0.36, 0.02)
 TROUSERS = (0.10, 0.11, 0.14)
 CAR_PAINT = (0.03, 0.14, 0.38)
 Block = tuple[tuple[float, float, float], tuple[float, float, float], Rgb]
@@ -33,7 +34,8 @@ CAR: tuple[Block, ...] = (
 )
 DISTANCES = (5.0, 10.0, 20.0, 40.0)
 """Distances from the sensor to the near side of figures, along the ground [m]."""
-FIRST_RAD, GAP_RAD = math.radians(0.8), math.radians(0.7)
+FIRST_RAD = math.radians(0.8)
+GAP_RAD = math.radians(0.7)
 """Angles between straight ahead and the first figure, and between two figures."""
 VIEW_SHARE = 0.72  # Share of a wide view over which figures are spread
 MAX_SPREAD = 3.0  # Limit of the factor by which angles grow in a wide view
@@ -70,7 +72,8 @@ def reference_figures(
             y = sensor.pose.position[1] + away * math.sin(heading)
             painted = blocks(CAR if name == "car" else PERSON, x, y, heading)
             if vehicle is not None:
-                (low, high), (low_2, high_2) = painted.mesh.bounds, vehicle.bounds
+                low, high = painted.mesh.bounds
+                low_2, high_2 = vehicle.bounds
                 if not ((low > high_2 + CLEAR_M) | (high < low_2 - CLEAR_M))[:2].any():
                     continue
             figures.append(ReferenceFigure(name, distance, (x, y, size[2]), painted))
@@ -79,7 +82,8 @@ def reference_figures(
 
 def _angle_by_distance(width: float, half_view: float) -> dict[float, float]:
     """Return the angle from straight ahead [rad] by distance: side by side, the farthest first."""
-    edge, angles = FIRST_RAD, {}
+    edge = FIRST_RAD
+    angles = {}
     for distance in reversed(DISTANCES):
         half = math.atan(width / 2.0 / distance)
         angles[distance] = edge + half
@@ -90,7 +94,8 @@ def _angle_by_distance(width: float, half_view: float) -> dict[float, float]:
 
 def blocks(shape: Sequence[Block], x: float, y: float, heading: float) -> PaintedMesh:
     """Return a figure of blocks with its middle at a position [m] and a heading [rad]."""
-    c, s = math.cos(heading), math.sin(heading)
+    c = math.cos(heading)
+    s = math.sin(heading)
     turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
     solids = [rounded_box(np.array(half)) + np.array(middle) for half, middle, _ in shape]
     parts = np.repeat(np.arange(len(solids)), [len(solid) for solid in solids])
@@ -134,7 +139,7 @@ def worst_bodies(
         objects = placed(body, [foot], body.headings, False)
         measured = kinds.ObjectMeasurementCache(objects, vehicle).measure(rig)
         counts = {name: float(m.min()) for name, m in measured.items()}
-        found.append(WorstBody(number, verdict, body, foot, counts))
+        found.append(WorstBody(number, verdict, body, foot, counts=counts))
     return tuple(found)
 
 

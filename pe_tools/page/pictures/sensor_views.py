@@ -26,14 +26,18 @@ from .reference_figures import DISTANCES, reference_figures
 from .rendering import Environment, render
 from .svg import LETTER_WIDTH, Canvas, LabelledPicture
 
-MAX_WIDTH, MAX_HEIGHT = 640, 480  # Size of a camera's image on the page [px]
+# Size of a camera's image on the page [px]
+MAX_WIDTH = 640
+MAX_HEIGHT = 480
 ROAD, RING, ZENITH, HORIZON = graphics.linear_of_srgb(
     np.array([(0.50, 0.51, 0.52), (0.93, 0.94, 0.95), (0.62, 0.74, 0.86), (0.90, 0.92, 0.93)])
 )
 RING_M = 0.05  # Half the width of a ring's line
 MIN_LINE_PX = 0.6
 FADED_M = (30.0, 160.0)  # Distances at which the ground begins and ends to fade into the horizon
-CIRCLE_WIDTH, MIN_ROWS_HEIGHT, MAX_ROW_HEIGHT = 720, 144, 12
+CIRCLE_WIDTH = 720
+MIN_ROWS_HEIGHT = 144
+MAX_ROW_HEIGHT = 12
 """Size of a LiDAR's image [px]: a full circle, all rows at least, one row at most."""
 SIDES = {"behind": -180.0, "right": -90.0, "ahead": 0.0, "left": 90.0, "behind ": 180.0}
 """Azimuths that are labelled [deg]; both ends of a full circle are behind."""
@@ -102,7 +106,8 @@ def camera_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> LabelledPic
     road = RayScene([*solids, *(target.painted for target in figures)], vehicle is not None)
     image = render(rays, road, _road_environment(sensor))
     png = graphics.png_bytes(graphics.as_bytes(image))
-    lens, labels = camera_of(sensor).projection, []
+    lens = camera_of(sensor).projection
+    labels = []
     for target in figures:  # labels are above heads and roofs, where these are in the image
         offset = np.subtract(target.top, sensor.pose.position)[None]
         ahead, left, up = scene.rotate(sensor.pose.ground_from_sensor.T, offset).T
@@ -118,8 +123,10 @@ def ray_camera(sensor: pe.Sensor) -> tuple[RayCamera, float]:
     camera = camera_of(sensor)
     scale = min(1.0, MAX_WIDTH / camera.width, MAX_HEIGHT / camera.height)
     width, height = (max(1, round(n * scale)) for n in (camera.width, camera.height))
-    across, down = camera.width / width, camera.height / height
-    lens, ground_from_sensor = camera.projection, sensor.pose.ground_from_sensor
+    across = camera.width / width
+    down = camera.height / height
+    lens = camera.projection
+    ground_from_sensor = sensor.pose.ground_from_sensor
 
     def rays_through(x: Floats, y: Floats) -> Floats:
         return scene.rotate(ground_from_sensor, lens.unproject(x * across, y * down))
@@ -128,7 +135,9 @@ def ray_camera(sensor: pe.Sensor) -> tuple[RayCamera, float]:
     one, two = rays_through(middle, np.full(2, height / 2.0))
     pixel_rad = math.sqrt(float(((two - one) ** 2).sum()))
     eye = np.array(sensor.pose.position)
-    return RayCamera(eye, width, height, rays_through, pixel_rad, True), 1.0 / across
+    return RayCamera(
+        eye, width, height, rays_through, pixel_rad=pixel_rad, from_sensor=True
+    ), 1.0 / across
 
 
 def _road_environment(sensor: pe.Sensor) -> Environment:
@@ -137,7 +146,8 @@ def _road_environment(sensor: pe.Sensor) -> Environment:
 
     def ground(points: Floats, rays: Floats, pixel_m: Floats) -> Floats:
         away = np.hypot(points[:, 0] - foot[0], points[:, 1] - foot[1])
-        half, line = np.maximum(RING_M, MIN_LINE_PX / 2.0 * pixel_m), np.zeros(len(points))
+        half = np.maximum(RING_M, MIN_LINE_PX / 2.0 * pixel_m)
+        line = np.zeros(len(points))
         for radius in DISTANCES:
             inside = half + pixel_m / 2.0 - np.abs(away - radius)
             line = np.maximum(line, np.clip(inside / np.maximum(pixel_m, 1e-6), 0.0, 1.0))
@@ -177,7 +187,8 @@ def lidar_picture(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> LabelledPict
         if len(down):
             place = float(np.median(across)) + 0.5, float(down.min() * row_px)
             labels.append((*place, target.label))
-    width, height = len(columns), len(rows)
+    width = len(columns)
+    height = len(rows)
     return LabelledPicture(png, width, height, tuple(labels), *_axis_labels(ranges, width, height))
 
 
@@ -224,7 +235,7 @@ def field_figure(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> ViewFigure:
     bottom = tuple((x, f"{signed(a, 0)}°") for x, a in zip(places, degrees, strict=True))
     far = float(picture.ranges[0] + picture.ranges[-1])  # they are middles of equal steps
     left = (0.0, f"{far:.3g} m"), (height / 2.0, f"{far / 2.0:.3g} m")
-    shown = LabelledPicture(png, width, height, (), bottom, left)
+    shown = LabelledPicture(png, width, height, labels=(), bottom_labels=bottom, left_labels=left)
     alt = f"What {sensor.name} detects by range and azimuth"
     caption = (
         f"Range upwards, azimuth across, left is left: {kind.unit} of a {picture.target} whose "

@@ -16,15 +16,20 @@ from ... import graphics
 from ..markup import number
 from .ground_plan import PlanBounds, PlanDrawing
 
-RIG, BEFORE = "#0b5cad", "#8c959f"
+RIG = "#0b5cad"
+BEFORE = "#8c959f"
 GRID = "#c8cfd6"
 KEY_HEIGHT = 24.0
 BLIND = "#d55e00"
 BLIND_WIDTH = 330.0
-MET, NOT_MET, INK = "#1a7f4b", "#c4320a", "#1b1f24"
-MET_RGBA, NOT_MET_RGBA = (26, 127, 75, 90), (196, 50, 10, 235)
+MET = "#1a7f4b"
+NOT_MET = "#c4320a"
+INK = "#1b1f24"
+MET_RGBA = (26, 127, 75, 90)
+NOT_MET_RGBA = (196, 50, 10, 235)
 BETWEEN_RGBA = (196, 50, 10, 70)  # Between the lines of the hatching
-PLAN_WIDTH, PIXELS = 330.0, 760
+PLAN_WIDTH = 330.0
+PIXELS = 760
 """Width of the drawing, and pixels along the longer side of its zone."""
 HATCH_PX = 4
 AROUND_M = 1.0  # Ground that is shown round the vehicle and the zone with its margin
@@ -45,7 +50,8 @@ def blind_plan(blind: sight.BlindGround, vehicle: pe.Vehicle | None, alt: str) -
 
 def side_text(blind: sight.BlindGround, side: str) -> str:
     """Return where the blind ground of a side begins, and its extent from the body, as text."""
-    spot, zone = blind.nearest[side], blind.zone[side]
+    spot = blind.nearest[side]
+    zone = blind.zone[side]
     if spot is None:
         return "none"
     if zone is None:
@@ -102,7 +108,8 @@ def _draw_key(plan: PlanDrawing, has_before: bool, color: str) -> None:
         **({"before": {"stroke": BEFORE, "stroke_dasharray": "5 4"}} if has_before else {}),
         "sensor alone": {"stroke": color, "stroke_width": 1.2},
     }
-    at, down = plan.left, plan.bottom + 38.0
+    at = plan.left
+    down = plan.bottom + 38.0
     for text, style in lines.items():
         plan.canvas.add("path", d=f"M{at:.1f} {down:.1f}h20", fill="none", **style)
         plan.canvas.text(at + 26.0, down + 4.0, text)
@@ -117,11 +124,13 @@ def requirement_plan(verdict: requirements.Verdict, vehicle: pe.Vehicle | None, 
     # The ground of a plan: the zone, grown by its margin, and the vehicle.
     low, high = verdict.samples.zone.bounds
     grown = max(verdict.margin or 0.0, 0.0)
-    low, high = low - grown, high + grown
+    low = low - grown
+    high = high + grown
     if vehicle is not None:
         low = np.minimum(low, vehicle.bounds[0][:2])
         high = np.maximum(high, vehicle.bounds[1][:2])
-    (x0, y0), (x1, y1) = (low - AROUND_M).tolist(), (high + AROUND_M).tolist()
+    x0, y0 = (low - AROUND_M).tolist()
+    x1, y1 = (high + AROUND_M).tolist()
     bounds = (x0, x1), (y0, y1)
     plan = PlanDrawing(bounds, alt, width=PLAN_WIDTH)
     plan.cells(_sample_png(verdict, bounds))
@@ -154,7 +163,8 @@ def _sample_png(verdict: requirements.Verdict, bounds: PlanBounds) -> bytes:
     line = (rows + columns) % (2 * HATCH_PX) < HATCH_PX
     pixels = np.zeros((*shape, 4), np.uint8)
     pixels[met] = MET_RGBA
-    pixels[missed & ~line], pixels[missed & line] = BETWEEN_RGBA, NOT_MET_RGBA
+    pixels[missed & ~line] = BETWEEN_RGBA
+    pixels[missed & line] = NOT_MET_RGBA
     return graphics.png_bytes(pixels[::-1])
 
 
@@ -184,7 +194,8 @@ def _blocks(points: Floats, size: float, scale: float, shape: tuple[int, int]) -
     side = max(1, math.ceil(size * scale))
     for down in range(side):
         for across in range(side):
-            column, row = first[:, 0] + across, first[:, 1] + down
+            column = first[:, 0] + across
+            row = first[:, 1] + down
             inside = (row >= 0) & (row < shape[0]) & (column >= 0) & (column < shape[1])
             image[row[inside], column[inside]] = True
     return image

@@ -13,10 +13,12 @@ from pe_core.base.arrays import Floats
 from ..markup import escaped
 
 PictureBox = tuple[float, float, float, float]  # Left, top, width and height
-LINE_HEIGHT, LETTER_WIDTH = 17.0, 10.0
+LINE_HEIGHT = 17.0
+LETTER_WIDTH = 10.0
 """Height of a line of text, and mean width of a letter, in a picture 640 wide."""
 LABEL_RISE = 7.0  # Distance of a label above its point
 FOOT_HEIGHT = 26.0  # Space below a picture for the labels of its lower edge
+TextLabel = tuple[float, float, str]  # Position (right, down) in a picture [px], and text
 
 
 @dataclass(eq=False)
@@ -64,7 +66,8 @@ def path_of(line: Floats, closed: bool) -> str:
     if closed and len(points) > 1 and (points[0] == points[-1]).all():
         points = points[:-1]
     if len(points) > 2:
-        before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
+        before = points - np.roll(points, 1, axis=0)
+        after = np.roll(points, -1, axis=0) - points
         turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
         ends = np.zeros(len(points), bool)
         ends[[0, -1]] = not closed
@@ -87,9 +90,6 @@ def _svg_number(value: float) -> str:
     return text[:-2] if text.endswith(".0") else text
 
 
-TextLabel = tuple[float, float, str]  # Position (right, down) in a picture [px], and text
-
-
 @dataclass(frozen=True, slots=True)
 class LabelledPicture:
     """A PNG of a size [px] with labels. `labels` stand above points of the picture, `bottom_labels`
@@ -105,7 +105,8 @@ class LabelledPicture:
 
     def svg(self, alt: str) -> Markup:
         """Return the picture with its labels; those of low pictures stand in a space above."""
-        is_low, width = bool(self.bottom_labels), float(self.width)
+        is_low = bool(self.bottom_labels)
+        width = float(self.width)
         on_edge = tuple((x, 0.0, text) for x, _, text in self.labels)
         ups = stacked(on_edge, -math.inf) if is_low else stacked(self.labels)
         head = LINE_HEIGHT - min(ups) if is_low and ups else 0.0
@@ -119,7 +120,8 @@ class LabelledPicture:
                 color = "#8c959f" if is_low else "#fff"
                 canvas.add("path", d=line, stroke=color, stroke_opacity="0.7")
             half = LETTER_WIDTH * len(text) / 2.0
-            across, css = min(max(x, half), width - half), "mark" if is_low else "mark dark"
+            across = min(max(x, half), width - half)
+            css = "mark" if is_low else "mark dark"
             canvas.text(across, head + up, text, text_anchor="middle", css=css)
         for x, text in self.bottom_labels:
             anchor = "start" if x < 1.0 else "end" if x > width - 1.0 else "middle"
@@ -134,7 +136,8 @@ def stacked(labels: tuple[TextLabel, ...], highest: float = LINE_HEIGHT) -> list
     """Return the vertical position of each label: above its point, and clear of other labels."""
     placed: list[tuple[float, float, float]] = []
     for x, y, text in labels:
-        half, up = LETTER_WIDTH * len(text) / 2.0, max(y - LABEL_RISE, highest)
+        half = LETTER_WIDTH * len(text) / 2.0
+        up = max(y - LABEL_RISE, highest)
         while any(abs(x - a) < half + b and abs(up - c) < LINE_HEIGHT for a, b, c in placed):
             up -= LINE_HEIGHT
         placed.append((x, half, up))

@@ -9,8 +9,14 @@ from ..markup import number
 from .charts import linear_map, ticks
 from .svg import Canvas
 
-WIDTH, LEFT, RIGHT = 720.0, 130.0, 640.0
-TOP, ROW, GAP, FOOT, LETTERS = 36.0, 16.0, 5.0, 34.0, 14.0
+WIDTH = 720.0
+LEFT = 130.0
+RIGHT = 640.0
+TOP = 36.0
+ROW = 16.0
+GAP = 5.0
+FOOT = 34.0
+LETTERS = 14.0
 INKS = {graphics.BRAKE: "#c4320a", graphics.CONFIRMED: "#1a7f4b"}
 """Colours of moments on a light ground, by those on a dark one."""
 
@@ -41,7 +47,9 @@ def time_strip(story: Story, body: SeenBody, alt: str) -> Markup:
         if start <= tick <= end:
             canvas.text(to_x(tick), height - 18.0, f"{number(tick, 1)} s", text_anchor="middle")
     for row, mark in enumerate(graphics.marks_of(story, body)):
-        x, ink, base = to_x(mark.time_s), INKS[mark.color], TOP - 9.0 - LETTERS * row
+        x = to_x(mark.time_s)
+        ink = INKS[mark.color]
+        base = TOP - 9.0 - LETTERS * row
         canvas.add("line", x1=x, x2=x, y1=base - 9.0, y2=y, stroke=ink, stroke_width=2.0)
         anchor, away = ("end", -5.0) if x > (LEFT + RIGHT) / 2.0 else ("start", 5.0)
         canvas.text(x + away, base, mark.text, text_anchor=anchor, fill=ink)

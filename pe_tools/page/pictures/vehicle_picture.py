@@ -28,20 +28,23 @@ PAPER = graphics.linear_of_srgb(np.array([0.965, 0.97, 0.975]))
 FLOOR = graphics.linear_of_srgb(np.array([0.905, 0.912, 0.92]))
 NO_VEHICLE_BOUNDS = (np.array([-2.0, -1.0, 0.0]), np.array([2.0, 1.0, 1.5]))
 """Bounds that the picture shows without a vehicle [m]."""
-SCALE, LINE_PX = 5.0 / 3.0, 24.0
+SCALE = 5.0 / 3.0
+LINE_PX = 24.0
 """Of the pixels in a picture's file; height of a line below it [px of `SIZE`]."""
 HEAD = (
     '<svg xmlns="http://www.w3.org/2000/svg" font-family="Arial, Helvetica, sans-serif" '
     'font-size="15" fill="#1b1f24"'
 )
 STYLE = "<style>.number { fill: #fff; font-weight: bold }</style>"
-LABEL_RISE, RADIUS = 46.0, 15.0
+LABEL_RISE = 46.0
+RADIUS = 15.0
 """Distance of a number above its sensor, and radius of its disc [px]."""
 LABEL_SPACING = 34.0
 ROUNDS = 40  # Distance between two discs, and steps in which they are moved apart
 BEHIND_M = 0.12  # A sensor farther than this behind the visible surface counts as hidden by it
 PROUD_M = 0.0005  # Height of a window above the housing's surface
-MARK_PX, EDGE_COLOR = 7.0, (0.1, 0.12, 0.14)
+MARK_PX = 7.0
+EDGE_COLOR = (0.1, 0.12, 0.14)
 WINDOW = (0.02, 0.022, 0.025)
 
 
@@ -112,7 +115,8 @@ def _bounds(vehicle: pe.Vehicle | None, rig: pe.Rig) -> tuple[Floats, Floats]:
 def _studio(bounds: tuple[Floats, Floats]) -> Environment:
     """Return a bright room without walls: the floor fades into the paper."""
     low, high = bounds
-    middle, half = (low + high) / 2.0, (high - low) / 2.0
+    middle = (low + high) / 2.0
+    half = (high - low) / 2.0
     reach = float(np.hypot(half[0], half[1]))
 
     def ground(points: Floats, _rays: Floats, _pixel_m: Floats) -> Floats:
@@ -133,7 +137,8 @@ class LabelledVehicle(NamedTuple):
 
 def labelled_picture(context: ReportContext, alt: str) -> LabelledVehicle:
     """Return the picture of a study; it is rendered once for all pages that show the study."""
-    vehicle, rig = context.display_vehicle[0], context.rig
+    vehicle = context.display_vehicle[0]
+    rig = context.rig
     png = context.cached("still", lambda: vehicle_picture(vehicle, rig, SIZE))
     width, height = map(float, SIZE)
     canvas = Canvas(width, height, alt)
@@ -146,7 +151,9 @@ def _draw(canvas: Canvas, png: bytes, vehicle: pe.Vehicle | None, rig: pe.Rig) -
     canvas.picture(png, (0.0, 0.0, float(SIZE[0]), float(SIZE[1])))
     for label in labels(vehicle, rig, default_view(vehicle, rig)):
         # Draw a disc with a number, and a line to its sensor: dashed if the vehicle hides it.
-        end, disc, color = label.end, label.disc, graphics.color_text(label.color)
+        end = label.end
+        disc = label.disc
+        color = graphics.color_text(label.color)
         line = f"M{disc[0]:.1f} {disc[1]:.1f}L{end[0]:.1f} {end[1]:.1f}"
         dashes = "4 4" if label.is_hidden else "none"
         canvas.add("path", d=line, stroke="#1b1f24", stroke_width=1.5, stroke_dasharray=dashes)
@@ -159,7 +166,8 @@ def _draw(canvas: Canvas, png: bytes, vehicle: pe.Vehicle | None, rig: pe.Rig) -
 def picture_file(study: pe.Study, outcome: jobs.Outcome | None = None) -> bytes:
     """Return the picture of a study's rig on its vehicle as an SVG file, with numbers and their
     key; above it the figures of an outcome."""
-    vehicle, rig = study.vehicle, study.rig
+    vehicle = study.vehicle
+    rig = study.rig
     if vehicle is not None:
         vehicle, _ = graphics.simplified(vehicle, MAX_TRIANGLES)
     width, height = map(float, SIZE)
@@ -189,7 +197,8 @@ def _figures(outcome: jobs.Outcome) -> list[str]:
     lines = [f"Expected AP in traffic {arrow.join(lines)} (higher is better)"] if lines else []
     if (own := outcome.own) is not None:
         lines.append(f"{own.figure.label} {own.before:.3f}{arrow}{own.after:.3f} (lower is better)")
-    entropy, coverage = ([f"{s.entropy:.3f}" for s in both], [f"{s.coverage:.1%}" for s in both])
+    entropy = [f"{s.entropy:.3f}" for s in both]
+    coverage = [f"{s.coverage:.1%}" for s in both]
     lines.append(f"Perception entropy {arrow.join(entropy)} nats (lower is better)")
     return [*lines, f"Coverage {arrow.join(coverage)}"]
 
@@ -265,7 +274,8 @@ def _solid(sensor: pe.Sensor, rgb: tuple[float, float, float]) -> PaintedMesh:
 
 def _cylinder_parts(size: Floats) -> list[Floats]:
     """Return a cylinder around the origin, and the window around it."""
-    r, h = size[0] / 2.0, size[2] / 2.0
+    r = size[0] / 2.0
+    h = size[2] / 2.0
     body = [(0.0, -h), (r, -h), (r, -0.35 * h), (0.94 * r, -0.35 * h)]
     upper = [(0.94 * r, 0.55 * h), (r, 0.55 * h), (r, 0.9 * h), (0.9 * r, h), (0.0, h)]
     window = [(0.94 * r, -0.35 * h), (0.94 * r, 0.55 * h)]

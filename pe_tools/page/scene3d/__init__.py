@@ -33,8 +33,18 @@ MAPS = {
 HERE = Path(__file__).parent
 THREE = HERE / "_vendor" / "three.min.js"
 SCRIPTS = (
-    *("decode", "lines", "areas", "body", "ground", "sensors", "labels", "viewpoints"),
-    *("user_input", "panel", "print", "view"),
+    "decode",
+    "lines",
+    "areas",
+    "body",
+    "ground",
+    "sensors",
+    "labels",
+    "viewpoints",
+    "user_input",
+    "panel",
+    "print",
+    "view",
 )
 """The view's scripts, concatenated to one program in this order."""
 TEXTS = {
@@ -43,12 +53,18 @@ TEXTS = {
     "from_middle": "From {name}, the middle of its view",
 }  # Texts of the view's program; {name} is a sensor's name
 MAX_BEAMS = 60_000  # Beams that are cast of one sensor; a selection of them is drawn
-BEAMS_EACH, BEAM_M, VIEW_M, FOOT_M = 180, 7.0, 2.5, 20.0
+BEAMS_EACH = 180
+BEAM_M = 7.0
+VIEW_M = 2.5
+FOOT_M = 20.0
 """Beams drawn of a sensor and their length; length of a field of view; reach of its footprint."""
 MAX_RINGS = 10
 PALETTE = graphics.PAPER
 OCCLUDED = graphics.with_alpha(PALETTE.occluded, 0.9)
-BEAM, RING, EDGE, SIDE = 0.5, 0.8, 0.9, 0.12
+BEAM = 0.5
+RING = 0.8
+EDGE = 0.9
+SIDE = 0.12
 """Opacity of a sensor's colour in beams, rings, and edges and sides of its field of view."""
 NOTHING = graphics.Primitives.empty()
 __all__ = ["scene_data", "scripts", "view"]
@@ -105,7 +121,8 @@ def vehicle_data(
     # The distinct points among corners (N, 3), and the index (N,) of each corner's.
     keys = corners.astype(np.int64) @ np.array([1 << 32, 1 << 16, 1])
     _, first, which = np.unique(keys, return_index=True, return_inverse=True)
-    points, indices = corners[first], which.reshape(-1)
+    points = corners[first]
+    indices = which.reshape(-1)
     kind = "u2" if len(points) <= 1 << 16 else "u4"
     return {
         "low": low.tolist(),
@@ -147,14 +164,16 @@ def _parts(vehicle: pe.Vehicle, order: NDArray[np.int64]) -> list[dict[str, Any]
 
 def maps_data(sight: pe.Sight, rig: pe.Rig) -> list[dict[str, Any]]:
     """Return the ground maps of a rig, averaged over height as in a score."""
-    (x0, x1), (y0, y1) = sight.space.x, sight.space.y
+    x0, x1 = sight.space.x
+    y0, y1 = sight.space.y
     step = max(STEP_M, float(np.sqrt((x1 - x0) * (y1 - y0) / MAX_MAP_CELLS)))
     ground = sight.ground(rig, step=step)
     return [_map(graphics.ground_map(ground, name, 1.0), name, MAPS[name]) for name in MAPS]
 
 
 def _map(shape: graphics.LayerShape, name: str, label: str) -> dict[str, Any]:
-    sheet, legend = shape.sheet, shape.legend
+    sheet = shape.sheet
+    legend = shape.legend
     assert sheet is not None and legend is not None
     rows, columns = sheet.image.shape[:2]
     return {
@@ -241,7 +260,7 @@ def _beam_layers(
     ring_colors = np.tile(graphics.with_alpha(color, RING), (len(rows), 1))
     rings = graphics.ground_rings(beams_cast, rows, ring_colors)
     return {
-        "fov": _layer(graphics.free_lines(sensor, beams, BEAM_M, colors, around)),
+        "fov": _layer(graphics.free_lines(sensor, beams, BEAM_M, colors, around=around)),
         "occluded": _layer(graphics.occluded_lines(sensor, beams, colors)),
         "ground": _layer(rings),
     }
@@ -252,7 +271,8 @@ def _view_layers(
 ) -> dict[str, Any]:
     """Return the field of view, what the vehicle occludes of it, and its footprint."""
     drawing = graphics.drawing_of(sensor.kind)
-    edge, side = graphics.with_alpha(color, EDGE), graphics.with_alpha(color, SIDE)
+    edge = graphics.with_alpha(color, EDGE)
+    side = graphics.with_alpha(color, SIDE)
     palette = replace(PALETTE, camera=edge, camera_face=side, other=edge)
     lines, faces = (draw(sensor, VIEW_M, palette) for draw in (drawing.lines, drawing.faces))
     layers = {"fov": _layer(lines, faces)}

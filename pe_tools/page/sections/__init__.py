@@ -50,8 +50,8 @@ class Section:
 
 
 SECTIONS = (
-    Section("summary", "Summary", overview, True, "overview"),
-    Section("summary", "Comparison", comparison, True, "comparison"),
+    Section("summary", "Summary", overview, joint=True, template="overview"),
+    Section("summary", "Comparison", comparison, joint=True, template="comparison"),
     Section("view", "3-D view", scene3d.view, scripts=scene3d.scripts),
     Section("requirements", "Requirements", requirement_verdicts),
     Section("drive-by", "Seen in time", drive_by, scripts=strip_script),

@@ -20,7 +20,8 @@ from ..report_context import ReportContext
 from .score import hidden_sensor_lines
 
 SIDES = {"front": "ahead", "rear": "behind", "left": "left", "right": "right"}
-METRE_DIGITS, DEGREE_DIGITS = 3, 2
+METRE_DIGITS = 3
+DEGREE_DIGITS = 2
 MAP_ENDS = ("8 nats less here", "8 nats less here")
 
 
@@ -63,7 +64,7 @@ def comparison(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:
                 first.ground,
                 first.vehicle,
                 f"Map of the difference in entropy between {first.name} and {other.name}",
-                MAP_ENDS,
+                ends=MAP_ENDS,
             )
             for other in others
         ],
@@ -127,12 +128,13 @@ def _mountings(
     """Return the studies of each different mounting of a sensor; None: those without it."""
     by_mounting: dict[SensorMounting | None, list[ReportContext]] = {}
     for context in contexts:
-        sensor, mounting = next((s for s in context.rig if s.name == name), None), None
+        sensor = next((s for s in context.rig if s.name == name), None)
+        mounting = None
         if sensor is not None:
             position = tuple(round(v, METRE_DIGITS) + 0.0 for v in sensor.pose.position)
             rotation = tuple(round(v, DEGREE_DIGITS) + 0.0 for v in sensor.pose.rotation_deg)
             values = repr((catalog.to_table(sensor.model), sensor.fusion, sensor.curve))
             price = price_of(context.study, sensor)
-            mounting = SensorMounting(sensor.model.name, values, price, position, rotation)
+            mounting = SensorMounting(sensor.model.name, values, price, position, rotation=rotation)
         by_mounting.setdefault(mounting, []).append(context)
     return by_mounting

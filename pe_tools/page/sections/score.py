@@ -22,7 +22,9 @@ from ..pictures.vehicle_picture import labelled_picture
 from ..report_context import ReportContext
 
 SIDES = {"front": "ahead", "rear": "behind", "left": "on the left", "right": "on the right"}
-PALE, DARK = (255, 255, 255), (242, 165, 120)  # Colours of the lowest and of the highest entropy
+# Colours of the lowest and of the highest entropy
+PALE = (255, 255, 255)
+DARK = (242, 165, 120)
 
 
 def overview(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:
@@ -30,7 +32,8 @@ def overview(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:
     if len(contexts) > 1:
         return None
     (context,) = contexts
-    rig_kinds, scores = [kinds.kind_of(sensor) for sensor in context.rig], context.after
+    rig_kinds = [kinds.kind_of(sensor) for sensor in context.rig]
+    scores = context.after
     counts = []  # "2 LiDARs", "1 camera"
     for kind in dict.fromkeys(rig_kinds):
         count = rig_kinds.count(kind)
@@ -118,7 +121,8 @@ def table_values(found: ConditionTable) -> dict[str, Any]:
             for name in found.sensors
         ]
     values = [value for _, _, entropies in matrix for value in entropies]
-    low, high = min(values), max(values)
+    low = min(values)
+    high = max(values)
 
     def color_of(value: float) -> str:
         share = (value - low) / (high - low) if high > low else 0.0
@@ -145,7 +149,8 @@ def search_history(context: ReportContext) -> dict[str, Any] | None:
     """Return the course of a search; None for a study that was only scored."""
     if not context.was_searched:
         return None
-    outcome, robustness = context.outcome, context.outcome.robustness
+    outcome = context.outcome
+    robustness = context.outcome.robustness
     figure = outcome.figure
     curve, caption = _curve(context, figure)
     moves = []  # how far each sensor was moved [m] and turned [deg]
@@ -173,20 +178,22 @@ def _curve(context: ReportContext, figure: jobs.SearchedFigure) -> tuple[Markup 
     if len(context.outcome.history) < 2:
         return "", ""
     found = jobs.best_so_far(context.outcome.history)
-    by_ap, is_broken = figure.higher_is_better, is_infeasible(found[-1][1])
+    by_ap = figure.higher_is_better
+    is_broken = is_infeasible(found[-1][1])
     points = [
         (n, value - INFEASIBLE if is_broken else figure.to_figure(value)) for n, value in found
     ]
     first, last = (number(points[k][1], 3 if by_ap or is_broken else 2) for k in (0, -1))
     own = context.outcome.own is not None
-    what, unit = figure.label, "" if by_ap or own else " nats"
+    what = figure.label
+    unit = "" if by_ap or own else " nats"
     what, unit = ("violation of constraints", "") if is_broken else (what, unit)
     sample = "" if own else ", on the samples of the search"
     caption = f"Best {what} so far: from {first} to {last}{unit}{sample}."
     label = unit.strip() or what
     alt = f"Convergence curve. {caption}"
     evaluations = context.outcome.evaluations
-    return step_curve(points, evaluations, "placements evaluated", label, alt), caption
+    return step_curve(points, evaluations, "placements evaluated", label, alt=alt), caption
 
 
 def flatness(context: ReportContext) -> dict[str, Any] | None:

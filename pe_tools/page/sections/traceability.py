@@ -38,7 +38,8 @@ VALIDITY_PAGE = "docs/validity/README.md"
 
 def assumptions(contexts: tuple[ReportContext, ...]) -> dict[str, Any]:
     """Return the sources of AP curves and prior; they are the same for all studies."""
-    study, model = contexts[0].study, contexts[0].study.model
+    study = contexts[0].study
+    model = contexts[0].study.model
     sensors = [sensor for context in contexts for sensor in context.rig]
     curves = {kinds.kind_of(s).label: model.curve(s.kind) for s in sensors}
     own = {(s.name, s.curve) for s in sensors if s.curve is not None}

@@ -25,14 +25,18 @@ SIDES = {"front": "ahead", "left": "left", "right": "right", "rear": "behind"}
 PREFERRED_CLASSES = ("pedestrian", "car")  # Classes whose reach is shown, if the prior has them
 WAYS_DEG = {"ahead": 0, "ahead left": 45, "left": 90, "behind": 180, "right": 270}
 WAYS_DEG["ahead right"] = 315
-MAX_PARTS, MIN_SHARE = 3, 0.0005
+MAX_PARTS = 3
+MIN_SHARE = 0.0005
 """Parts of the vehicle that a row names, and the smallest share that such a part occludes."""
 
 
 def visibility(context: ReportContext) -> dict[str, Any]:
     """Return maps of the whole space, plans of blind ground by height, and of the reach by class.
     After a search the maps are also those before it, with the difference."""
-    rig, vehicle, study, sight = context.rig, context.vehicle, context.study, context.sight
+    rig = context.rig
+    vehicle = context.vehicle
+    study = context.study
+    sight = context.sight
 
     def drawn(ground: Any, layer: Any, when: str = "") -> Any:
         alt = f"Map from above of {layer.title.lower()}, {context.name}{when}"
@@ -43,18 +47,20 @@ def visibility(context: ReportContext) -> dict[str, Any]:
         before = sight.ground(context.start.rig, step=MAP_STEP_M)
         alt = f"Map of the change of entropy, {context.name}"
         maps["maps_before"] = [drawn(before, layer, ", before") for layer in (ENTROPY, COVERAGE)]
-        maps["change"] = difference_map(before, context.ground, vehicle, alt, CHANGE_ENDS)
+        maps["change"] = difference_map(before, context.ground, vehicle, alt, ends=CHANGE_ENDS)
     blind_by_height = []
     for height in (h for h in HEIGHTS if study.space.z[0] <= h < study.space.z[1]):
-        blind, alt = sight.blind(rig, height), f"Plan of ground blind to objects {height:g} m tall"
+        blind = sight.blind(rig, height)
+        alt = f"Plan of ground blind to objects {height:g} m tall"
         blind_by_height.append((height, blind, blind_plan(blind, vehicle, alt)))
     names = study.prior.class_names
-    plans, rows = [], []
+    plans = []
+    rows = []
     for name in [name for name in PREFERRED_CLASSES if name in names] or list(names[:1]):
         reach = sight.reach(rig, name)
         was = sight.reach(context.start.rig, name) if context.was_searched else None
         alt = f"Plan of the reach for a {name}, {context.name}"
-        plan = reach_plan(reach, was, rig, vehicle, (study.space.x, study.space.y), alt)
+        plan = reach_plan(reach, was, rig, vehicle, bounds=(study.space.x, study.space.y), alt=alt)
         plans.append((name, bool(reach.sector), plan))
         for title, each in ((capitalized(name), reach), (f"{name}, before", was)):
             if each is not None:

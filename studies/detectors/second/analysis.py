@@ -17,7 +17,8 @@ from ..plan import EQUAL_M, GOOD, LAYOUTS, SEARCHES, Plan, rings_of
 from ..runs import Run, parts_of
 from ..scores import COVERAGE, EXPECTED_AP, PRIMARY
 
-BEYOND, AP_BEYOND = "perception entropy beyond coverage", "expected AP beyond coverage"
+BEYOND = "perception entropy beyond coverage"
+AP_BEYOND = "expected AP beyond coverage"
 FINDS_MORE = {-1: "entropy finds more", 1: "expected AP finds more"}
 
 
@@ -39,7 +40,8 @@ def second_analysis(
     done = {name: sum(run.name in results for run in own) for name, own in counted.items()}
     rule = plan.searches
     rig_runs = len(plan.searched_seeds) * (1 + len(rule.objectives) * len(rule.seeds))
-    seeds, chosen = len(plan.second.good.seeds), plan.second.good.selected * len(plan.vehicles)
+    seeds = len(plan.second.good.seeds)
+    chosen = plan.second.good.selected * len(plan.vehicles)
     planned = {name: len(parts[name]) for name in parts}
     planned[GOOD] = planned[GOOD] // seeds + (seeds - 1) * chosen
     planned[SEARCHES] = rule.count * rig_runs
@@ -73,7 +75,8 @@ def tie_verdict(low: float, high: float, tie: float) -> str:
 
 def _arms(plan: Plan, runs: Sequence[Run], results: Results) -> Json:
     """Return AP by rows, and the differences from the first arm with their intervals."""
-    rows, aps = plan.second.equal_m.rows, {}
+    rows = plan.second.equal_m.rows
+    aps = {}
     for count in rows:
         lidar = arm_lidar(plan.second.equal_m, count)
         own = [run for run in runs if run.placement and run.placement.lidar is lidar]
@@ -94,7 +97,8 @@ def _good(plan: Plan, runs: Sequence[Run], results: Results, scores: Results) ->
     """Return rho of each figure with the AP of the last seed, in the half chosen by the first."""
     first = plan.second.good.seeds[0]
     half = of_runs(GOOD, [run for run in runs if run.seed != first], results)
-    values, samples = half.all_values(scores), half.samples
+    values = half.all_values(scores)
+    samples = half.samples
     at_first = np.array([results[f"{p.name}-s{first}"]["ap"] for p in half.chosen])
     return {
         "placements": [placement.name for placement in half.chosen],

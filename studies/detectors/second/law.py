@@ -39,7 +39,8 @@ PUBLISHED = {
 }
 """PointPillars on KITTI, cars, moderate: 32 rows, 32 with half of the columns, 16, 16 with half.
 LiDAR-Distillation (arXiv 2203.14956), weiyithu/LiDAR-Distillation@1c222ca, README."""
-PIXELS_TIMES, PIXELS_AP = 4.0, (0.378, 0.404)
+PIXELS_TIMES = 4.0
+PIXELS_AP = (0.378, 0.404)
 """PETR, V2-99: mAP with 800 x 320 and 1600 x 640 pixels; megvii-research/PETR@052a287, README."""
 CAMERAS_BY_RANGE = {
     "GUPNet": (0.2478, 0.0484, 0.0022),
@@ -50,7 +51,8 @@ CAMERAS_BY_RANGE = {
 the authors; the third from WACV 2023, table 3."""
 RANGES_M = (19.0, 40.0, 61.0)
 """Distances that stand for these rings."""
-ROWS_HALVED, COLUMNS_HALVED = (0, 0, 1, 1), (0, 1, 0, 1)
+ROWS_HALVED = (0, 0, 1, 1)
+COLUMNS_HALVED = (0, 1, 0, 1)
 RMSE_DIGITS = 6
 """Of a fit to four published AP of four digits. Its RMSE is ``|AP0 - AP1 - AP2 + AP3| / 4``, a
 multiple of 0.000025: fewer digits would round a tie, 0.00585, as the machine happens to."""
@@ -92,8 +94,10 @@ def rows_and_beams(rig: pe.Rig, view: ObjectView) -> tuple[Floats, Floats]:
 
     Rows are channels with a beam on the object; those of two LiDARs are two.
     """
-    kernel, count = LidarObjects(view), len(view.objects)
-    rows, beams = np.zeros(count), np.zeros(count)
+    kernel = LidarObjects(view)
+    count = len(view.objects)
+    rows = np.zeros(count)
+    beams = np.zeros(count)
     for sensor in rig:
         hits = first_of_scene(kernel.crossings(sensor), view.objects.scenes)
         lidar = lidar_of(sensor)
@@ -138,7 +142,8 @@ def forecast(plan: Plan, folder: Path, w: float) -> Json:
     results = RunFiles(folder, plan, runs(plan)).read()
     whole = plain_design(plan, [FIXED, ACROSS], results)
     is_across = np.array([p.design == ACROSS for p in whole.chosen])
-    fixed, across = np.flatnonzero(~is_across), np.flatnonzero(is_across)
+    fixed = np.flatnonzero(~is_across)
+    across = np.flatnonzero(is_across)
     by_w = weighted_counts(plan, whole.chosen, (PAPER_W, w))
     aps = {
         name: plain_design(plan, [FIXED, ACROSS], results, mean_ap_of(name)).samples.ap
@@ -218,7 +223,8 @@ def of_mean_ap(classes: Json, plan: Plan) -> Json:
     errors = np.array(
         [np.mean([c[label]["errors"] for c in classes.values()], axis=0) for label in LABELS]
     )
-    rng, count = np.random.default_rng(plan.seed), errors.shape[1]
+    rng = np.random.default_rng(plan.seed)
+    count = errors.shape[1]
     drawn = errors[:, rng.integers(0, count, (plan.statistics.resamples, count))]
     less = np.diff(np.sqrt((drawn**2).mean(axis=2)), axis=0)[0]
     rmse = np.sqrt((errors**2).mean(axis=1))

@@ -29,7 +29,8 @@ from .sweep_verb import sweep
 from .terminal import EXIT_STATUSES, Answer, open_missing_streams, tell
 from .where_verb import where
 
-VerbFunction = Callable[[StudyFiles, argparse.Namespace], Answer]
+VerbFunction = Callable[[Any, argparse.Namespace], Answer]
+"""Of where studies come from (`StudyFiles`, a scene's) and the arguments."""
 BEGIN = "begin"
 SCORE = "score"
 PLACE = "place"

@@ -56,11 +56,11 @@ def read(name: str, table: Mapping[str, Any], folder: Path) -> Camera:
         name,
         width,
         height,
-        hfov=None,
+        hfov=None,  # type: ignore[arg-type]  # of the lens
         lens=read_lens(name, table),
         min_range=min_range,
         max_range=max_range,
-    )  # type: ignore[arg-type]
+    )
 
 
 def write(model: Camera) -> dict[str, Any]:

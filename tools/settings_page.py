@@ -13,7 +13,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from pe_core.search.limits import LimitRule  # noqa: E402
+from pe_core.search import LimitRule  # noqa: E402
 from pe_core.study import (  # noqa: E402
     REQUIRED,
     Declared,

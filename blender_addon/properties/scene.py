@@ -89,7 +89,7 @@ def _limits() -> Any:
 
 def _limit_number(row: search.Figure) -> Any:
     about = f"{row.about}: at {'least' if row.higher else 'most'}; {bridge.NONE}: no limit"
-    rule = row.rule
+    rule: Any = row.rule
     least = bridge.NONE
     assert rule is not None, "a figure with a limit's number has its rule"
     if isinstance(rule, studies.Whole):

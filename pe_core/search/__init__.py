@@ -13,11 +13,12 @@ from .domains import (
     standoff_point,
 )
 from .figure import HIGHER, LOWER, NO_FIGURE, Figure
-from .figures import ENTROPY, FIGURES, KEPT, ON_FRONT, REQUIREMENTS, RigView, figure_of
+from .figures import ENTROPY, FIGURES, KEPT, ON_FRONT, REQUIREMENTS, figure_of
 from .goals import Front, Goals, Start, Stop
 from .journal import EvaluatedRig, Journal, checked_entries
 from .key_figures import KeyFigures, Reading, dashboard
-from .limits import LIMITED, NUMBERED, Limit, Limits
+from .limit import Limit, LimitRule
+from .limits import LIMITED, NUMBERED, Limits
 from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_method
 from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .optimize import Step, as_objective, optimize
@@ -25,6 +26,7 @@ from .parametrization import Candidate, Parametrization, feasible_start, mirrore
 from .payload import Payload, Unreadable, send_payload
 from .places import MountingPlaces, SurfacePlace, outward_yaw
 from .processes import LazyProcesses, Processes, no_processes, start_processes
+from .rig_view import RigView
 from .search_space import (
     PAPER_FREE,
     Schedule,

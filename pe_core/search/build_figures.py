@@ -7,8 +7,8 @@ fields of the panel follow from the rows. A figure of which something is not kno
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence, Set
+from dataclasses import dataclass
 from functools import lru_cache, partial
 from itertools import combinations, pairwise
 from typing import TYPE_CHECKING, Any
@@ -20,18 +20,18 @@ from ..base.errors import InputError
 from ..base.plugins import shipped
 from ..base.values import Number
 from ..geometry.grids import PerceptionSpace, top_heights
-from ..geometry.overlap import Hull
 from ..geometry.poses import Pose, dot
 from ..scene.data_sheet import DataSheet
-from ..scene.rig import Housing, Rig, Sensor, SensorModel, hull_of
+from ..scene.rig import Sensor, SensorModel
 from ..scene.vehicle import Vehicle
 from ..scoring.requirements.planes import convex_outline
 from ..sensors.kind import kind_of
 from .domains import ROUNDING_M
 from .figure import Figure
+from .placement import Placement
 
 if TYPE_CHECKING:
-    from .figures import RigView
+    from .rig_view import RigView
 
 CELL_M = 0.01  # Side of the squares in which a frontal area is counted [m]
 AROUND_M = 2.0  # So far round the body housings are seen from the front [m]
@@ -49,34 +49,6 @@ AT = ROUNDING_M
 SUMS = ("mass", "power", "data_rate", "price")
 """Figures that add up over the sensors' data sheets, wherever these are."""
 LIMIT = {unit: Number(0.0, cap=1e6, unit=unit) for unit in ("m", "m2", "deg", "kg", "W", "Mbit/s")}
-
-
-@dataclass(frozen=True)
-class Placement:
-    """A rig on its vehicle with the housings that are known; each hull is computed once."""
-
-    rig: Rig
-    vehicle: Any = None
-    housings: Mapping[str, Housing] = field(default_factory=dict)
-    _hulls: dict[str, Hull] = field(default_factory=dict)
-
-    @classmethod
-    def on(cls, rig: Rig, vehicle: Vehicle | None) -> Placement:
-        """Return a rig on a vehicle, with the housings of the catalogue."""
-        return cls(rig, vehicle, housings_of(rig))
-
-    def hull(self, name: str) -> Hull:
-        """Return the convex hull of a sensor's housing."""
-        if name not in self._hulls:
-            self._hulls[name] = hull_of(self.rig[name].pose, self.housings.get(name))
-        return self._hulls[name]
-
-
-def housings_of(rig: Iterable[Sensor]) -> dict[str, Housing]:
-    """Return the housings that the catalogue has, by sensor."""
-    housing = shipped("catalog.housing")
-    housings = {sensor.name: housing(sensor.model.name) for sensor in rig}
-    return {name: housing for name, housing in housings.items() if housing is not None}
 
 
 @lru_cache(1024)

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from ..base.values import Number, Whole, rounded
 
 if TYPE_CHECKING:
-    from .figures import RigView
-    from .key_figures import KeyFigures
+    from .rig_view import RigView
 
+REQUIREMENTS = "requirements"
 NO_FIGURE = "-"
 LOWER = "lower is better"
 HIGHER = "higher is better"
@@ -23,7 +23,19 @@ def reciprocal(value: float) -> float:
     return 1.0 / (1.0 + max(value, 0.0))
 
 
-def never(_figures: KeyFigures) -> bool:
+class KnownFigures(Protocol):
+    """What is known of a rig: its figures by name, and how far ahead each class is found."""
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        """The figures that are known, by the names of `FIGURES`."""
+
+    @property
+    def reach(self) -> Mapping[str, tuple[float, bool]]:
+        """By class how far ahead it is found [m], and whether the space ends there."""
+
+
+def never(_figures: KnownFigures) -> bool:
     """Return False: the space ends none of the figures."""
     return False
 
@@ -69,7 +81,7 @@ class Figure:
     cost: Callable[[float], float] | None = None
     rule: Number | Whole | None = None
     shown: Callable[[float], float] = float
-    is_cut: Callable[[KeyFigures], bool] = never
+    is_cut: Callable[[KnownFigures], bool] = never
     least: float = 0.05
     scale: float = 1.0
     on_front: bool = True
@@ -113,7 +125,7 @@ class Figure:
         """Return the best of some values."""
         return (max if self.higher else min)(values)
 
-    def value(self, figures: KeyFigures | None) -> float | None:
+    def value(self, figures: KnownFigures | None) -> float | None:
         """Return the figure of a rig; None where it is not known."""
         return None if figures is None else figures.values.get(self.key)
 

@@ -11,17 +11,9 @@ from ..scoring.sight import Sight
 from ..scoring.sight.blind_ground import WITHIN_M, BlindSector
 from .build_figures import BUILD_FIGURES
 from .figure import Figure
-from .figures import (
-    AP,
-    AP_RINGS,
-    ENTROPY,
-    FIGURES,
-    REQUIREMENTS,
-    RigView,
-    blind_height,
-    on_dashboard,
-)
-from .limits import Limits
+from .figures import AP, AP_RINGS, ENTROPY, FIGURES, REQUIREMENTS, on_dashboard
+from .limit import FigureLimits
+from .rig_view import RigView, blind_height
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,12 +136,12 @@ def dashboard(
     figures: KeyFigures | None,
     entropy: float | None = None,
     met: Sequence[bool] = (),
-    limits: Limits | None = None,
+    limits: FigureLimits | None = None,
     ap: float | None = None,
 ) -> tuple[Reading, ...]:
     """Return the rows for a rig: what every rig is decided by, and what else has a limit. `met`
     tells of each requirement whether it is met; `ap` is the expected AP of the score."""
-    limits = limits or Limits()
+    limits = limits or FigureLimits()
     of_score = {ENTROPY: entropy, AP: ap, REQUIREMENTS: float(sum(met)) if met else None}
     rows = on_dashboard()
     rows += [row for key, _ in limits if (row := FIGURES[key]) not in rows]

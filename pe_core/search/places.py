@@ -18,10 +18,10 @@ from ..geometry.poses import Pose, cross, dot
 from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
 from ..sensors.kind import kind_of
-from .build_figures import Placement, housings_of
 from .domains import MountSurface, pose_on, standoff_point
-from .limits import Limits
+from .limit import FigureLimits
 from .mounts import Constraints, Mounting, SurfaceMount
+from .placement import Placement, housings_of
 from .search_space import MIN_HEIGHT_M, SearchSpace, rules_of
 
 PLACES = Whole(1, 20_000)
@@ -98,7 +98,7 @@ class MountingPlaces:
         sensor: Sensor,
         vehicle: Vehicle | None,
         constraints: Constraints,
-        limits: Limits,
+        limits: FigureLimits,
         *,
         parts: Sequence[str] = (),
         mount: SurfaceMount | None = None,

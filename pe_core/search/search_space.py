@@ -20,7 +20,7 @@ from ..geometry.overlap import hull_box, overlaps
 from ..geometry.poses import FARTHEST_M, METRES, ROTATION
 from ..scene.rig import Housing, Rig, Sensor, cuts_body
 from ..scene.vehicle import Vehicle, is_enclosed, is_open
-from .build_figures import BUILD_FIGURES, Placement
+from .build_figures import BUILD_FIGURES
 from .domains import (
     AXES,
     POSITION_AXES,
@@ -31,8 +31,9 @@ from .domains import (
     pose_values,
     start_values,
 )
-from .limits import Limits
+from .limit import FigureLimits
 from .mounts import Mounting, NoGo, SlotMount, SurfaceMount
+from .placement import Placement
 
 PAPER_FREE = ("x", "y", "z", "pitch")
 """What the paper searches; roll and yaw are fixed "for symmetry of the placement"."""
@@ -78,7 +79,7 @@ class SearchSpace(ShortRepr):
     vehicle: Vehicle | None = None
     housings: Mapping[str, Housing] = field(default_factory=dict)
     fixed: Sequence[str] = ()
-    figure_limits: Limits = field(default_factory=Limits)
+    figure_limits: FigureLimits = field(default_factory=FigureLimits)
 
     def __post_init__(self) -> None:
         for name in ("bounds", "housings"):
@@ -96,7 +97,7 @@ class SearchSpace(ShortRepr):
         mounting: Mounting | None = None,
         housings: Mapping[str, Housing] | None = None,
         fixed: Sequence[str] = (),
-        figure_limits: Limits | None = None,
+        figure_limits: FigureLimits | None = None,
     ) -> "SearchSpace":
         """Return a rig's free axes within the vehicle's outline and HEADROOM_M above it.
 
@@ -133,7 +134,7 @@ class SearchSpace(ShortRepr):
             vehicle,
             housings or {},
             fixed=fixed,
-            figure_limits=figure_limits or Limits(),
+            figure_limits=figure_limits or FigureLimits(),
         )
         return space.checked(rig)
 

@@ -18,9 +18,10 @@ from ..base.values import A_NAME, Name, Whole, listed
 from ..scene.data_sheet import PRICE, DataSheet
 from ..scene.rig import Rig, Sensor, SensorModel
 from ..sensors import KINDS
-from .build_figures import BUILD_FIGURES, RELATIVE, SUMS, Placement, sheet_of
-from .limits import Limits
+from .build_figures import BUILD_FIGURES, RELATIVE, SUMS, sheet_of
+from .limit import FigureLimits
 from .mounts import NO_MOUNT, Mounting
+from .placement import Placement
 
 COUNT = Whole(0, 10_000)
 CURRENCY = Name("a currency", empty=True)
@@ -246,13 +247,13 @@ class DesignSpace:
 
     @classmethod
     def of(
-        cls, selection: Selection, rig: Rig, mounting: Mounting, limits: Limits | None = None
+        cls, selection: Selection, rig: Rig, mounting: Mounting, limits: FigureLimits | None = None
     ) -> "DesignSpace":
         """Return the designs of a rig; `InputError` for an impossible choice, or none left."""
         sites = sites_of(selection, rig, mounting)
         chosen = {name for site in sites for name in site.sensors}
         others = tuple(sensor for sensor in rig if sensor.name not in chosen)
-        kept = limits or Limits()
+        kept = limits or FigureLimits()
         sums = {key: kept.kept_value(key) for key in SUMS}
         given: dict[str, Any] = {PRICE_SUM: sums.pop(PRICE_SUM)}
         given |= {name: getattr(selection, name) for name in (COUNTED, OF_KIND)}

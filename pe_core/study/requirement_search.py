@@ -17,8 +17,9 @@ from ..scoring.score import Objective
 from ..scoring.sight import Sight
 from ..search import shared_parts
 from ..search.dispatch import value_below
-from ..search.figures import FIGURES, KEPT, REACH, RigView
+from ..search.figures import FIGURES, KEPT, REACH
 from ..search.limits import Limits
+from ..search.rig_view import RigView
 from .conditions import mounting_cases
 from .study import Study
 

@@ -56,8 +56,8 @@ from ..search import (
     checked_method,
     rig_on_mounts,
 )
-from ..search.build_figures import housings_of
 from ..search.key_figures import KeyFigures
+from ..search.placement import housings_of
 from ..sensors import PerceptionModel
 from ..sensors.lidar import ALL, RETURNS
 from ..sensors.weather import with_returns

@@ -33,9 +33,9 @@ from ..scoring.sight.blind_ground import BLIND_TO_M
 from ..search import MountingPlaces, Parametrization
 from ..search.build_figures import sheet_of
 from ..search.domains import ANGLE_DECIMALS_DEG, METRE, POSITION_DECIMALS, RADIAN, SHARE
-from ..search.figures import RigView
 from ..search.methods.method import sampled_candidate
 from ..search.parametrization import Candidate
+from ..search.rig_view import RigView
 from ..sensors import kind_of
 from .requirement_search import RequirementConstraint
 from .study import Study

@@ -18,7 +18,7 @@ from pe_core.scoring.score import (
     PartScore,
     Score,
 )
-from pe_core.search.figures import blind_height
+from pe_core.search.rig_view import blind_height
 from pe_tools.wording import percent
 
 from .advice import Advice

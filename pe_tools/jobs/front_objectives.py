@@ -11,7 +11,7 @@ from pe_core.scoring import RigEvaluator
 from pe_core.scoring.requirements import FARTHEST_M, Verdict
 from pe_core.scoring.score import Score
 from pe_core.search import objective_of
-from pe_core.search.build_figures import BUILD_FIGURES, SUMS, BuildFigure, Placement
+from pe_core.search.build_figures import BUILD_FIGURES, SUMS, BuildFigure
 from pe_core.search.figures import (
     AP,
     BLIND_ZONES,
@@ -21,9 +21,10 @@ from pe_core.search.figures import (
     ON_FRONT,
     PRICE,
     WORST_LOSS,
-    RigView,
     figure_of,
 )
+from pe_core.search.placement import Placement
+from pe_core.search.rig_view import RigView
 from pe_core.search.tolerance import without_each
 from pe_core.study.condition_table import is_by_ap
 from pe_core.study.study import EXPECTED_AP, Study

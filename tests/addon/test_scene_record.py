@@ -11,7 +11,7 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from blender_addon import bridge
-from blender_addon.engine import studies
+from blender_addon.engine import search, studies
 from pe_core.scoring.sampling import FIRST_SAMPLES
 from tests.addon import scenes
 
@@ -86,6 +86,9 @@ def rich(car):
     settings.limit_height = 2.6
     settings.limit_width = 2.4
     settings.limit_distance = 0.1
+    for key in search.LIMITED:
+        if key != search.REQUIREMENTS and not settings.is_property_set(f"limit_{key}"):
+            setattr(settings, f"limit_{key}", 0)
     settings.clear_housings = True
     assert bpy.ops.pe.add_no_go() == {"FINISHED"}
     bpy.context.object.location = (0.0, 0.0, 9.0)

@@ -12,7 +12,8 @@ import pe_core as pe
 import pe_tools as pt
 from pe_core.scene.rig import hull_of
 from pe_core.search import Front, Goals, Parametrization
-from pe_core.search.build_figures import ALONE, BUILD_FIGURES, CELL_M, SUMS, Placement
+from pe_core.search.build_figures import ALONE, BUILD_FIGURES, CELL_M, SUMS
+from pe_core.search.placement import Placement
 from pe_tools.advice import built_lines
 from pe_tools.cli.verbs import main
 from tests.engine import shapes

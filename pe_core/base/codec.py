@@ -25,6 +25,7 @@ from .setting import (
     NAMES,
     REQUIRED,
     Pair,
+    Part,
     Setting,
     Triple,
     ValueRule,
@@ -103,25 +104,6 @@ class Node:
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
-    """How a field stands in a document, where its name and type do not say it: metadata of its
-    annotation, ``Annotated[str, Part(key="class")]``.
-
-    `key`: Its key; empty: the field's name.
-    `rule`: The rule of its value.
-    `inline`: Whether its keys stand in the table of its class, without a table of its own.
-    `by_name`: Whether a mapping of names is an array of tables, each with its `name`.
-    `stored`: Whether a document has it.
-    """
-
-    key: str = ""
-    rule: ValueRule | None = None
-    inline: bool = False
-    by_name: bool = False
-    stored: bool = True
-
-
-@dataclass(frozen=True, slots=True)
 class Hook:
     """How values of a type are read and written, which no walk can know.
 
@@ -170,8 +152,6 @@ class DocumentField(NamedTuple):
         return type(None) in typing.get_args(self.hint)
 
 
-Named = typing.Annotated[str, Part(rule=A_NAME)]
-"""The name of what a table describes."""
 HOOKS: dict[type, Hook] = {}
 """By type, for its subclasses, too."""
 

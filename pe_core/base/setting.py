@@ -10,7 +10,7 @@ table of keys in docs/settings.md.
 import functools
 from collections.abc import Collection, Iterable
 from dataclasses import MISSING, dataclass, field, fields
-from typing import Any, Protocol, TypeVar
+from typing import Annotated, Any, Protocol, TypeVar
 
 from .errors import InputError, shown
 from .values import A_NAME, Angle, Name, Number, choice, degrees_in_file, listed, pair, vector
@@ -238,3 +238,26 @@ def value_in_file(rule: object, value: Any) -> Any:
 def is_angle(rule: object) -> bool:
     """Whether values of a rule are angles, which are in degrees in files."""
     return isinstance(rule.rule if isinstance(rule, Triple | Pair) else rule, Angle)
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """How a field stands in a document, where its name and type do not say it: metadata of its
+    annotation, ``Annotated[str, Part(key="class")]``.
+
+    `key`: Its key; empty: the field's name.
+    `rule`: The rule of its value.
+    `inline`: Whether its keys stand in the table of its class, without a table of its own.
+    `by_name`: Whether a mapping of names is an array of tables, each with its `name`.
+    `stored`: Whether a document has it.
+    """
+
+    key: str = ""
+    rule: ValueRule | None = None
+    inline: bool = False
+    by_name: bool = False
+    stored: bool = True
+
+
+Named = Annotated[str, Part(rule=A_NAME)]
+"""The name of what a table describes."""

@@ -261,3 +261,8 @@ def _shipped() -> Mapping[str, Entry]:
                 raise InputError(file.name, name, "a name used once", by_name[name].file)
             by_name[name] = Entry(name, file.name, read_only_data(table))
     return MappingProxyType(by_name)
+
+
+def same_model(one: SensorModel, other: SensorModel) -> bool:
+    """Return whether two models have equal values, whatever their names."""
+    return one is other or to_table(one) == to_table(other)

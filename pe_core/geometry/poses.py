@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..base.arrays import Floats
-from ..base.codec import Part
 from ..base.errors import InputError
-from ..base.setting import Triple
+from ..base.setting import Part, Triple
 from ..base.values import Angle, Number, degrees_in_file, numbers, vector
 
 FARTHEST_M = 1e4  # Maximum magnitude of a coordinate; kernels rely on it

@@ -15,10 +15,10 @@ from typing import Annotated, Any
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.codec import Named, Node, Part, hook, read_fields, write_fields
+from ..base.codec import Node, hook, read_fields, write_fields
 from ..base.errors import InputError, require_kind, shown
 from ..base.files import decode_text, read_bytes
-from ..base.setting import Panel, check_settings, setting
+from ..base.setting import Named, Panel, Part, check_settings, setting
 from ..base.table_reader import load_toml
 from ..base.values import A_NAME, Angle, Number, choice, listed, vector
 from ..scene.vehicle import Vehicle

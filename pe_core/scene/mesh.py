@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arrays import Floats
-from ..base.codec import Part
 from ..base.errors import MAX_FOUND_LENGTH, InputError
 from ..base.notebook import ShortRepr
+from ..base.setting import Part
 from ..base.values import Number, choice, vector
 from ..geometry.poses import ROTATION_DEG
 

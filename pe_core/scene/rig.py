@@ -13,9 +13,9 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.codec import Named, Part
 from ..base.errors import InputError, require_kind, shown
 from ..base.notebook import ShortRepr, Tabular
+from ..base.setting import Named, Part
 from ..base.values import A_NAME, A_TEXT, LENGTH, Number, choice, listed, vector
 from ..geometry.overlap import Hull, meets_box, meets_cylinder, upright_hull
 from ..geometry.poses import Pose, dot, rotate

@@ -12,9 +12,17 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.codec import Named, Part
 from ..base.errors import InputError, require_name
-from ..base.setting import NAMES, Panel, Triple, check_settings, required_setting, setting
+from ..base.setting import (
+    NAMES,
+    Named,
+    Panel,
+    Part,
+    Triple,
+    check_settings,
+    required_setting,
+    setting,
+)
 from ..base.values import A_NAME, WEIGHT, Angle, Number, Whole
 from ..geometry.poses import Pose, rotate, rotation_matrix, rpy_from_matrix
 from .rig import Rig, Sensor

@@ -10,9 +10,8 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 from ..base.arrays import ReadOnlyDict
-from ..base.codec import Named, Part
 from ..base.errors import InputError, require_kind, require_name, shown
-from ..base.setting import NAMES, Panel, Several, check_settings, setting
+from ..base.setting import NAMES, Named, Panel, Part, Several, check_settings, setting
 from ..base.values import A_NAME, Number, Whole, listed
 from ..geometry.poses import Pose
 from ..scene.rig import Rig

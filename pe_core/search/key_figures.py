@@ -1,19 +1,23 @@
 """Key figures: the values of `FIGURES` for a rig, and the dashboard that they are read from."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..base.values import rounded
 from ..scene.rig import Rig
 from ..scoring.score import TrafficAp
-from ..scoring.sight import Sight
 from ..scoring.sight.blind_ground import WITHIN_M, BlindSector
 from .build_figures import BUILD_FIGURES
 from .figure import Figure
 from .figures import AP, AP_RINGS, ENTROPY, FIGURES, REQUIREMENTS, on_dashboard
 from .limit import FigureLimits
 from .rig_view import RigView, blind_height
+
+if TYPE_CHECKING:
+    from ..scoring.sight import Sight
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +49,7 @@ class KeyFigures:
     unknown: Mapping[str, Sequence[str]] = field(default_factory=dict)
 
     @classmethod
-    def of_rig(cls, sight: Sight, rig: Rig) -> "KeyFigures":
+    def of_rig(cls, sight: Sight, rig: Rig) -> KeyFigures:
         """Return the key figures of a rig; `InputError` where the ground is not in the space."""
         view = RigView(sight, rig)
         found = {key: row.worst(row.values(view)) for key, row in FIGURES.items()}
@@ -70,7 +74,7 @@ class KeyFigures:
             del data["traffic"]["scatter"]
         return data
 
-    def errors_from(self, other: "KeyFigures") -> dict[str, float]:
+    def errors_from(self, other: KeyFigures) -> dict[str, float]:
         """Return the standard errors of the differences from another rig's figures, by the names of
         `FIGURES`; figures without a scatter are left out."""
         if self.traffic is None or other.traffic is None:
@@ -83,7 +87,7 @@ class KeyFigures:
         }
 
     @classmethod
-    def from_dict(cls, data: Mapping[str, Any]) -> "KeyFigures":
+    def from_dict(cls, data: Mapping[str, Any]) -> KeyFigures:
         """Return the figures from the data of `to_dict`."""
         traffic = data["traffic"]
         if traffic is not None:

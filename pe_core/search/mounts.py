@@ -8,10 +8,9 @@ from typing import Annotated, Any
 import numpy as np
 
 from ..base.arrays import Floats, ReadOnlyDict
-from ..base.codec import Named, Part
 from ..base.errors import InputError, one_of, require_kind, shown
 from ..base.notebook import ShortRepr
-from ..base.setting import FLAG, OneOf, Pair, Panel, check_settings, setting
+from ..base.setting import FLAG, Named, OneOf, Pair, Panel, Part, check_settings, setting
 from ..base.values import A_NAME, A_PATH, ANY, Angle, Number, listed
 from ..geometry.poses import Pose
 from ..scene.vehicle import Vehicle

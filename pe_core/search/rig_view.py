@@ -1,13 +1,18 @@
 """A rig as figures look at it."""
 
+from __future__ import annotations
+
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from ..base.values import rounded
 from ..scene.rig import Rig
-from ..scoring.score import TrafficAp
-from ..scoring.sight import Sight
 from ..scoring.sight.blind_ground import BLIND_TO_M, BlindSector
 from .placement import Placement
+
+if TYPE_CHECKING:
+    from ..scoring.score import TrafficAp
+    from ..scoring.sight import Sight
 
 
 def blind_height(sight: Sight) -> float:

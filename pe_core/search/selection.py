@@ -11,9 +11,8 @@ from operator import le
 from typing import Annotated, Any
 
 from ..base.arrays import ReadOnlyDict
-from ..base.codec import Part
 from ..base.errors import InputError, one_of, require_name, shown
-from ..base.setting import Panel, check_settings, required_setting, same_setting, setting
+from ..base.setting import Panel, Part, check_settings, required_setting, same_setting, setting
 from ..base.values import A_NAME, Name, Whole, listed
 from ..scene.data_sheet import PRICE, DataSheet
 from ..scene.rig import Rig, Sensor, SensorModel

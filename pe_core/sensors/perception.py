@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from ..base.arrays import ReadOnlyDict
-from ..base.codec import Node, Part, read, read_value
+from ..base.codec import Node, read, read_value
 from ..base.errors import InputError, shown
 from ..base.files import decode_text, read_bytes
-from ..base.setting import OneOf, Panel, check_settings, setting, settings_of
+from ..base.setting import OneOf, Panel, Part, check_settings, setting, settings_of
 from ..base.table_reader import load_toml
 from ..base.values import A_NAME, choice
 from ..metric.entropy import ApCurve

@@ -17,9 +17,8 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
-from ..base.codec import Named
 from ..base.errors import InputError, shown
-from ..base.setting import FLAG, Panel, check_settings, setting
+from ..base.setting import FLAG, Named, Panel, check_settings, setting
 from ..base.values import A_NAME, WEIGHT, Number
 from ..scene.rig import Rig, SensorModel
 from ..scene.vehicle import Vehicle

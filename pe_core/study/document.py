@@ -8,9 +8,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any
 
-from ..base.codec import Node, Part
+from ..base.codec import Node
 from ..base.plugins import shipped
-from ..base.setting import Pair, Several, key_of, same_setting, settings_of
+from ..base.setting import Pair, Part, Several, key_of, same_setting, settings_of
 from ..base.values import A_NAME, A_PATH
 from ..geometry.grids import PerceptionSpace
 from ..geometry.poses import METRES, ROTATION

@@ -5,13 +5,13 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from .. import catalog
-from ..base.codec import Node, Part, hook, read
-from ..base.errors import InputError, one_of, shown
+from ..base.codec import Node, hook, read
+from ..base.errors import one_of, shown
 from ..base.plugins import shipped
+from ..base.setting import Part
 from ..base.values import A_PATH
 from ..scene.mesh import AS_SAID, Mesh
-from ..scene.rig import Rig, SensorModel
+from ..scene.rig import Rig
 from ..search import MountArea, Mounting, SurfaceMount
 
 
@@ -67,17 +67,6 @@ def _write_area(area: MountArea) -> dict[str, Any]:
 hook(MountArea, _read_area, _write_area, AreaFile)
 
 
-def check_pairs(rig: Rig, mounting: Mounting) -> None:
-    """Refuse a pair whose sensors are of different models."""
-    models = {sensor.name: sensor.model for sensor in rig}
-    for pair in mounting.pairs:
-        one, other = (models.get(name) for name in pair)
-        if one is not None and other is not None and not same_model(one, other):
-            named = " and ".join(repr(name) for name in pair)
-            found = f"{one.name} and {other.name}"
-            raise InputError("optimize", f"pair of {named}", "sensors of one model", found)
-
-
 def mounts_table(rig: Rig, mounting: Mounting) -> dict[str, dict[str, Any]]:
     """Return the table "mounts" of result.json: the mount of each sensor that is on one."""
     table = {}
@@ -92,8 +81,3 @@ def mounts_table(rig: Rig, mounting: Mounting) -> dict[str, dict[str, Any]]:
             own = {"slot": mount.nearest(rig[sensor].pose.position).name}
         table[sensor] = {"mount": name, **own}
     return table
-
-
-def same_model(one: SensorModel, other: SensorModel) -> bool:
-    """Return whether two models have equal values, whatever their names."""
-    return one is other or catalog.to_table(one) == catalog.to_table(other)

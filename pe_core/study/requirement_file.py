@@ -13,8 +13,9 @@ from importlib import resources
 from types import MappingProxyType
 from typing import Annotated, Any
 
-from ..base.codec import Node, Part, hook, read_fields, write_fields
+from ..base.codec import Node, hook, read_fields, write_fields
 from ..base.errors import shown
+from ..base.setting import Part
 from ..base.values import as_in_file, choice, degrees_in_file, listed
 from ..scoring import requirements as room
 from ..scoring.requirements import BODIES, Body, Requirement

@@ -4,10 +4,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import Annotated
 
-from ..base.codec import Named, Node, Part, hook, read_fields, write_fields
+from ..base.codec import Node, hook, read_fields, write_fields
 from ..base.errors import InputError, one_of, shown
 from ..base.plugins import shipped
-from ..base.setting import OneOf, Triple, same_setting
+from ..base.setting import Named, OneOf, Part, Triple, same_setting
 from ..base.values import A_PATH
 from ..geometry.grids import PerceptionSpace
 from ..metric.entropy import ApCurve

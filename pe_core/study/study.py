@@ -9,11 +9,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any
 
+from .. import catalog
 from ..base.arrays import ReadOnlyDict
-from ..base.codec import Part
 from ..base.errors import InputError, require_kind, shown
 from ..base.notebook import ShortRepr, Tabular
-from ..base.setting import OneOf, Panel, check_settings, setting
+from ..base.setting import OneOf, Panel, Part, check_settings, setting
 from ..base.values import A_NAME, A_PATH, Whole
 from ..geometry.grids import PerceptionSpace
 from ..metric.frames import Frames
@@ -68,7 +68,6 @@ from .conditions import (
     check_classes,
     mounting_cases,
 )
-from .mounting_file import check_pairs
 
 ENTROPY = "entropy"
 EXPECTED_AP = "expected_ap"
@@ -451,7 +450,7 @@ class Study(Tabular):
     def search_space(self) -> SearchSpace:
         """Return free axes and bounds [m or rad], with mounts and constraints."""
         search = self.search
-        check_pairs(self.rig, search.mounting)
+        _check_pairs(self.rig, search.mounting)
         where = search.free, search.limits, search.mounting, housings_of(self.rig)
         # Prices are of the designs, not of the sensors that they replace.
         limits = self.limits.changed(price=None) if self.selection.choices else self.limits
@@ -525,3 +524,14 @@ def _of_rig(search: Search, rig: Rig) -> Search:
     mounting = replace(search.mounting, on=on)
     goals = search.goals.of_rig(rig, mounting)
     return replace(search, free=free, limits=limits, mounting=mounting, goals=goals)
+
+
+def _check_pairs(rig: Rig, mounting: Mounting) -> None:
+    """Refuse a pair whose sensors are of different models."""
+    models = {sensor.name: sensor.model for sensor in rig}
+    for pair in mounting.pairs:
+        one, other = (models.get(name) for name in pair)
+        if one is not None and other is not None and not catalog.same_model(one, other):
+            named = " and ".join(repr(name) for name in pair)
+            found = f"{one.name} and {other.name}"
+            raise InputError("optimize", f"pair of {named}", "sensors of one model", found)

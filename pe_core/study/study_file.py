@@ -15,7 +15,7 @@ from ..base.setting import REQUIRED, OneOf, Setting, Several, is_angle, value_in
 from ..base.table_reader import dumps, inline, load_toml
 from ..scene.rig import Rig, SensorModel
 from .document import Document
-from .mounting_file import areas_of, same_model
+from .mounting_file import areas_of
 from .study import Study
 
 OWN_MODEL = "own"  # Name of an own model that has none, where no sensor has one
@@ -138,7 +138,7 @@ def _write_model(model: SensorModel) -> str | dict[str, Any]:
     """Return the catalogue's name of a model, or the values of an own model."""
     entry = catalog.entries().get(model.name)
     is_shipped = entry is not None and entry.file != catalog.OWN
-    if is_shipped and same_model(catalog.load(model.name), model):
+    if is_shipped and catalog.same_model(catalog.load(model.name), model):
         return model.name
     return {"name": model.name, **catalog.to_table(model)}
 

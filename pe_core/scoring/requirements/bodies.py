@@ -15,9 +15,9 @@ from typing import Annotated, Any
 import numpy as np
 
 from ...base.arrays import Flags, Floats, Ints
-from ...base.codec import Named, Node, Part, hook, read, write
+from ...base.codec import Node, hook, read, write
 from ...base.errors import InputError, shown
-from ...base.setting import Triple
+from ...base.setting import Named, Part, Triple
 from ...base.values import A_NAME, Angle, Number, choice
 from ...prior.classes import ROAD_CLASSES
 

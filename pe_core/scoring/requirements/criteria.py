@@ -5,10 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Annotated
 
-from ...base.codec import Named, Part
 from ...base.errors import InputError, require_kind, shown
 from ...base.notebook import ShortRepr
-from ...base.setting import FLAG, NAMES, Panel, check_settings, setting, settings_of
+from ...base.setting import FLAG, NAMES, Named, Panel, Part, check_settings, setting, settings_of
 from ...base.values import A_NAME, A_TEXT, SHARE, Number, Whole
 from ...scene.rig import Rig
 from ...sensors import KINDS, kind_named

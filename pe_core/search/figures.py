@@ -149,7 +149,7 @@ def figure_of(name: str, currency: str = "") -> Figure:
         row = FIGURES[name]
         return replace(row, unit=currency) if name == PRICE else row
     label = name.replace("_", " ")
-    return Figure(name, label, "", label)
+    return Figure(name, f"{label[:1].upper()}{label[1:]}", "", label)
 
 
 def on_dashboard() -> list[Figure]:

@@ -33,7 +33,7 @@ def options(names=PRICES):
 def study(choices, *sensors, free=("x", "pitch"), candidates=3, **limits):
     """A small study on the box car: few voxels, two rounds."""
     sensors = sensors or (mounting.can(),)
-    schedule = pe.Schedule(candidates, 0.4, 0.1, 0.2, 0.05)
+    schedule = pe.Schedule(candidates)
     return pe.Study(
         pe.Rig(sensors),
         mounting.car(),
@@ -213,7 +213,7 @@ def file(tmp_path):
 def test_the_table_tells_price_entropy_and_where_each_sensor_sits(file, tmp_path, capsys):
     assert verbs.main(["optimize", str(file), "-o", str(tmp_path / "out")]) == 0
     out = capsys.readouterr().out.splitlines()
-    assert out[0].split() == ["price", "[EUR]", "entropy", "[nats]", "design"]
+    assert out[0].split() == ["Price", "[EUR]", "Entropy", "[nats]", "design"]
     data = json.loads((tmp_path / "out" / "front.json").read_text())
     first = next(row for row in data["designs"] if row["on_front"])
     assert out[1].split()[:2] == ["2", f"{first['entropy']:.3f}"]

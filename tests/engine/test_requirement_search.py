@@ -230,7 +230,7 @@ def test_shortfalls_are_zero_exactly_where_a_verdict_says_met():
     assert again.shortfalls(moved) == offs
     evaluator = own.evaluator()
     objective = feasible_first(evaluator, constraints_of(own))
-    free = replace(own, search=replace(own.search, requirements=None))
+    free = replace(own, limits=pe.Limits())
     kept = feasible_first(evaluator, constraints_of(free))
     assert kept is evaluator and objective.entropy(own.rig) > INFEASIBLE
 

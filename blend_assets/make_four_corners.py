@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import bpy
@@ -109,8 +110,7 @@ def add_requirements() -> None:
     bpy.ops.pe.add_row(rows="requirements", kind="OWN")
     row = settings.requirements[-1]
     row.name = STOPPING
-    row.x_from = "front + 3.7"
-    row.x_to = f"front + {STOPPING_M}"
+    row.zone = f'x = ["front + 3.7", "front + {STOPPING_M}"], y = ["right", "left"]'
     row.one_lost = True
     settings.requirement_index = 0
 
@@ -143,7 +143,8 @@ def write_study() -> None:
     areas = [mount.area.triangles for mount in mounts.values()]
     parts = np.repeat(np.arange(len(areas), dtype=np.int32), [len(area) for area in areas])
     formats.write_mesh(FOLDER / "areas.npz", pe.Mesh(np.concatenate(areas), parts, tuple(mounts)))
-    pe.save_study(study.with_mesh("../../bus.npz"), FOLDER / "study.toml")
+    study = replace(study.with_mesh("../../bus.npz"), samples=0)  # all voxels
+    pe.save_study(study, FOLDER / "study.toml")
 
 
 def main() -> None:

@@ -128,7 +128,7 @@ def figures_of(result: Result) -> Values:
         "stderr": f"{max(score.stderr, 1e-3):.3f}",
         "coverage": f"{100.0 * score.coverage:.1f} %",
         "met": f"{result.met} of {len(result.verdicts)}",
-        "blind": f"{math.ceil(10.0 * key.blind_m2) / 10.0:.1f} m²",
+        "blind": f"{math.ceil(10.0 * key.values['blind_ground']) / 10.0:.1f} m²",
         "reach": f"{math.floor(key.reach[CLASS][0])} m",
     }
     for verdict in result.verdicts:

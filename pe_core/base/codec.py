@@ -100,6 +100,8 @@ class Node:
                 raise
             own = self.path.rpartition(".")[2].partition("[")[0]
             key = key_of(error.field.removeprefix(f"{own}."))
+            if isinstance(self.value, Mapping) and error.source in self.value:
+                key = f"{error.source}.{key}"  # of a table inside
             raise self.error(error.expected, error.found, key) from None
 
 

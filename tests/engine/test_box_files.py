@@ -56,7 +56,7 @@ BAD_PRIORS = [
     ("prior.classes", ('"labels"', '"labels"\nclasses = []')),
     ("prior.origin", ('"labels"', '"labels"\norigin = [1, 2]')),
     ("prior.origin", ('"labels"', '"labels"\norigin = [1, 2, inf]')),
-    ("focus: classes", ("pedestrian", "truck")),
+    ("prior.focus.classes", ("pedestrian", "truck")),
     ("prior.origin", ('boxes = "labels"', "origin = [1, 2, 3]")),
     ("{}/wrong: line 2", ('"labels"', '"wrong"')),
 ]

@@ -80,6 +80,7 @@ def test_scripts_and_styles_stand_once_and_data_by_study(scored, other, monkeypa
         return {
             "driven": (),
             "strips": (),
+            "window": 5,
             "script_data": {"key": one.key, "name": name, "x": [1.5, None]},
         }
 

@@ -35,7 +35,7 @@ def bumper():
 def test_a_page_shows_a_rig_with_the_kind(bumper):
     text = page_bytes([bumper]).decode()
     page = parsed(text)
-    assert "Toy Ring" in [cell.text for cell in page.all("td")]
+    assert "Toy Ring" in [cell.text for cell in page.all("th")]
     assert "range           4 m" in [each.text for each in page.all("pre")]
     for sensor, score in bumper.after.per_sensor.items():
         assert score.coverage > 0.0, sensor

@@ -68,7 +68,7 @@ def box_ahead(monkeypatch):
     triangles = solid((9.0, 11.0), (-1.0, 1.0), (0.0, 2.0))
     none = np.zeros(len(triangles), np.int64)
     content = Scene(triangles, none, none, np.array([[10.0, 0.0]]), labels=np.array([0]), flat=True)
-    monkeypatch.setattr(rendering, "scene", lambda *_: content)
+    monkeypatch.setattr(rendering, "scene", lambda *_, **__: content)
 
 
 def test_a_cube_covers_the_pixels_that_its_face_does(box_ahead):

@@ -101,6 +101,9 @@ def _read_prior(node: Node) -> Prior:
     for key in ("model", "classes", "class", FROM_GRID):
         if source not in (None, key) and key in node.table:
             raise node.error(f"nothing beside {node.path}.{source}", "a value", key)
+    for key, needed in (("origin", FROM_BOXES), ("space", FROM_GRID)):
+        if key in node.table and needed not in node.table:
+            raise node.error(f"nothing without {node.path}.{needed}", "a value", key)
     if own.boxes is not None:
         boxes = shipped("reader.boxes")(node.folder / own.boxes, own.origin)
         prior = Prior.from_boxes(replace(boxes, file=own.boxes))

@@ -128,8 +128,9 @@ def take_score(
     request: ScoreRequest,
     number: int,
     baseline: Baseline | None,
-    moving: bool,
     scored: ScoredRig,
+    *,
+    moving: bool,
 ) -> None:
     """Store a score that the engine made, and have it drawn."""
     state = live_state(name)

@@ -90,7 +90,7 @@ def request_score(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, mov
     )
     baseline = baseline_of(scene, request, moving)
     needed = None if baseline is None or moving or baseline.summary else baseline.rig
-    deliver = partial(take_score, name, request, number, baseline, moving=moving)
+    deliver = partial(take_score, name, request, number=number, baseline=baseline, moving=moving)
     fail = partial(report_failure, name)
     topic = engine_process.LIVE_SCORE + name
     given = (name, request, needed)
@@ -126,10 +126,10 @@ def read_request(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Scor
 def take_score(
     name: str,
     request: ScoreRequest,
-    number: int,
-    baseline: Baseline | None,
     scored: ScoredRig,
     *,
+    number: int,
+    baseline: Baseline | None,
     moving: bool,
 ) -> None:
     """Store a score that the engine made, and have it drawn."""

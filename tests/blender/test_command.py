@@ -32,6 +32,7 @@ SHORT_STORY = """
 name = "crossing_child"
 speed_kmh = 30.0
 [[story.body]]
+name = "child"
 body = "child"
 path = [[-0.3, 0.0, -0.5], [0.0, 0.0, 0.0]]
 """

@@ -107,7 +107,7 @@ def test_what_is_shown_of_before_a_change_is_marked_until_it_is_worked_out(rig, 
     scenes.drawn(rig)
     item = shown_of(rig.name, "blind")[""]
     assert not scheduler.is_preview(rig.name, "blind", "", item)
-    monkeypatch.setattr(scheduler.engine_process, "ask", lambda *_: None)  # it is busy
+    monkeypatch.setattr(scheduler.engine_process, "ask", lambda *_, **_named: None)  # it is busy
     rig.objects["roof"].location.x += 0.1
     bpy.context.view_layer.update()
     scheduler.on_idle()

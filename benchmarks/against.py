@@ -24,7 +24,7 @@ SLOWER = 1.1
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class RatioRow:
     """A row timed on two commits. `ratios`: new time by old time, pair by pair."""
 
     name: str
@@ -74,7 +74,7 @@ def _checkout(rev: str) -> Iterator[Path]:
             subprocess.run([*git, "remove", "--force", folder], check=True)
 
 
-def _timed(old: Path, name: str) -> Row | None:
+def _timed(old: Path, name: str) -> RatioRow | None:
     """Time a row on both commits in alternation; None where the older one lacks it."""
     ratios = []
     work = ""
@@ -85,7 +85,7 @@ def _timed(old: Path, name: str) -> Row | None:
             return None
         work = after["work"]
         ratios.append(after["ours_s"] / before["ours_s"])
-    return Row(name, work, tuple(ratios))
+    return RatioRow(name, work, tuple(ratios))
 
 
 def _seconds(folder: Path, python: Path, name: str) -> dict | None:

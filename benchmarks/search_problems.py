@@ -26,7 +26,7 @@ PUCK = "Velodyne VLP-16 Puck"
 """A model whose housing the catalogue knows."""
 UPRIGHT = (0.0, 0.0, 0.0)
 Vector3 = tuple[float, float, float]
-Limits = dict[str, tuple[float, float]]
+AxisLimits = dict[str, tuple[float, float]]
 CAR = {
     "body": ((-2.3, -0.9, 0.2), (2.3, 0.9, 0.9)),
     "cabin": ((-1.5, -0.7, 0.85), (0.8, 0.7, 1.45)),
@@ -77,7 +77,7 @@ def study(
     sensors: list[pe.Sensor],
     vehicle: pe.Vehicle | None,
     free: Mapping[str, tuple[str, ...]],
-    limits: Mapping[str, Limits] | None = None,
+    limits: Mapping[str, AxisLimits] | None = None,
     mounting: pe.Mounting | None = None,
     samples: int = SAMPLES,
     **more: object,
@@ -194,7 +194,7 @@ def eight_free() -> pe.Study:
     """Four LiDARs and four cameras in boxes, the cameras' yaw free, too; nothing in their way."""
     sensors = _around("abcd", [lidar()], far=2.0, wide=1.0, z=1.6)
     sensors += _around("efgh", [camera(60.0)], far=2.0, wide=1.0, z=1.4)
-    limits: dict[str, Limits] = {}
+    limits: dict[str, AxisLimits] = {}
     for each in sensors:
         limits[each.name] = {"x": (-3, 3), "y": (-1.5, 1.5), "z": (0.5, 2.6), "pitch": (-20, 20)}
         if each.name in "efgh":
@@ -219,7 +219,7 @@ def sixteen_free() -> pe.Study:
     """Eight LiDARs and eight cameras in boxes, nothing in their way."""
     sensors = _around("abcdefgh", [lidar(8, 60)], far=2.5, wide=1.0, z=1.8)
     sensors += _around("ijklmnop", [camera(30.0), camera(60.0)], far=2.5, wide=1.0, z=1.5)
-    limits: dict[str, Limits] = {}
+    limits: dict[str, AxisLimits] = {}
     for each in sensors:
         limits[each.name] = {"x": (-3, 3), "y": (-1.3, 1.3), "z": (0.5, 3.0), "pitch": (-20, 20)}
         if each.name in "ijklmnop":
@@ -262,7 +262,9 @@ def three_on_roof() -> pe.Study:
     """Three LiDARs on a shuttle's roof, roll and pitch free, at least half a metre apart."""
     place = {"a": (2.5, 0.0, 2.55), "b": (-2.5, 0.6, 2.55), "c": (-2.5, -0.6, 2.55)}
     sensors = [sensor(name, lidar(), at) for name, at in place.items()]
-    limits: dict[str, Limits] = {n: {"roll": (-25.0, 25.0), "pitch": (-25.0, 25.0)} for n in place}
+    limits: dict[str, AxisLimits] = {
+        n: {"roll": (-25.0, 25.0), "pitch": (-25.0, 25.0)} for n in place
+    }
     mounting = pe.Mounting(
         mounts={"roof": pe.SurfaceMount(["hull top"], 0.15, "upright")},
         on=dict.fromkeys(place, "roof"),
@@ -286,7 +288,9 @@ def cameras_around() -> pe.Study:
         "side": pe.SurfaceMount(["body left"], 0.01, "facing"),
     }
     mounting = pe.Mounting(mounts=mounts, on=on, pairs=[(n, f"{n} right") for n in place])
-    limits: dict[str, Limits] = {n: {"pitch": (-30.0, 30.0), "yaw": (-70.0, 70.0)} for n in place}
+    limits: dict[str, AxisLimits] = {
+        n: {"pitch": (-30.0, 30.0), "yaw": (-70.0, 70.0)} for n in place
+    }
     return study(
         sensors, body(CAR), dict.fromkeys(place, ("pitch", "yaw")), limits, mounting=mounting
     )
@@ -314,7 +318,7 @@ def corners_in_pairs() -> pe.Study:
     sensors += [sensor("wide", camera(90.0), (0.9, 0.0, 1.5))]
     sensors += [sensor("narrow", camera(30.0), (0.9, 0.2, 1.5))]
     corner = {"y": (0.5, 1.2), "z": (0.4, 1.5), "pitch": (-15.0, 15.0), "roll": (-15.0, 15.0)}
-    limits: dict[str, Limits] = {"front": {"x": (1.8, 2.7), **corner}}
+    limits: dict[str, AxisLimits] = {"front": {"x": (1.8, 2.7), **corner}}
     limits["rear"] = {"x": (-2.7, -1.8), **corner}
     limits |= {n: {"z": (1.2, 1.8), "pitch": (-20.0, 20.0)} for n in ("wide", "narrow")}
     mounting = pe.Mounting(pairs=[(n, f"{n} right") for n in ("front", "rear")])

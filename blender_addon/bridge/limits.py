@@ -42,7 +42,7 @@ def _limit_of(settings: PropertyGroup, key: str) -> search.Limit | None:
 def write_limits(settings: PropertyGroup, limits: search.Limits) -> None:
     """Write limits to a scene."""
     for key in search.LIMITED:
-        limit = limits.of(key)
+        limit = limits.limit_on(key)
         is_locked = limit.kept if limit is not None else not can_be_kept_alone(key)
         setattr(settings, keep_property(key), is_locked)
         if key != search.REQUIREMENTS:

@@ -67,9 +67,9 @@ class Node:
     def at(self, key: str, default: Any = None) -> "Node":
         """Return the value of a key of this table."""
         path = f"{self.path}.{key}" if self.path else key
-        return self.of(self.table.get(key, default), path)
+        return self.with_value(self.table.get(key, default), path)
 
-    def of(self, value: Any, path: str) -> "Node":
+    def with_value(self, value: Any, path: str) -> "Node":
         """Return a value below this one."""
         name = self.value.get("name") if isinstance(self.value, Mapping) else None
         owner = name if isinstance(name, str) else self.owner
@@ -88,7 +88,7 @@ class Node:
         """The elements of a list; `InputError` where it is none."""
         if not isinstance(self.value, list | tuple):
             raise self.error(f"an array [[{self.path}]]", shown(self.value))
-        return [self.of(each, f"{self.path}[{k}]") for k, each in enumerate(self.value)]
+        return [self.with_value(each, f"{self.path}[{k}]") for k, each in enumerate(self.value)]
 
     @contextmanager
     def naming(self) -> Iterator[None]:
@@ -273,7 +273,7 @@ def _made(cls: Any, node: Node, base: Any = None) -> Any:
             values[each.name] = _made(each.hint, node, None if given is MISSING else given)
         elif each.part.inline:
             rest = {key: value for key, value in node.table.items() if key not in own_keys}
-            values[each.name] = read_value(each.hint, node.of(rest, node.path))
+            values[each.name] = read_value(each.hint, node.with_value(rest, node.path))
         elif each.key in node.table:
             values[each.name] = _value(each, node.at(each.key))
         elif given is not MISSING:
@@ -327,7 +327,7 @@ def read_value(hint: Any, node: Node) -> Any:
     values = listed(node.value, len(inner))
     if values is None or len(values) != len(inner):
         raise node.error(f"a list of {len(inner)} values", shown(node.value))
-    rows = node.of(values, node.path).items
+    rows = node.with_value(values, node.path).items
     return tuple(read_value(each, row) for each, row in zip(inner, rows, strict=True))
 
 

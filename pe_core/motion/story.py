@@ -208,7 +208,7 @@ def _read_story(node: Node) -> Story:
         raise node.error("a name, or a preset", "none", "name")
     if preset.value is not None:
         base = stories()[choice(preset.source, preset.path, preset.value, stories())]
-    return read_fields(Story, node.of(table, node.path), base)
+    return read_fields(Story, node.with_value(table, node.path), base)
 
 
 def _write_story(story: Story) -> dict[str, Any]:

@@ -83,19 +83,19 @@ class FigureLimits:
     def __post_init__(self) -> None:
         check_settings(self, TABLE)
 
-    def of(self, key: str) -> Limit | None:
+    def limit_on(self, key: str) -> Limit | None:
         """Return the limit on a figure; None where there is none, or the figure can have none."""
         limit: Limit | None = getattr(self, key, None)
         return limit
 
     def value(self, key: str) -> float | None:
         """Return the number of a limit; None where there is none."""
-        limit = self.of(key)
+        limit = self.limit_on(key)
         return None if limit is None else limit.value
 
     def kept(self, key: str) -> Limit | None:
         """Return the limit on a figure if a search keeps it."""
-        limit = self.of(key)
+        limit = self.limit_on(key)
         return limit if limit is not None and limit.kept else None
 
     def kept_value(self, key: str) -> float | None:
@@ -106,7 +106,7 @@ class FigureLimits:
     @property
     def keeps_requirements(self) -> bool:
         """Whether placements that meet all requirements are better than all that do not."""
-        return self.of(REQUIREMENTS) is not None
+        return self.limit_on(REQUIREMENTS) is not None
 
     def changed(self, **limits: Any) -> Self:
         """Return these limits with others for some figures; None for no limit."""
@@ -115,5 +115,5 @@ class FigureLimits:
     def __iter__(self) -> Iterator[tuple[str, Limit]]:
         """Yield the limits by name, in the order of `FIGURES`."""
         for each in fields(self):
-            if (limit := self.of(each.name)) is not None:
+            if (limit := self.limit_on(each.name)) is not None:
                 yield each.name, limit

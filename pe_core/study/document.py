@@ -28,7 +28,7 @@ from ..search import AXES, PAPER_FREE, SCHEDULED_METHOD, Limits, Schedule, Selec
 from ..sensors import PerceptionModel
 from ..sensors.weather import Weather
 from .conditions import Conditions
-from .scoring_file import Fusion, ModelFile
+from .scoring_file import FusionTable, ModelFile
 from .study import Search, Study
 
 Range = tuple[float, float]
@@ -38,7 +38,7 @@ ABOUT = Pair(ROTATION, same=True)
 
 
 @dataclass(frozen=True)
-class Bounds:
+class AxisBounds:
     """Bounds of a sensor's axes, in place of the default ones [m or rad]."""
 
     x: Annotated[Range | None, Part(rule=ALONG)] = None
@@ -61,7 +61,7 @@ class SensorTable:
 
     sensor: Annotated[Sensor, Part(inline=True)]
     free: Annotated[tuple[str, ...] | None, Part(rule=FREE)] = None
-    bounds: Bounds = field(default_factory=Bounds)
+    bounds: AxisBounds = field(default_factory=AxisBounds)
     mount: Annotated[str | None, Part(rule=A_NAME)] = None
 
 
@@ -111,14 +111,14 @@ class VehicleTable:
 
 
 @dataclass(frozen=True)
-class Measurement:
+class MeasurementTable:
     """The table [measurement]."""
 
     returns: str = same_setting(Study, "returns")
 
 
 @dataclass(frozen=True)
-class Timing:
+class TimeTable:
     """The table [time]: frames of the entropy over frames, and how tracks are confirmed."""
 
     frames: Annotated[Frames, Part(inline=True)] = field(default_factory=Frames)
@@ -141,16 +141,16 @@ class Document:
     space: PerceptionSpace = field(default_factory=PerceptionSpace)
     prior: Prior = field(default_factory=Prior.road)
     metric: TargetRule = field(default_factory=TargetRule)
-    measurement: Measurement = field(default_factory=Measurement)
+    measurement: MeasurementTable = field(default_factory=MeasurementTable)
     ap: ModelFile = field(default_factory=ModelFile)
-    fusion: Fusion = field(default_factory=Fusion)
+    fusion: FusionTable = field(default_factory=FusionTable)
     vehicle: VehicleTable = field(default_factory=VehicleTable)
     reference: Reference | None = None
     sensor: tuple[SensorTable, ...] = ()
     requirement: tuple[Requirement, ...] = ()
     weather: tuple[Weather, ...] = ()
     state: tuple[State, ...] = ()
-    time: Timing = field(default_factory=Timing)
+    time: TimeTable = field(default_factory=TimeTable)
     story: tuple[Story, ...] = ()
     limits: Limits = field(default_factory=Limits)
     optimize: Optimize = field(default_factory=Optimize)
@@ -164,16 +164,16 @@ class Document:
             space=study.space,
             prior=study.prior,
             metric=study.targets,
-            measurement=Measurement(study.returns),
+            measurement=MeasurementTable(study.returns),
             ap=ModelFile.of(study.model),
-            fusion=Fusion(study.model.blind),
+            fusion=FusionTable(study.model.blind),
             vehicle=VehicleTable.of(study),
             reference=study.reference,
             sensor=tuple(_sensor_table(sensor, study.search) for sensor in study.rig),
             requirement=study.requirements,
             weather=tuple(study.conditions.weathers),
             state=tuple(study.conditions.states),
-            time=Timing(study.frames, study.confirmation),
+            time=TimeTable(study.frames, study.confirmation),
             story=study.stories,
             limits=study.limits,
             optimize=Optimize(search=study.search),
@@ -218,7 +218,7 @@ class Document:
         for number, row in enumerate(rows):
             if row.mount is not None and row.mount not in search.mounting.mounts:
                 names = search.mounting.mounts
-                with node.of(None, f"sensor[{number}]").naming():
+                with node.with_value(None, f"sensor[{number}]").naming():
                     replace(search.mounting, mounts=names, on={row.sensor.name: row.mount})
         return replace(search, free=free, limits=limits, mounting=replace(search.mounting, on=on))
 
@@ -240,6 +240,6 @@ def _sensor_table(sensor: Sensor, search: Search) -> SensorTable:
     return SensorTable(
         sensor,
         free=None if free == PAPER_FREE else free,
-        bounds=Bounds(**search.limits.get(sensor.name, {})),
+        bounds=AxisBounds(**search.limits.get(sensor.name, {})),
         mount=search.mounting.on.get(sensor.name),
     )

@@ -91,7 +91,7 @@ def read_requirement(node: Node) -> Requirement:
     if identifier.value is None:
         return _read(node)
     base = preset(identifier.value, identifier.source, identifier.path)
-    changed = _read(node.of(_merged(base.table, node.table), node.path))
+    changed = _read(node.with_value(_merged(base.table, node.table), node.path))
     return replace(changed, original=replace(_read(base.node), preset=base.id))
 
 
@@ -136,7 +136,7 @@ def _read(node: Node) -> Requirement:
     table = {key: value for key, value in node.table.items() if key != "headings"}
     if isinstance(bodies.value, str | Mapping):
         table["body"] = [bodies.value]
-    made = read_fields(Requirement, node.of(table, node.path))
+    made = read_fields(Requirement, node.with_value(table, node.path))
     turned = [_with_headings(body, headings) for body in made.bodies]
     return replace(made, bodies=tuple(turned))
 

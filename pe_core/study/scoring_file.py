@@ -154,7 +154,7 @@ class ModelFile:
 
 
 @dataclass(frozen=True)
-class Fusion:
+class FusionTable:
     """The table [fusion]: how sensors that see nothing count."""
 
     blind: Annotated[str, Part(rule=OneOf(BLIND_RULES))] = "floor"

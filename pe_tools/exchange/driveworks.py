@@ -14,7 +14,7 @@ from pe_core.geometry.poses import METRES, Pose
 from pe_core.sensors.camera import BrownConrady, FTheta, Pinhole
 
 from . import foreign_values as values
-from .foreign_values import Export, Figures, json_of, json_rows, plain_number, pose_from
+from .foreign_values import Export, ForeignNumbers, json_of, json_rows, plain_number, pose_from
 from .frames import composed, shifted
 from .lens_pictures import Picture
 from .merging import merge_rows
@@ -198,7 +198,9 @@ def _distortion(properties: Table) -> list[float]:
         text = properties.raw(DISTORTION)
         field = properties.field(DISTORTION)
         return values.figures(properties.source, field, text, 3, rule=values.COEFFICIENT)
-    figures = Figures(properties.source, lambda key: properties.raw(key, None), properties.field)
+    figures = ForeignNumbers(
+        properties.source, lambda key: properties.raw(key, None), properties.field
+    )
     return [figures.number(key, values.COEFFICIENT) or 0.0 for key in RADIAL]
 
 

@@ -126,7 +126,7 @@ def figures(
 
 
 @dataclass(frozen=True, slots=True)
-class Figures:
+class ForeignNumbers:
     """Numbers of an element of a file, by key: None if it is absent, `InputError` if it is wrong.
     `get` returns the value of a key, a number or its text, or None; `field` is its name in
     messages."""

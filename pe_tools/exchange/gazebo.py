@@ -9,7 +9,7 @@ from pe_core.base.values import SHARE, Number
 from pe_core.sensors.camera import BrownConrady, Pinhole
 
 from . import foreign_values as values
-from .foreign_values import Figures, plain_number
+from .foreign_values import ForeignNumbers, plain_number
 from .lens_pictures import Picture, Size, picture_of_fov
 from .portable import Scan
 
@@ -56,7 +56,7 @@ def write_clip(element: Element, nearest: float | None, farthest: float | None) 
     SubElement(clip, "far").text = plain_number(FAR_M if farthest is None else farthest)
 
 
-def picture_in(sensor: Figures) -> Picture | None:
+def picture_in(sensor: ForeignNumbers) -> Picture | None:
     """Return a camera's intrinsics; None if its field of view or its image size is missing. Without
     intrinsics in the file, the principal point is the centre of the distortion, which is given as a
     fraction of the image size. A field of view of 180 degrees or more is not that of a pinhole; the
@@ -103,7 +103,7 @@ def write_scan(element: Element, scan: Scan) -> None:
     SubElement(range_element, "max").text = repr(scan.max_range)
 
 
-def scan_in(sensor: Figures) -> Scan | None:
+def scan_in(sensor: ForeignNumbers) -> Scan | None:
     """Return a LiDAR's scan; None if it is incomplete. Without ``<vertical>`` it has one channel.
     Its first and last azimuth are at both ends: N samples are N - 1 steps apart.
     Angles that end before they begin raise `InputError`."""

@@ -11,7 +11,7 @@ from pe_tools.formats.xml_text import text_in
 
 from . import foreign_values as values
 from . import frames
-from .foreign_values import Figures
+from .foreign_values import ForeignNumbers
 from .gazebo import picture_in, scan_in
 from .portable import ORIGIN, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
@@ -102,7 +102,7 @@ def _sensor(
     type_name = element.get("type", "")
     kind = KIND_BY_TYPE.get(type_name, type_name or None)
     pose = _pose_of(path, _field(name)("pose"), at.pose, element, poses=poses)
-    figures = Figures(path, lambda key: text_in(element.find(f".//{key}")), _field(name))
+    figures = ForeignNumbers(path, lambda key: text_in(element.find(f".//{key}")), _field(name))
     picture = picture_in(figures)
     return PortableSensor(name, pose, kind, picture=picture, scan=scan_in(figures))
 
@@ -113,7 +113,7 @@ def _field(name: str) -> Callable[[str], str]:
 
 def _with_own(path: Path, sensor: PortableSensor, own: Element) -> PortableSensor:
     """Return a sensor with what an export of this program adds."""
-    known = Figures(path, own.get, _field(sensor.name))
+    known = ForeignNumbers(path, own.get, _field(sensor.name))
     return replace(
         sensor,
         kind=own.get("kind") or sensor.kind,

@@ -246,9 +246,9 @@ class Message(Table):
                 fields[name] = value
 
     @property
-    def figures(self) -> values.Figures:
+    def figures(self) -> values.ForeignNumbers:
         """The numbers of its fields."""
-        return values.Figures(self.source, lambda key: self.raw(key, None), self.field)
+        return values.ForeignNumbers(self.source, lambda key: self.raw(key, None), self.field)
 
     def message(self, key: str) -> Message:
         """Return a nested message; an empty one if the field is absent."""

@@ -44,7 +44,7 @@ POSITIONAL_QUATERNION = ("x", "y", "z", "qx", "qy", "qz", "qw")
 
 
 @dataclass(frozen=True, slots=True)
-class Call:
+class LaunchCall:
     """A call of the publisher: where it is in the text of the file, its arguments, and the text
     behind these."""
 
@@ -54,7 +54,7 @@ class Call:
     tail: str
 
     @classmethod
-    def at(cls, span: tuple[int, int], text: str) -> Call:
+    def at(cls, span: tuple[int, int], text: str) -> LaunchCall:
         """Return the call of a text at a place of the file."""
         end = END.search(text)
         length = len(text) if end is None else end.start()
@@ -67,7 +67,7 @@ class Transforms:
     parents, and the poses of all frames in the root frame, by name."""
 
     text: str
-    calls: dict[str, Call]
+    calls: dict[str, LaunchCall]
     links: dict[str, tuple[str, Pose]]
     poses: dict[str, Pose]
 
@@ -186,14 +186,14 @@ def read(path: Path) -> ForeignRig:
     return ForeignRig(with_info(path.parent, sensors), document=document)
 
 
-def _links(path: Path, text: str) -> tuple[dict[str, tuple[str, Pose]], dict[str, Call]]:
+def _links(path: Path, text: str) -> tuple[dict[str, tuple[str, Pose]], dict[str, LaunchCall]]:
     """Return the parent and the pose in the parent frame, and the calls, by frame name."""
     calls = _calls(without_comments(text))
     values.require_at_most(
         path, "file", len(calls), values.MAX_FRAMES, noun=f"calls of {PUBLISHER}"
     )
     links: dict[str, tuple[str, Pose]] = {}
-    by_frame: dict[str, Call] = {}
+    by_frame: dict[str, LaunchCall] = {}
     for number, call in enumerate(calls):
         arguments = call.args
         field = f"transform {number + 1}"
@@ -209,24 +209,24 @@ def _links(path: Path, text: str) -> tuple[dict[str, tuple[str, Pose]], dict[str
     return links, by_frame
 
 
-def _calls(text: str) -> list[Call]:
+def _calls(text: str) -> list[LaunchCall]:
     """Return the calls of the publisher: nodes of a launch file, else lines of a script."""
     calls = []
     for node in NODE.finditer(text):
         if PUBLISHER not in node[1]:
             continue
         if len(node[1]) > 2 * values.MAX_LINE_LENGTH:  # it is refused by its length
-            calls.append(Call(*node.span(1), node[1], ""))
+            calls.append(LaunchCall(*node.span(1), node[1], ""))
             continue
         found = {each[1]: each for each in ATTRIBUTE.finditer(text, *node.span(1))}
         attributes = {key: unescape(each[2] or each[3] or "") for key, each in found.items()}
         if PUBLISHER in (attributes.get("exec"), attributes.get("type")):
             args = found.get("args")
             span = (0, 0) if args is None else args.span(2 if args[2] is not None else 3)
-            calls.append(Call.at(span, attributes.get("args", "")))
+            calls.append(LaunchCall.at(span, attributes.get("args", "")))
     if "<node" in text:
         return calls
-    return [Call.at(call.span(1), call[1]) for call in CALL.finditer(text)]
+    return [LaunchCall.at(call.span(1), call[1]) for call in CALL.finditer(text)]
 
 
 def _transform(path: Path, field: str, args: str) -> tuple[str, str, Pose]:

@@ -19,7 +19,7 @@ WORLD = "world"
 
 
 @dataclass(frozen=True, slots=True)
-class Named:
+class NamedElement:
     """An element of a model with a pose: its name in the whole model, the frame that its pose is
     relative to by default, and the prefix of the names in its model."""
 
@@ -60,25 +60,25 @@ def read_sdf(path: Path, root: Element) -> tuple[PortableRig, list[str]]:
     return tuple(sensors), lines
 
 
-def _elements(model: Element, scope: str, parent: str) -> Iterator[Named]:
+def _elements(model: Element, scope: str, parent: str) -> Iterator[NamedElement]:
     """Yield a model's own frame, its links, joints and frames, and those of models in it."""
     own = f"{scope}{MODEL}"
-    yield Named(model, own, parent, scope)
+    yield NamedElement(model, own, parent, scope)
     for element in model:
         name = f"{scope}{element.get('name', '')}"
         if element.tag == "link":
-            yield Named(element, name, own, scope)
+            yield NamedElement(element, name, own, scope)
         elif element.tag == "frame":
             attached = element.get("attached_to")
-            yield Named(element, name, f"{scope}{attached}" if attached else own, scope)
+            yield NamedElement(element, name, f"{scope}{attached}" if attached else own, scope)
         elif element.tag == "joint":
             child = (element.findtext("child") or "").strip()
-            yield Named(element, name, f"{scope}{child}" if child else own, scope)
+            yield NamedElement(element, name, f"{scope}{child}" if child else own, scope)
         elif element.tag == "model":
             yield from _elements(element, f"{name}::", own)
 
 
-def _poses(path: Path, named: list[Named]) -> dict[str, Pose]:
+def _poses(path: Path, named: list[NamedElement]) -> dict[str, Pose]:
     """Return the poses of all frames in that of the model, whose own pose in a world is left out.
     A model in a model is known by its name, too."""
     names = {each.name for each in named}

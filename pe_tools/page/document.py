@@ -31,7 +31,7 @@ PAGES = f'@bottom-right {{ content: counter(page) " / " counter(pages); {FONT} }
 STYLE_ATTRIBUTE = re.compile(r' style="([^"]*)"')
 
 
-class Part(NamedTuple):
+class PagePart(NamedTuple):
     """A section of one study, or of all: its HTML, and data for its scripts."""
 
     section: Section
@@ -60,7 +60,7 @@ def page_bytes(
         data = section.data(group if section.joint else group[0])
         if data is not None:
             html = section.html(group, data)
-            parts.append(Part(section, group[0], html, data.get("script_data", {})))
+            parts.append(PagePart(section, group[0], html, data.get("script_data", {})))
     chapters = [(section, list(own)) for section, own in groupby(parts, lambda part: part.section)]
     names = " and ".join(context.name for context in contexts)
     title = about.title or f"Sensor review: {names}"

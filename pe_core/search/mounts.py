@@ -246,8 +246,8 @@ class Mounting(ShortRepr):
                 raise InputError(f"sensor {sensor!r}", "mount", known, shown(name))
         put(self, "mounts", ReadOnlyDict(self.mounts))
         put(self, "on", ReadOnlyDict(self.on))
-        put(self, "pairs", _links("pair", self.pairs, lambda count: count == 2, "two sensors"))
-        put(self, "groups", _links("group", self.groups, lambda count: count > 1, "sensors"))
+        put(self, "pairs", _links("pairs", self.pairs, lambda count: count == 2, "two sensors"))
+        put(self, "groups", _links("groups", self.groups, lambda count: count > 1, "sensors"))
 
     def mount_of(self, sensor: str) -> AnyMount | None:
         """Return a sensor's mount; None if it moves within its bounds."""

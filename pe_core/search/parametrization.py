@@ -82,12 +82,12 @@ def followers(rig: Rig, mounting: Mounting, vehicle: Vehicle | None) -> tuple[Fo
         if abs(low + high) > MAX_ASYMMETRY * (high - low):
             expected = "a vehicle that is its own mirror image across y = 0"
             found = f"one from y = {low:.2f} to {high:.2f} m"
-            raise InputError("optimize", "pair", expected, found)
+            raise InputError("optimize", "pairs", expected, found)
     ordered: list[Follower] = []
     while waiting:
         ready = [link for link in waiting.values() if link.leader not in waiting]
         if not ready:
-            raise InputError("optimize", "pair, group", "a sensor that leads", "a ring of sensors")
+            raise InputError("optimize", "pairs, groups", "a sensor that leads", "a ring of sensors")
         ordered += ready
         waiting = {name: link for name, link in waiting.items() if link not in ready}
     return tuple(ordered)
@@ -118,7 +118,7 @@ def _group_links(rig: Rig, mounting: Mounting) -> Iterator[Follower]:
 
 def _check_names(rig: Rig, mounting: Mounting) -> None:
     names = [sensor.name for sensor in rig]
-    for field, links in (("pair", mounting.pairs), ("group", mounting.groups)):
+    for field, links in (("pairs", mounting.pairs), ("groups", mounting.groups)):
         for name in (name for link in links for name in link):
             require_name("optimize", field, name, names)
     following = [pair[1] for pair in mounting.pairs]
@@ -126,7 +126,7 @@ def _check_names(rig: Rig, mounting: Mounting) -> None:
     for name in following:
         if following.count(name) > 1:
             expected = "a sensor that follows one other"
-            raise InputError("optimize", "pair, group", expected, f"{name!r} follows two")
+            raise InputError("optimize", "pairs, groups", expected, f"{name!r} follows two")
         if name in mounting.on:
             expected = "no mount for a sensor that follows another"
             raise InputError(f"sensor {name!r}", "mount", expected, shown(mounting.on[name]))

@@ -133,9 +133,9 @@ BAD = [
     ),
     ("optimize.pair", ([LEFT], {"pairs": [["left"]]})),
     ("optimize.pair", ([LEFT], {"pairs": [["left", "left"]]})),
-    ("optimize: pair", ([LEFT], PAIR)),
-    ("optimize: pair, group", ([LEFT, RIGHT], PAIR | GROUP)),
-    ("optimize: pair, group", ([LEFT, RIGHT], PAIR | {"groups": [["right", "left"]]})),
+    ("optimize: pairs", ([LEFT], PAIR)),
+    ("optimize: pairs, groups", ([LEFT, RIGHT], PAIR | GROUP)),
+    ("optimize: pairs, groups", ([LEFT, RIGHT], PAIR | {"groups": [["right", "left"]]})),
     ("sensor 'right': bounds", ([LEFT, RIGHT | {"bounds": {"x": [-1, 1]}}], PAIR)),
     (
         "sensor 'right': mount",

@@ -155,7 +155,7 @@ def begun_in(folder, **changes):
         ({"version": "0.0.9"}, f"version: expected {pe.__version__}, the version of this program"),
         ({"perception-entropy": "other"}, "file: expected the state of a search, as this program"),
         ({"study": 3}, "file: expected the state of a search"),
-        ({"study": "a = 1"}, "sensor: expected at least one [[sensor]], found none"),
+        ({"study": "samples = 1024"}, "sensor: expected at least one [[sensor]], found none"),
         ({"study_sha256": "0"}, "study: expected unchanged files beside the study, found"),
         ({"journals": {"": [[1.0, "a"], [1, 2]]}}, "evaluated[1]: expected an entropy, a digest"),
         ({"journals": {"": [[math.nan, "a"]]}}, "file: expected valid JSON, found NaN"),

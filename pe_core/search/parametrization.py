@@ -87,7 +87,9 @@ def followers(rig: Rig, mounting: Mounting, vehicle: Vehicle | None) -> tuple[Fo
     while waiting:
         ready = [link for link in waiting.values() if link.leader not in waiting]
         if not ready:
-            raise InputError("optimize", "pairs, groups", "a sensor that leads", "a ring of sensors")
+            raise InputError(
+                "optimize", "pairs, groups", "a sensor that leads", "a ring of sensors"
+            )
         ordered += ready
         waiting = {name: link for name, link in waiting.items() if link not in ready}
     return tuple(ordered)

@@ -116,7 +116,7 @@ def test_most_keys_have_a_comment_and_those_that_are_off_work(tmp_path):
     on, count = re.subn(r"^# (?=\[|\w+ = )", "", text, flags=re.MULTILINE)
     keys = [line for line in on.splitlines() if re.match(r"\w+ = ", line)]
     assert len(keys) == 28 and sum("  # " in line for line in keys) > 16
-    assert count == 8, "a camera of five lines, the scale, two limits"
+    assert count == 9, "a camera of five lines, the scale, a table of two limits"
     (tmp_path / "on.toml").write_text(on, "utf-8")
     study = pe.load_study(tmp_path / "on.toml")
     study.coding()

@@ -29,6 +29,16 @@ SHORT = {
 """Keys of the study with an option of their own: key, form of the value, meaning."""
 
 
+class LastOfKey(argparse.Action):
+    """Adds ``KEY=VALUE`` to a list, in place of an earlier value of the same key."""
+
+    def __call__(self, _parser: Any, namespace: Any, values: Any, _flag: str | None = None) -> None:
+        """Add a value."""
+        key = values.partition("=")[0]
+        others = [each for each in getattr(namespace, self.dest) if each.partition("=")[0] != key]
+        setattr(namespace, self.dest, [*others, values])
+
+
 class OptionRow(NamedTuple):
     """An option: its flags, its meaning, and further arguments of `add_argument`."""
 
@@ -131,7 +141,15 @@ def _of_studies() -> dict[str, OptionRow]:
     for name, (key, form, about) in SHORT.items():
         meant = f"{about}; as --set {key}={form}"
         typed = f"{key}={{}}".format
-        rows[name] = several(f"--{name}", dest="set", type=typed, metavar=form, about=meant)
+        rows[name] = row(
+            f"--{name}",
+            about=meant,
+            action=LastOfKey,
+            default=[],
+            dest="set",
+            type=typed,
+            metavar=form,
+        )
     return rows
 
 

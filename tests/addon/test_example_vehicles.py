@@ -96,6 +96,8 @@ def test_the_demo_searches_by_default_for_a_lidar_and_a_camera(addon, tmp_path):
     assert {kind_of(sensor).name for sensor in rig} == {"camera", "lidar"}
     script = (TOOLS / "demo.sh").read_text("utf-8")
     options = shlex.split(re.search(r"OPTIONS=\((.*?)\)", script, re.DOTALL)[1])
+    options.remove("optimize.samples=32768")
+    options.remove("--set")
     few = ("--evaluations", "5", "--samples", "1024", "--workers", "1")
     few += ("--set", "optimize.samples=1024")
     answer = run_here(start, "optimize", *options, *few, "--no-review", "--output", tmp_path)

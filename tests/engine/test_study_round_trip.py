@@ -184,14 +184,7 @@ def searches(draw, rig, vehicle):
         limits[sensor.name] = {
             a: draw(pairs(METRES if a in "xyz" else TURN, start[a])) for a in axes
         }
-    schedule = pe.Schedule(
-        draw(st.integers(1, 10**6)),
-        draw(st.floats(0, 100)),
-        draw(st.floats(0, math.pi)),
-        draw(st.floats(1e-4, 10)),
-        draw(st.floats(1e-4, 3)),
-        draw(st.floats(0.01, 0.95)),
-    )
+    schedule = pe.Schedule(candidates=draw(st.integers(1, 10**6)))
     samples = draw(st.sampled_from([0, 1024, 65_536]))
     mounting = draw(mountings(rig, vehicle, limits))
     seed = draw(st.integers(0, 2**63 - 1))
@@ -243,13 +236,15 @@ def mountings(draw, rig, vehicle, limits):
 
 @st.composite
 def constraints(draw):
-    sizes = st.one_of(st.none(), SIZES)
     sides = st.one_of(st.none(), pairs(METRES).filter(lambda p: p[0] < p[1]))
     names = draw(st.lists(NAMES, max_size=2, unique=True))
     areas = [pe.NoGo(name, draw(sides), draw(sides), (0.0, math.inf)) for name in names]
-    distance = draw(st.floats(0, 9))
-    clear = draw(st.booleans())
-    return pe.Constraints(draw(sizes), draw(sizes), distance, clear, areas)
+    return pe.Constraints(draw(st.booleans()), areas)
+
+
+LIMITS = st.builds(
+    pe.Limits, height=st.one_of(st.none(), SIZES), width=SIZES, distance=st.floats(0, 9)
+)
 
 
 @st.composite
@@ -335,8 +330,7 @@ def selections(draw, rig):
     choices = [pe.Choice(options, [[*rig][-1].name], None, draw(st.booleans()))] if some else []
     count = st.one_of(st.none(), st.integers(9, 99))
     kinds = {kind: n for kind in ("lidar", "camera") if (n := draw(count)) is not None}
-    price = draw(st.one_of(st.none(), st.floats(1e6, 1e9)))
-    return pe.Selection(choices, price, draw(count), kinds, draw(st.one_of(st.just(""), NAMES)))
+    return pe.Selection(choices, draw(count), kinds, draw(st.one_of(st.just(""), NAMES)))
 
 
 @st.composite
@@ -359,6 +353,7 @@ def studies(draw, folder):
         *((None,) if vehicle is None else ("body.npz", draw(mesh_axes()))),
         reference=draw(st.one_of(st.none(), REFERENCES)),
         selection=draw(selections(rig)),
+        limits=draw(LIMITS),
         targets=draw(TARGETS),
     )
 

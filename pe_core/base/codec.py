@@ -14,12 +14,12 @@ import math
 import types
 import typing
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import MISSING, dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
-from .errors import InputError, one_of, shown
+from .errors import InputError, naming_table, one_of, shown
 from .setting import (
     FLAG,
     NAMES,
@@ -90,19 +90,10 @@ class Node:
             raise self.error(f"an array [[{self.path}]]", shown(self.value))
         return [self.with_value(each, f"{self.path}[{k}]") for k, each in enumerate(self.value)]
 
-    @contextmanager
-    def naming(self) -> Iterator[None]:
+    def naming(self) -> AbstractContextManager[None]:
         """Name this table in errors about what is made of it; errors about the document stay."""
-        try:
-            yield
-        except InputError as error:
-            if error.source == self.source:
-                raise
-            own = self.path.rpartition(".")[2].partition("[")[0]
-            key = key_of(error.field.removeprefix(f"{own}."))
-            if isinstance(self.value, Mapping) and error.source in self.value:
-                key = f"{error.source}.{key}"  # of a table inside
-            raise self.error(error.expected, error.found, key) from None
+        tables = self.value if isinstance(self.value, Mapping) else ()
+        return naming_table(self.source, self.path, tables, key_of)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ escaped.
 import os
 import reprlib
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Container, Iterable, Iterator
 from contextlib import contextmanager
 from difflib import get_close_matches
 from pathlib import Path
@@ -236,3 +236,33 @@ def _content(path: Path) -> str:
         return path.read_text("ascii")
     except (OSError, ValueError):
         return ""
+
+
+@contextmanager
+def naming_table(
+    source: str, path: str, tables: Container[str] = (), key_of: Callable[[str], str] = str
+) -> Iterator[None]:
+    """Name a table of a document in errors about what is made of it; errors about the document
+    stay as they are.
+
+    Parameters
+    ----------
+    source : str
+        Name of the document.
+    path : str
+        Key of the table in the document; empty for all of it.
+    tables : container of str
+        Names of tables inside: an error about one of them names it.
+    key_of : callable
+        Returns the key of a field.
+    """
+    try:
+        yield
+    except InputError as error:
+        if error.source == source:
+            raise
+        own = path.rpartition(".")[2].partition("[")[0]
+        key = key_of(error.field.removeprefix(f"{own}."))
+        inside = error.source if error.source in tables else ""
+        field = ".".join(filter(None, (path, inside, key)))
+        raise InputError(source, field, error.expected, error.found) from None

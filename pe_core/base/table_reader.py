@@ -7,11 +7,11 @@ import json
 import math
 import re
 import tomllib
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
 from typing import Any
 
-from .errors import InputError, one_of, shown
+from .errors import InputError, naming_table, one_of, shown
 from .values import A_TEXT, ANY, Name, Number, Whole, choice, listed, real
 
 REQUIRED = object()
@@ -61,17 +61,9 @@ class Table:
         """Return an `InputError` about the value of a key."""
         return InputError(self.source, self.field(key), expected, found)
 
-    @contextmanager
-    def naming(self) -> Iterator[None]:
+    def naming(self) -> AbstractContextManager[None]:
         """Name this table in errors about what is made of it; errors about the file stay."""
-        try:
-            yield
-        except InputError as error:
-            if error.source == self.source:
-                raise
-            own = self.path.rpartition(".")[2].partition("[")[0]
-            key = error.field.removeprefix(f"{own}.")
-            raise self.error(key, error.expected, error.found) from None
+        return naming_table(self.source, self.path)
 
     def raw(self, key: str, default: Any = REQUIRED) -> Any:
         """Return the unchecked value of a key."""

@@ -88,7 +88,6 @@ def _refuses(expected: str) -> Callable[..., NoReturn]:
 
 NO_OBJECTS = _refuses("a kind of sensor that measures objects")
 NO_PARTS = _refuses("a kind whose rays end on bodies")
-NO_PICTURES = _refuses("a kind of sensor with pictures")
 
 
 def ray_to_center(sensor: Sensor, center: Floats, side: float) -> tuple[Floats, Floats]:

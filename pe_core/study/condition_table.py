@@ -36,7 +36,6 @@ from .study import DEFAULT_SEARCH_SAMPLES, EXPECTED_AP, Study
 
 COVERS = 0.01
 """A part that occludes more of a sensor than as drawn, by this share of its rays, is told."""
-MEAN = "mean"
 WORST = "worst"
 
 

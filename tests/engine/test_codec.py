@@ -15,6 +15,30 @@ from pe_core.base.setting import Named, Part, check_settings, setting
 from pe_core.base.values import Angle, Number
 
 LENGTH = Number(0.0, 10.0, unit="m")
+DATA = {
+    "plate": [{"name": "a", "layers": 3, "hole": [{"radius": 1.5}]}, {"name": "b"}],
+    "tile": [
+        {"name": "disc", "radius": 2.0},
+        {"name": "turned", "side": 1.0, "turn_deg": 30.0},
+        {"name": "flat", "side": 2.0},
+    ],
+    "weights": {"oak": 0.5},
+    "corner": [1.0, -2.0],
+}
+BAD = [
+    ("document", [], "a table"),
+    ("plate", {"plate": {}}, "an array"),
+    ("plate[1].name", {"plate": [{"name": "a"}, {}]}, "a value"),
+    ("plate[0].nam", {"plate": [{"nam": "a"}]}, "name, or"),
+    ("plate[0].hole[0].radius", {"plate": [{"name": "a", "hole": [{"radius": 11}]}]}, "10"),
+    ("plate[0].layers", {"plate": [{"name": "a", "layers": 4}]}, "another number"),
+    ("tile[1].name", {"tile": [{"name": "a", "side": 1}] * 2}, "each name once"),
+    ("tile[0].turn_deg", {"tile": [{"name": "a", "side": 1, "turn_deg": 91}]}, "90 degrees"),
+    ("tile[0].colour", {"tile": [{"name": "a", "side": 1, "colour": 1}]}, "side"),
+    ("weights.oak", {"weights": {"oak": "heavy"}}, "a number"),
+    ("corner", {"corner": [1.0]}, "2 values"),
+    ("digest", {"digest": "x"}, "one of"),
+]
 
 
 @dataclass(frozen=True)
@@ -62,16 +86,6 @@ WALL = Wall(
     weights={"oak": 0.5},
     corner=(1.0, -2.0),
 )
-DATA = {
-    "plate": [{"name": "a", "layers": 3, "hole": [{"radius": 1.5}]}, {"name": "b"}],
-    "tile": [
-        {"name": "disc", "radius": 2.0},
-        {"name": "turned", "side": 1.0, "turn_deg": 30.0},
-        {"name": "flat", "side": 2.0},
-    ],
-    "weights": {"oak": 0.5},
-    "corner": [1.0, -2.0],
-}
 
 
 def test_a_tree_is_written_without_defaults_and_comes_back_equal():
@@ -80,22 +94,6 @@ def test_a_tree_is_written_without_defaults_and_comes_back_equal():
     jsonschema.validate(DATA, schema_of(Wall))
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.validate({"plate": [{"nam": "a"}]}, schema_of(Wall))
-
-
-BAD = [
-    ("document", [], "a table"),
-    ("plate", {"plate": {}}, "an array"),
-    ("plate[1].name", {"plate": [{"name": "a"}, {}]}, "a value"),
-    ("plate[0].nam", {"plate": [{"nam": "a"}]}, "name, or"),
-    ("plate[0].hole[0].radius", {"plate": [{"name": "a", "hole": [{"radius": 11}]}]}, "10"),
-    ("plate[0].layers", {"plate": [{"name": "a", "layers": 4}]}, "another number"),
-    ("tile[1].name", {"tile": [{"name": "a", "side": 1}] * 2}, "each name once"),
-    ("tile[0].turn_deg", {"tile": [{"name": "a", "side": 1, "turn_deg": 91}]}, "90 degrees"),
-    ("tile[0].colour", {"tile": [{"name": "a", "side": 1, "colour": 1}]}, "side"),
-    ("weights.oak", {"weights": {"oak": "heavy"}}, "a number"),
-    ("corner", {"corner": [1.0]}, "2 values"),
-    ("digest", {"digest": "x"}, "one of"),
-]
 
 
 @pytest.mark.parametrize(("path", "data", "expected"), BAD, ids=[row[0] for row in BAD])

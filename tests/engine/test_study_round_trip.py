@@ -50,6 +50,9 @@ REFERENCES = st.builds(pe.Reference, METRES, st.floats(1e-3, 9), MAYBE_M, MAYBE_
 CURVES = st.builds(pe.ApCurve, st.floats(1e-3, 9), st.floats(-9, 9))
 OBJECTS = st.builds(pe.TargetRule, st.just("objects"), st.booleans(), st.integers(8, 20_000))
 TARGETS = st.one_of(st.builds(pe.TargetRule, scenes=st.integers(8, 999)), OBJECTS)
+LIMITS = st.builds(
+    pe.Limits, height=st.one_of(st.none(), SIZES), width=SIZES, distance=st.floats(0, 9)
+)
 
 
 # --- equality, field by field -------------------------------------------------------------------
@@ -240,11 +243,6 @@ def constraints(draw):
     names = draw(st.lists(NAMES, max_size=2, unique=True))
     areas = [pe.NoGo(name, draw(sides), draw(sides), (0.0, math.inf)) for name in names]
     return pe.Constraints(draw(st.booleans()), areas)
-
-
-LIMITS = st.builds(
-    pe.Limits, height=st.one_of(st.none(), SIZES), width=SIZES, distance=st.floats(0, 9)
-)
 
 
 @st.composite

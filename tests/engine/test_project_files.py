@@ -97,6 +97,7 @@ def pinned():
     return [line for line in listed if re.fullmatch(r"[\w-]+==[\d.]+", line)]
 
 
+@pytest.mark.thorough  # what is pinned is installed for these alone
 @pytest.mark.parametrize("requirement", pinned())
 def test_what_is_pinned_can_be_had_on_debian_12(requirement):
     """Its Python is 3.11.2; of what is not pinned pip takes an older version."""

@@ -136,17 +136,23 @@ def test_what_fits_no_study_is_one_line_before_any_work(study, out, setting, com
             ["--set", "samples=0", "--set", "samples=2048"],
             "command line: samples: expected each key",
         ),
-        (
+        pytest.param(
             ["--executor", "foo"],
             "command line: executor: expected dask://HOST:PORT, tcp://HOST:PORT",
+            marks=pytest.mark.thorough,
         ),
-        (
+        pytest.param(
             ["--executor", "tcp://u:p@127.0.0.1:1"],
             "command line: executor: expected dask://HOST:PORT",
+            marks=pytest.mark.thorough,
         ),
         (["--executor", "os:getcwd"], "command line: executor: expected a function that returns a"),
         (["--set", "optimize.seed=5:5"], "command line: range: expected A:B with 1 to 10,000"),
-        (["--executor", "tcp://127.0.0.1:1"], "tcp://127.0.0.1:1: scheduler: expected a"),
+        pytest.param(
+            ["--executor", "tcp://127.0.0.1:1"],
+            "tcp://127.0.0.1:1: scheduler: expected a",
+            marks=pytest.mark.thorough,
+        ),
         (["--set", SEEDS], "command line: runs: expected"),
     ],
 )
@@ -157,6 +163,7 @@ def test_sweeps_that_cannot_be_are_one_line(study, out, more, complaint, capsys,
     assert line.startswith(f"pe: {complaint}"), line
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("protocol", ["tcp", "tls"])
 @pytest.mark.parametrize("greeting", GREETINGS.values(), ids=GREETINGS)
 def test_a_peer_that_is_no_scheduler_is_one_line(

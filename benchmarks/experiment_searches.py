@@ -91,7 +91,7 @@ def run(experiment: str, method: str, seed: int, most: float = float("inf")) -> 
         "seed": seed,
         "entropy": outcome.after.entropy,
         "start": outcome.before.entropy,
-        "own_sample": job.history[-1].entropy,
+        "own_sample": job.history[-1].value.objective,
         "seconds": outcome.seconds,
         "search_s": round(ended - (searching or ended), 3),
         "processor_s": round(_processor_s() - begun, 2),

@@ -94,7 +94,7 @@ def run(seed: int) -> Json:
     job = pt.OptimizeJob(replace(study, search=replace(study.search, seed=seed)))
     first = None
     for _ in job:
-        if first is None and job.history and job.history[-1].entropy < 100.0:
+        if first is None and job.history and job.history[-1].value.is_feasible:
             first = job.history[-1].evaluation
     outcome = job.outcome
     return {

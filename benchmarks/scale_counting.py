@@ -9,55 +9,52 @@ import math
 import os
 import time
 from collections.abc import Sequence
-from concurrent.futures import Executor
 from pathlib import Path
+from typing import Any
 
 import pe_core as pe
-from pe_core.search import Objective, evaluate_all
+from pe_core.search import Journal, Objective, Value
 
 LOOPBACK = Path("/proc/net/dev")
 
 
-class CountedObjective:
-    """An objective that leaves a file each time a worker unpickles it, with the mesh.
+class CountedFigure:
+    """The entropy of a rig by an evaluator; it leaves a file each time a worker unpickles it, with
+    the mesh.
 
     Parameters
     ----------
     folder : str
         Where the files are left.
-    objective : Objective
+    evaluator : pe.Evaluator
     """
 
-    def __init__(self, folder: str, objective: Objective) -> None:
+    def __init__(self, folder: str, evaluator: pe.Evaluator) -> None:
         self.folder = folder
-        self.objective = objective
+        self.evaluator = evaluator
 
     def __setstate__(self, state: dict[str, object]) -> None:
         vars(self).update(state)
         (Path(self.folder) / f"unpickled {os.getpid()} {time.monotonic_ns()}").touch()
 
-    def entropy(self, rig: pe.Rig) -> float:
+    def __call__(self, rig: pe.Rig) -> float:
         """Return the entropy of a rig [nats]."""
-        return self.objective.entropy(rig)
+        return self.evaluator.entropy(rig)
 
 
-class BatchNotes:
-    """An objective that notes in this process how many candidates a search asks for at once."""
+class BatchNotes(Journal):
+    """A journal that notes how many candidates a search asks for at once."""
 
-    def __init__(self, objective: Objective, sizes: list[int]) -> None:
-        self._objective = objective
-        self._sizes = sizes
-
-    def entropy(self, rig: pe.Rig) -> float:
-        """Return the entropy of a rig [nats]."""
-        return self._objective.entropy(rig)
+    def __init__(self) -> None:
+        super().__init__()
+        self.sizes: list[int] = []
 
     def evaluate_all(
-        self, rigs: Sequence[pe.Rig], cutoff: float, executor: Executor | None
-    ) -> list[float]:
-        """Evaluate several rigs, as the objective inside does."""
-        self._sizes.append(len(rigs))
-        return evaluate_all(self._objective, rigs, cutoff, executor)
+        self, objective: Objective, rigs: Sequence[pe.Rig], *more: Any, **options: Any
+    ) -> list[Value]:
+        """Evaluate several rigs, as any journal does."""
+        self.sizes.append(len(rigs))
+        return super().evaluate_all(objective, rigs, *more, **options)
 
 
 def unpickled_by(folder: Path) -> list[int]:

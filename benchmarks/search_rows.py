@@ -10,7 +10,7 @@ import numpy as np
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.search import evaluate_all, start_processes
+from pe_core.search import as_objective, evaluate_all, start_processes
 
 from .timing import Timing, best_in_turn, best_of_processor, peak_mb, timed
 
@@ -41,7 +41,7 @@ def candidate() -> Timing:
         for sensor in lidars:
             assert len(pe.beam_field(sensor, study.vehicle).ends)
 
-    ours, theirs = best_in_turn(lambda: evaluate_all(evaluator, rigs), every_beam)
+    ours, theirs = best_in_turn(lambda: evaluate_all(as_objective(evaluator), rigs), every_beam)
     work = f"{CANDIDATES} candidates near the optimum of experiment 4, {SAMPLES:,} samples"
     return Timing(work, ours, peak_mb(), "first hits of all their beams", yardstick_s=theirs)
 
@@ -56,7 +56,7 @@ def candidates_in_traffic() -> Timing:
     rigs = list(_near_the_optimum(study))
     ours, theirs = (
         best_of_processor(
-            lambda evaluator=evaluator: evaluate_all(evaluator, rigs), TRAFFIC_REPEATS
+            lambda evaluator=evaluator: evaluate_all(as_objective(evaluator), rigs), TRAFFIC_REPEATS
         )
         for evaluator in evaluates
     )
@@ -83,10 +83,10 @@ def candidates_in_processes() -> Timing:
     if pool is None:
         raise SystemExit("no processes can be started")
     with pool:
-        evaluate_all(evaluator, rigs, executor=pool)  # each has the objective now
+        evaluate_all(as_objective(evaluator), rigs, executor=pool)  # each has the objective now
         ours, theirs = best_in_turn(
-            lambda: evaluate_all(evaluator, rigs, executor=pool),
-            lambda: evaluate_all(evaluator, rigs),
+            lambda: evaluate_all(as_objective(evaluator), rigs, executor=pool),
+            lambda: evaluate_all(as_objective(evaluator), rigs),
         )
     return Timing(
         "the same, a process a processor", ours, peak_mb(), "one process", yardstick_s=theirs

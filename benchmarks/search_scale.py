@@ -32,7 +32,7 @@ from pe_core.search import Payload, Processes, evaluate_all, send_payload
 
 from .scale_counting import (
     BatchNotes,
-    CountedObjective,
+    CountedFigure,
     ideal_speedup,
     loopback_bytes,
     processor_s,
@@ -117,7 +117,7 @@ def _measured(study: pe.Study, args: argparse.Namespace, executor: Executor | No
     """Return the figures of several searches with the same workers, and of a batch."""
     idle = _idle_bytes_per_s() if executor is not None else 0.0
     with tempfile.TemporaryDirectory() as folder:
-        objectives = [CountedObjective(folder, each) for each in _evaluators(study)]
+        objectives = [pe.Objective(CountedFigure(folder, each)) for each in _evaluators(study)]
         began = loopback_bytes()
         _send(study, objectives, executor)
         sent = loopback_bytes() - began
@@ -151,7 +151,8 @@ def _evaluators(study: pe.Study) -> list[pe.Evaluator]:
 def _send(study: pe.Study, objectives: Sequence[Any], executor: Executor | None) -> None:
     """Send the payload, as a job does before its search, and have all workers started."""
     if executor is not None:
-        send_payload(executor, (*objectives, *(sensor.model for sensor in study.rig)))
+        parts = (part for objective in objectives for part in objective.shared_parts())
+        send_payload(executor, (*parts, *(sensor.model for sensor in study.rig)))
     for objective in objectives:
         evaluate_all(objective, _moved(study.rig, WARM), executor=executor)
 
@@ -160,14 +161,14 @@ def _run(
     study: pe.Study, objectives: Sequence[Any], evaluations: int, executor: Executor | None
 ) -> Json:
     """Search once; return its time, what it took, and a digest of all steps."""
-    sizes: list[int] = []
-    noted = [BatchNotes(each, sizes) for each in objectives]
+    noted = BatchNotes()
     digest = hashlib.sha256()
     before = loopback_bytes()
     used = processor_s()
     begun = time.perf_counter()
     space = study.search_space()
-    for step in pe.optimize(noted, study.rig, space, evaluations=evaluations, executor=executor):
+    options: Any = {"evaluations": evaluations, "executor": executor, "journal": noted}
+    for step in pe.optimize(objectives, study.rig, space, **options):
         poses = [(s.name, s.pose.position, s.pose.rpy) for s in step.best]
         digest.update(repr((step.entropy, step.evaluations, poses)).encode())
     return {
@@ -175,7 +176,7 @@ def _run(
         "loopback": loopback_bytes() - before,
         "processor": [after - then for after, then in zip(processor_s(), used, strict=True)],
         "digest": digest.hexdigest()[:12],
-        "batches": {str(size): sizes.count(size) for size in sorted(set(sizes))},
+        "batches": {str(n): noted.sizes.count(n) for n in sorted(set(noted.sizes))},
     }
 
 

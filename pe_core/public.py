@@ -58,6 +58,7 @@ from .search import (
     Stop,
     SurfaceMount,
     Tolerance,
+    Value,
     optimize,
     snap_to_mount,
 )
@@ -87,7 +88,7 @@ __all__ += ["Objective", "Objects", "Option", "PartScore", "PerceptionModel", "P
 __all__ += ["Pinhole", "Pose", "Prior", "Reach", "Reference", "Rig", "RigEvaluator", "Scatter"]
 __all__ += ["Schedule", "Score", "Search", "SearchRun", "SearchSpace", "Selection", "Sensor"]
 __all__ += ["SensorScore", "Sight", "Slot", "SlotMount", "Start", "State", "Step", "Stop", "Study"]
-__all__ += ["SurfaceMount", "TargetRule", "Tolerance", "Vehicle", "Weather"]
+__all__ += ["SurfaceMount", "TargetRule", "Tolerance", "Value", "Vehicle", "Weather"]
 __all__ += ["__version__", "beam_field", "catalog", "cuts_body", "guessed_reference", "load_study"]
 __all__ += ["measure", "measure_objects", "optimize", "requirements", "save_study"]
 __all__ += ["snap_to_mount", "study_from_dict", "study_to_dict"]

@@ -10,7 +10,7 @@ from typing import Any, cast
 import bpy
 
 from .. import best_so_far, engine_process, signals, viewport
-from ..engine import jobs, studies
+from ..engine import jobs
 from ..panel_text import draw_label, typeset
 
 TOPIC = "job"
@@ -69,18 +69,17 @@ class RunningJob(jobs.WatchedJob):
         if self.seen.dropped:
             return "Stopping"
         stage = f"{self.progress.stage.capitalize()} {self.progress.fraction:.0%}"
-        entropy = self.progress.entropy
+        value = self.progress.value
         figure = self.progress.figure
-        if entropy is None:
+        if value is None:
             return stage
         if self.progress.stage == "optimizing" and (curve := getattr(self.seen, "curve", ())):
-            entropy = curve[-1][1]  # as the 3D view shows it, from all starts
+            value = curve[-1][1]  # as the 3D view shows it, from all starts
         sampled = self.progress.stage == "optimizing" and self.job.study.search.samples
-        if studies.requirement_search.is_infeasible(entropy):
+        if not value.is_feasible:
             return f"{stage}, limits not met yet"
-        if figure.higher_is_better:
-            return f"{stage}, best AP {'≈ ' if sampled else ''}{figure.to_figure(entropy):.3f}"
-        return f"{stage}, best {'≈ ' if sampled else ''}{entropy:.3f}"
+        what = "best AP" if figure.higher_is_better else "best"
+        return f"{stage}, {what} {'≈ ' if sampled else ''}{figure.to_figure(value):.3f}"
 
     @property
     def on_escape(self) -> str:

@@ -304,6 +304,8 @@ def read_value(hint: Any, node: Node) -> Any:
         return BY_TYPE[hint].checked(node.source, node.path, node.value)
     if is_dataclass(hint):
         return read_fields(typing.cast(type, hint), node)
+    if hasattr(hint, "_fields"):
+        return _named_tuple(hint, node)
     origin = typing.get_origin(hint)
     inner = typing.get_args(hint)
     if origin in (types.UnionType, typing.Union):
@@ -320,6 +322,30 @@ def read_value(hint: Any, node: Node) -> Any:
         raise node.error(f"a list of {len(inner)} values", shown(node.value))
     rows = node.with_value(values, node.path).items
     return tuple(read_value(each, row) for each, row in zip(inner, rows, strict=True))
+
+
+def _named_tuple(hint: Any, node: Node) -> Any:
+    """Return a named tuple from a list of its values, which have their rules or types."""
+    hints = _hints(hint)
+    values = listed(node.value, len(hints))
+    if values is None or len(values) != len(hints):
+        raise node.error(f"a list of {', '.join(hint._fields)}", shown(node.value))
+    rows = node.with_value(values, node.path).items
+    fields_read = [
+        read_value(of_field, row) if rule is None else _by_rule(rule, row)
+        for (of_field, rule), row in zip(hints, rows, strict=True)
+    ]
+    return hint(*fields_read)
+
+
+@functools.cache
+def _hints(named_tuple: Any) -> tuple[tuple[Any, ValueRule | None], ...]:
+    """Return the type of each field of a named tuple, and its rule, if it has one."""
+    found = []
+    for hint in typing.get_type_hints(named_tuple, include_extras=True).values():
+        part = typing.get_args(hint)[1] if typing.get_origin(hint) is typing.Annotated else Part()
+        found.append((hint, part.rule))
+    return tuple(found)
 
 
 def _nearest(hints: Sequence[Any], node: Node) -> Any:

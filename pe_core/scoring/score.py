@@ -415,17 +415,6 @@ def sensor_score(entropy: float, coverage: float, lost: float, occlusion: Occlus
     )
 
 
-class Objective(Protocol):
-    """What a search minimises: an `Evaluator`, or something that wraps one.
-
-    The same rig always has the same value. A method `below`, of a rig and a value, may return inf
-    sooner where the rig's own value is not below that.
-    """
-
-    def entropy(self, rig: Rig) -> float:
-        """Return the value of a rig; lower is better [nats]."""
-
-
 class RigEvaluator(Protocol):
     """Scores rigs in one space, under one prior, on one vehicle; methods are as `Evaluator`'s.
 

@@ -1,9 +1,8 @@
 """Searches for better placements."""
 
-from ..scoring.score import Objective
 from .ask_tell import SearchRun
 from .build_figures import BUILD_FIGURES
-from .dispatch import Call, WorkerDied, evaluate_all, run_tasks, shared_parts
+from .dispatch import Call, WorkerDied, evaluate_all, run_tasks
 from .domains import (
     AXES,
     POSITION_AXES,
@@ -21,7 +20,8 @@ from .limit import Limit, LimitRule
 from .limits import LIMITED, NUMBERED, Limits
 from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_method
 from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
-from .optimize import Step, as_objective, optimize
+from .objective import NO_VALUE, FeasibilityRule, Objective, Value, as_objective, violation_sum
+from .optimize import Step, optimize
 from .parametrization import Candidate, Parametrization, feasible_start, mirrored, rig_on_mounts
 from .payload import Payload, Unreadable, send_payload
 from .places import MountingPlaces, SurfacePlace, outward_yaw
@@ -47,8 +47,8 @@ from .selection import (
 )
 from .tolerance import (
     RigRobustness,
+    RobustFigure,
     Robustness,
-    RobustObjective,
     Tolerance,
     mounted_off,
     objective_of,

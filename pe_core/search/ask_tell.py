@@ -2,7 +2,7 @@
 
 import math
 import sys
-from collections.abc import Generator, Iterable, Sequence
+from collections.abc import Generator, Sequence
 from typing import Any
 
 from ..base.errors import InputError, shown
@@ -10,6 +10,7 @@ from ..base.values import Whole, real
 from ..scene.rig import Rig
 from .journal import BATCH, EvaluatedRig, Journal, checked_entries
 from .methods import METHODS, Given, checked_method
+from .objective import NO_VALUE, Value
 from .parametrization import Parametrization, feasible_start
 from .search_space import Schedule, SearchSpace
 
@@ -27,7 +28,7 @@ class SearchRun:
     ----------
     rig, search_space, seed, schedule, method, evaluations
         As of `optimize`.
-    journal : iterable of (value, str), optional
+    journal : sequence of EvaluatedRig, or what JSON makes of them, optional
         The `journal` of an earlier run of the same search, perhaps from a file of JSON: what that
         was told is not asked again.
 
@@ -50,7 +51,7 @@ class SearchRun:
         *,
         method: str | None = None,
         evaluations: int = 0,
-        journal: Iterable[Sequence[Any]] = (),
+        journal: Sequence[Sequence[Any]] = (),
     ) -> None:
         name = checked_method("search_run", method, schedule is not None)
         self._options: tuple[Any, ...] = seed, schedule or Schedule(), 1, BATCH, evaluations
@@ -64,8 +65,8 @@ class SearchRun:
         self._batches = self._questions()
         self._batch = next(self._batches)
         self._given = 0
-        self._told: dict[int, float] = {}
-        self._values: list[float] = []
+        self._told: dict[int, Value] = {}
+        self._values: list[Value] = []
         self._advance()
         if self.is_done:
             self._journal.require_used()
@@ -105,7 +106,7 @@ class SearchRun:
             if not (number := real(value)) > -math.inf:
                 expected = "a number above -inf for each rig"
                 raise InputError("search_run", "value", expected, shown(value))
-            told[found[0]] = number
+            told[found[0]] = Value(0.0, number)
         self._told = told
         self._advance()
 
@@ -121,9 +122,9 @@ class SearchRun:
                     self._journal.record(rig, 0, value)
                 self._values.append(value)
                 self.evaluations += 1
-                if value < self.value:
+                if value.is_feasible and value.objective < self.value:
                     self.best = rig
-                    self.value = value
+                    self.value = value.objective
             try:
                 self._batch = self._batches.send(self._values)
             except StopIteration:
@@ -133,14 +134,14 @@ class SearchRun:
             self._told = {}
             self._values = []
 
-    def _questions(self) -> Generator[list[Rig], list[float], None]:
+    def _questions(self) -> Generator[list[Rig], list[Value], None]:
         """Yield the placements of each question; is sent their values."""
         start = feasible_start(self._coding, self._options[0])
-        [entropy] = yield [start.rig]
+        [value] = yield [start.rig]
         left = (self._options[-1] or sys.maxsize) - 1
         if not self._coding.variables:
             return
-        questions = self._ask(Given(self._coding, start, entropy, *self._options))
+        questions = self._ask(Given(self._coding, start, value, *self._options))
         question = next(questions, None)
         while question is not None and left > 0:
             candidates = question.candidates
@@ -151,7 +152,7 @@ class SearchRun:
             if not left:
                 return
             told = (None if c is None else next(values) for c in candidates)
-            answers = [v if v is None or v < cutoff else math.inf for v in told]
+            answers = [v if v is None or v < cutoff else NO_VALUE for v in told]
             try:
                 question = questions.send(answers)
             except StopIteration:

@@ -4,7 +4,6 @@ The worker pool takes any `concurrent.futures.Executor`: processes, threads, a c
 worker died is run once more; if that worker dies too, the task is named.
 """
 
-import math
 import sys
 import traceback
 from collections import deque
@@ -17,7 +16,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from ..base.errors import InputError, shown
 from ..scene.rig import Rig
-from ..scoring.score import Objective
+from .objective import NO_VALUE, Objective, Value
 from .payload import PackedPayload, Unreadable, send_payload, unpickled
 
 TaskKey = TypeVar("TaskKey", bound=Hashable)
@@ -121,55 +120,38 @@ def _replied(function: Callable[..., Any], *arguments: Any) -> _Reply:
         return _Reply(error=error)
 
 
-def shared_parts(objective: Objective) -> tuple[object, ...]:
-    """Return what a worker is sent once to evaluate an objective: its `shared_parts`, or all of it.
-    An objective of little content round others has such a method: the rest is sent with each
-    candidate."""
-    own: Callable[[], tuple[object, ...]] | None = getattr(objective, "shared_parts", None)
-    return (objective,) if own is None else own()
-
-
 def evaluate_all(
     objective: Objective,
     rigs: Sequence[Rig],
-    cutoff: float = math.inf,
+    cutoff: Value = NO_VALUE,
     executor: Executor | None = None,
-) -> list[float]:
+) -> list[Value]:
     """Evaluate several rigs; the result depends neither on the workers nor on earlier calls.
 
     `objective`: Its `shared_parts` are sent to each worker once, so they must not change. Where it
         cannot be pickled, or a worker cannot unpickle it, the rigs are evaluated here.
-    `cutoff`: Entropies are needed only below this value [nats]; all of them, by default.
+    `cutoff`: Values are needed only below this one; all of them, by default.
     `executor`: Its workers evaluate; by default this thread does. `Processes` replaces dead
         workers.
 
     Returns
     -------
-    list of float
-        For each rig its entropy where that is below `cutoff`; otherwise inf, even where the entropy
-        is known: that depends on caches. `InputError` when two workers died with the same rig.
+    list of Value
+        For each rig its value where that is below `cutoff`; otherwise `NO_VALUE`, even where the
+        value is known: that depends on caches. `InputError` when two workers died with the same
+        rig.
     """
-    if (own := getattr(objective, "evaluate_all", None)) is not None:  # it knows some already
-        found: list[float] = own(rigs, cutoff, executor)
-        return found
     if executor is not None and rigs:
         with suppress(Unreadable):
             return _evaluate_by_workers(objective, rigs, cutoff, executor)
-    return [value_below(objective, rig, cutoff) for rig in rigs]
-
-
-def value_below(objective: Objective, rig: Rig, cutoff: float) -> float:
-    """Return the value of a rig where it is below the cutoff; otherwise inf."""
-    below = getattr(objective, "below", None)
-    value: float = objective.entropy(rig) if below is None else below(rig, cutoff)
-    return value if value < cutoff else math.inf
+    return [objective.below(rig, cutoff) for rig in rigs]
 
 
 def _evaluate_by_workers(
-    objective: Objective, rigs: Sequence[Rig], cutoff: float, executor: Executor
-) -> list[float]:
+    objective: Objective, rigs: Sequence[Rig], cutoff: Value, executor: Executor
+) -> list[Value]:
     models = (sensor.model for rig in rigs for sensor in rig)
-    sent = send_payload(executor, (*shared_parts(objective), *models))
+    sent = send_payload(executor, (*objective.shared_parts(), *models))
     candidates = [sent.payload.pickled((objective, rig)) for rig in rigs]
     tried: set[int] = set()
 
@@ -179,7 +161,7 @@ def _evaluate_by_workers(
         tried.add(number)
         return Call(_evaluate_in_worker, (payload, candidates[number], cutoff))
 
-    evaluations: dict[int, float] = {}
+    evaluations: dict[int, Value] = {}
     with closing(run_tasks(executor, deque(range(len(rigs))), call_of)) as batches:
         for number, result in chain.from_iterable(batches):
             if isinstance(result, WorkerDied):
@@ -190,6 +172,7 @@ def _evaluate_by_workers(
     return [evaluations[number] for number in range(len(rigs))]
 
 
-def _evaluate_in_worker(payload: PackedPayload, candidate: bytes, cutoff: float) -> float:
+def _evaluate_in_worker(payload: PackedPayload, candidate: bytes, cutoff: Value) -> Value:
     objective, rig = unpickled(payload, candidate)
-    return value_below(objective, rig, cutoff)
+    found: Value = objective.below(rig, cutoff)
+    return found

@@ -6,16 +6,15 @@ bits as one that was never interrupted.
 """
 
 import hashlib
-import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from typing import Any, NamedTuple
 
-from ..base.errors import InputError, shown
-from ..base.values import real
+from ..base.codec import Node, read_value
+from ..base.errors import InputError
 from ..scene.rig import Rig
-from ..scoring.score import Objective
 from .dispatch import evaluate_all
+from .objective import NO_VALUE, Objective, Value
 
 DIGEST_BYTES = 4  # Length of the digest that identifies a placement
 BATCH = 16
@@ -23,25 +22,18 @@ BATCH = 16
 
 
 class EvaluatedRig(NamedTuple):
-    """The value of a placement (inf: not below the best so far), and a digest of the placement."""
+    """The value of a placement (`NO_VALUE`: not below the cutoff), and a digest of it."""
 
-    entropy: float
+    value: Value
     digest: str
 
 
-def checked_entries(rows: Any, source: object, field: str) -> tuple[EvaluatedRig, ...]:
-    """Return the entries of a journal from anybody's file: pairs of a value, which may be inf, and
-    a digest. `InputError` for anything else."""
-    entries = []
-    is_listing = isinstance(rows, Iterable) and not isinstance(rows, str | Mapping)
-    for number, row in enumerate(rows if is_listing else [rows]):
-        entry = tuple(row) if isinstance(row, list | tuple) else ()
-        value = real(entry[0]) if len(entry) == len(EvaluatedRig._fields) else math.nan
-        if not value > -math.inf or not isinstance(entry[1], str):
-            found = shown(row)
-            raise InputError(source, f"{field}[{number}]", "an entropy, a digest", found)
-        entries.append(EvaluatedRig(value, entry[1]))
-    return tuple(entries)
+def checked_entries(rows: Any, source: str, field: str) -> tuple[EvaluatedRig, ...]:
+    """Return the entries of a journal from anybody's file. `InputError` where they are none."""
+    entries: tuple[EvaluatedRig, ...] = read_value(
+        tuple[EvaluatedRig, ...], Node(rows, source, field)
+    )
+    return entries
 
 
 class Journal:
@@ -63,12 +55,33 @@ class Journal:
         """All entries so far; may be read while another thread searches."""
         return tuple(self._entries)
 
-    def wrap(self, objectives: Sequence[Objective]) -> list[Objective]:
-        """Return objectives, one for each level of a method, that replay and extend the journal.
-        Behind the end of the journal they evaluate with the given objectives."""
-        return [JournaledObjective(self, own, k) for k, own in enumerate(objectives)]
+    def value(self, objective: Objective, rig: Rig, level: int = 0) -> Value:
+        """Return the value of the next placement, from the journal or from its objective."""
+        return self.evaluate_all(objective, [rig], level=level)[0]
 
-    def replay(self, rig: Rig, level: int) -> float | None:
+    def evaluate_all(
+        self,
+        objective: Objective,
+        rigs: Sequence[Rig],
+        cutoff: Value = NO_VALUE,
+        executor: Executor | None = None,
+        *,
+        level: int = 0,
+    ) -> list[Value]:
+        """Return the values of the next placements: the first ones may be in the journal, the
+        others are evaluated and recorded."""
+        values: list[Value] = []
+        for rig in rigs:
+            if (value := self.replay(rig, level)) is None:
+                break
+            values.append(value)
+        new_rigs = rigs[len(values) :]
+        new_values = evaluate_all(objective, new_rigs, cutoff, executor)
+        for rig, value in zip(new_rigs, new_values, strict=True):
+            self.record(rig, level, value)
+        return values + new_values
+
+    def replay(self, rig: Rig, level: int) -> Value | None:
         """Return the journaled value of the next placement; None behind the end of the journal.
         `InputError` when the journal has another placement here."""
         if self._position == len(self._entries):
@@ -80,7 +93,7 @@ class Journal:
             field = f"evaluated[{self._position}]"
             raise InputError(self._source, field, expected, "another")
         self._position += 1
-        return entry.entropy
+        return entry.value
 
     def require_used(self) -> None:
         """Raise `InputError` where entries are left: call it when the search has ended."""
@@ -88,40 +101,10 @@ class Journal:
             expected = "no more entries, as the search has ended"
             raise InputError(self._source, f"evaluated[{self._position}]", expected, f"{left} more")
 
-    def record(self, rig: Rig, level: int, value: float) -> None:
+    def record(self, rig: Rig, level: int, value: Value) -> None:
         """Append the value of a placement that is not in the journal yet."""
         self._entries.append(EvaluatedRig(value, _digest(rig, level)))
         self._position += 1
-
-
-class JournaledObjective:
-    """An objective that replays a journal, and records what it evaluates behind the end."""
-
-    def __init__(self, journal: Journal, objective: Objective, level: int = 0) -> None:
-        self._journal = journal
-        self._objective = objective
-        self._level = level
-
-    def entropy(self, rig: Rig) -> float:
-        """Return the entropy of a rig, from the journal or from the objective [nats]."""
-        return self.evaluate_all([rig], math.inf, None)[0]
-
-    def evaluate_all(
-        self, rigs: Sequence[Rig], cutoff: float, executor: Executor | None
-    ) -> list[float]:
-        """Evaluate several rigs: the first ones may be in the journal, the others are evaluated.
-        Workers are sent the objective without the journal."""
-        replayed = (self._journal.replay(rig, self._level) for rig in rigs)
-        values: list[float] = []
-        for value in replayed:
-            if value is None:
-                break
-            values.append(value)
-        new_rigs = rigs[len(values) :]
-        new_values = evaluate_all(self._objective, new_rigs, cutoff, executor)
-        for rig, value in zip(new_rigs, new_values, strict=True):
-            self._journal.record(rig, self._level, value)
-        return values + new_values
 
 
 def _digest(rig: Rig, level: int) -> str:

@@ -1,52 +1,26 @@
 """The search for a better placement by any method, as a generator of steps."""
 
-import math
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import accumulate
-from typing import Any
 
-from ..base.errors import InputError, shown
 from ..base.notebook import ShortRepr
-from ..base.values import real
 from ..scene.rig import Rig
-from ..scoring.score import Objective
-from .dispatch import evaluate_all
-from .journal import BATCH
+from ..scoring import RigEvaluator
+from .journal import BATCH, Journal
 from .methods import METHODS, Given, Question, checked_method
 from .methods.method import Answered, QuestionStream
+from .objective import NO_VALUE, Objective, Value, as_objective
 from .parametrization import Candidate, Parametrization, feasible_start
 from .search_space import Schedule, SearchSpace
 
 ExecutorSource = Callable[[], Executor | None]
-
-
-@dataclass(frozen=True, slots=True)
-class FunctionObjective:
-    """A function of a rig that is minimised: a number for each rig, the same each time."""
-
-    function: Callable[[Rig], float]
-
-    def entropy(self, rig: Rig) -> float:
-        """Return the value of a rig; `InputError` where it is no number."""
-        value = real(found := self.function(rig))
-        if math.isnan(value):
-            raise InputError("objective", "value", "a number for each rig", shown(found))
-        return value
-
-
-def as_objective(objective: Any) -> Objective:
-    """Return an objective, or a function as one; `InputError` for anything else."""
-    if hasattr(objective, "entropy"):
-        found: Objective = objective
-        return found
-    if not callable(objective):
-        expected = "an Evaluator, or a function of a rig"
-        raise InputError("optimize", "objective", expected, type(objective).__name__)
-    return FunctionObjective(objective)
+Minimised = RigEvaluator | Callable[[Rig], float] | Objective
+Evaluate = Callable[[Sequence[Rig], Value, int], Iterator[Value]]
+"""Yields the values of rigs below a cutoff, on a level."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,8 +31,8 @@ class Step(ShortRepr):
     ----------
     best : Rig
         The incumbent: the best placement so far.
-    entropy : float
-        Its perception entropy, on the voxels of the level [nats].
+    value : Value
+        Its value, on the voxels of the level: tuples order themselves.
     evaluations : int
         Rigs evaluated so far, the start included.
     fraction : float
@@ -69,22 +43,28 @@ class Step(ShortRepr):
         Whether this candidate became the incumbent, or the incumbent was evaluated on a new level.
     level : int
         The objective that evaluated it: methods that raise the number of voxels have several.
-    ends : tuple of float
-        Where independent descents of the search ended so far [nats].
+    ends : tuple of Value
+        Where independent descents of the search ended so far.
     """
 
     best: Rig
-    entropy: float
+    value: Value
     evaluations: int
     fraction: float
     round: int
     improved: bool
     level: int = 0
-    ends: tuple[float, ...] = ()
+    ends: tuple[Value, ...] = ()
+
+    @property
+    def entropy(self) -> float:
+        """What the objective is for the incumbent: its entropy [nats], if no function is given;
+        inf while it breaks a constraint."""
+        return self.value.objective
 
 
 def optimize(
-    objective: Objective | Callable[[Rig], float] | Sequence[Objective],
+    objective: Minimised | Sequence[Minimised],
     rig: Rig,
     search_space: SearchSpace,
     seed: int = 0,
@@ -93,6 +73,7 @@ def optimize(
     method: str | None = None,
     evaluations: int = 0,
     executor: Executor | ExecutorSource | None = None,
+    journal: Journal | None = None,
 ) -> Iterator[Step]:
     """Search for the placement of lowest perception entropy; yields one step for each candidate.
 
@@ -105,10 +86,10 @@ def optimize(
 
     Parameters
     ----------
-    objective : Objective, callable, or sequence of Objective
-        What is minimised, for example an `Evaluator`, or any function of a rig that returns a
-        number, the same for the same rig. Several: one for each level of the method, the cheapest
-        first.
+    objective : Evaluator, callable, Objective, or a sequence of them
+        What is minimised: the entropy of an `Evaluator`, or any function of a rig that returns a
+        number, the same for the same rig; an `Objective` has constraints, too. Several: one for
+        each level of the method, the cheapest first.
     rig : Rig
         Where the search starts.
     seed : int
@@ -122,6 +103,8 @@ def optimize(
     executor : concurrent.futures.Executor, or callable, optional
         Evaluates several candidates in parallel. The steps do not depend on it. A callable returns
         an executor, or None as long as there is none; it is called before every batch.
+    journal : Journal, optional
+        Takes all values of the search. Those of an interrupted one are taken from it.
     """
     chosen = METHODS[checked_method("optimize", method, schedule is not None)]
     levels = [
@@ -130,9 +113,10 @@ def optimize(
     parametrization = Parametrization(rig, search_space)
     schedule = schedule or Schedule()
     start = feasible_start(parametrization, seed)
+    journal = journal or Journal()
     first = Step(
         start.rig,
-        levels[0].entropy(start.rig),
+        journal.value(levels[0], start.rig),
         evaluations=1,
         fraction=0.0,
         round=0,
@@ -145,7 +129,7 @@ def optimize(
         given = Given(
             parametrization=parametrization,
             start=start,
-            entropy=first.entropy,
+            value=first.value,
             seed=seed,
             schedule=schedule,
             levels=len(levels),
@@ -153,41 +137,38 @@ def optimize(
             evaluations=evaluations,
         )
         budget = evaluations or sys.maxsize
-        yield from _steps(first, chosen.ask(given), levels, budget, executor_source=executor_source)
+        evaluate = partial(_evaluated, levels, journal, executor_source)
+        yield from _steps(first, chosen.ask(given), evaluate, budget)
 
 
 def _steps(
-    step: Step,
-    questions: QuestionStream,
-    levels: Sequence[Objective],
-    budget: int,
-    executor_source: ExecutorSource,
+    step: Step, questions: QuestionStream, evaluate: Evaluate, budget: int
 ) -> Iterator[Step]:
     """Answer a method's questions, one step for each candidate, until it or the budget ends."""
     question = next(questions, None)
     done = 0
     while question is not None and step.evaluations < budget:
-        objective = levels[question.level]
         if question.level > step.level:  # the incumbent is evaluated on the new level
-            entropy = objective.entropy(step.best)
-            count = step.evaluations + 1
+            [value] = evaluate([step.best], NO_VALUE, question.level)
             yield (
-                step := Step(
-                    step.best,
-                    entropy,
-                    count,
-                    step.fraction,
+                step := replace(
+                    step,
+                    value=value,
+                    evaluations=step.evaluations + 1,
                     round=question.round,
                     improved=True,
                     level=question.level,
+                    ends=(),
                 )
             )
             if step.evaluations == budget:
                 return
         question = _within(question, budget - step.evaluations)
         answers: Answered = []
-        evaluated = _evaluated(question, objective, executor_source())
-        for candidate, answer in zip(question.candidates, evaluated, strict=True):
+        rigs = [each.rig for each in question.candidates if each is not None]
+        values = evaluate(rigs, question.cutoff, question.level)
+        for candidate in question.candidates:
+            answer = None if candidate is None else next(values)
             answers.append(answer)
             done += 1
             fraction = max(done / question.total, (step.evaluations + 1) / budget)
@@ -208,41 +189,33 @@ def _within(question: Question, left: int) -> Question:
 
 
 def _evaluated(
-    question: Question, objective: Objective, executor: Executor | None
-) -> Iterator[float | None]:
-    """Yield the answers: all evaluated at once by an executor, or one after the other here."""
-    rigs = [c.rig for c in question.candidates if c is not None]
-    evaluate = partial(evaluate_all, objective, cutoff=question.cutoff, executor=executor)
-    answers = iter(evaluate(rigs)) if executor else (evaluate([rig])[0] for rig in rigs)
-    for candidate in question.candidates:
-        yield None if candidate is None else next(answers)
+    levels: Sequence[Objective],
+    journal: Journal,
+    executor_source: ExecutorSource,
+    rigs: Sequence[Rig],
+    cutoff: Value,
+    level: int,
+) -> Iterator[Value]:
+    """Yield values: all evaluated at once by an executor, or one after the other here."""
+    executor = executor_source()
+    for batch in [rigs] if executor is not None else [[rig] for rig in rigs]:
+        yield from journal.evaluate_all(levels[level], batch, cutoff, executor, level=level)
 
 
 def _next_step(
     step: Step,
     candidate: Candidate | None,
-    answer: float | None,
+    answer: Value | None,
     question: Question,
     fraction: float,
 ) -> Step:
     """Return the step after a candidate; None where no feasible candidate was sampled."""
-    best = step.best
-    entropy = step.entropy
-    count = step.evaluations
-    improved = False
-    if candidate is not None and answer is not None:
-        count += 1
-        improved = answer < entropy and question.level == step.level
-        if improved:
-            best = candidate.rig
-            entropy = answer
-    return Step(
-        best=best,
-        entropy=entropy,
-        evaluations=count,
-        fraction=min(fraction, 1.0),
-        round=question.round,
-        improved=improved,
-        level=step.level,
-        ends=question.ends,
+    after = replace(
+        step, fraction=min(fraction, 1.0), round=question.round, improved=False, ends=question.ends
     )
+    if candidate is None or answer is None:
+        return after
+    after = replace(after, evaluations=step.evaluations + 1)
+    if answer < step.value and question.level == step.level:
+        after = replace(after, best=candidate.rig, value=answer, improved=True)
+    return after

@@ -20,6 +20,7 @@ from ..sensors import KINDS
 from .build_figures import BUILD_FIGURES, RELATIVE, SUMS, sheet_of
 from .limit import FigureLimits
 from .mounts import NO_MOUNT, Mounting
+from .objective import Value
 from .placement import Placement
 
 COUNT = Whole(0, 10_000)
@@ -32,7 +33,6 @@ PRICE_SUM = "price"
 """Limits of numbers of sensors; the others are of sums, as `SUMS`."""
 MAX_STEPS = 20_000
 """How many partial designs are tried in the search for designs within the limits."""
-Worth = tuple[float, float]  # A price and an entropy [nats]; lower is better for both
 ALL_UP_TO = 200
 """Up to so many designs are all evaluated; of more, those that the local search visits."""
 MAX_EVALUATED = 400  # How many designs the local search evaluates at most
@@ -380,7 +380,7 @@ class DesignSpace:
         return InputError("selection", " and ".join(names), expected, f"none{least}")
 
 
-def pareto_front(costs: Sequence[Sequence[float]]) -> list[int]:
+def pareto_front(costs: Sequence[Sequence[float | Value]]) -> list[int]:
     """Return the indices of the non-dominated costs, lowest first; of equal ones the first. Costs
     dominate others if none of their values is higher and they are not equal."""
     front: list[int] = []
@@ -391,10 +391,11 @@ def pareto_front(costs: Sequence[Sequence[float]]) -> list[int]:
     return front
 
 
-def above_front(worths: Sequence[Worth]) -> list[float]:
-    """Return how much higher each entropy is than the lowest at no higher price [nats]."""
+def above_front(worths: Sequence[tuple[float, Value]]) -> list[float]:
+    """Return how much higher each value is than the lowest at no higher price."""
     return [
-        entropy - min(other for cost, other in worths if cost <= price) for price, entropy in worths
+        value.rise_from(min(other for cost, other in worths if cost <= price))
+        for price, value in worths
     ]
 
 
@@ -422,14 +423,14 @@ class DesignSearch:
         self._asked.update(batch)
         return batch
 
-    def tell(self, entropies: Mapping[Picks, float]) -> None:
-        """Take the entropies of all designs that were evaluated so far [nats]."""
-        self._next = [] if self.is_complete else list(self._new(entropies))
+    def tell(self, values: Mapping[Picks, Value]) -> None:
+        """Take the values of all designs that were evaluated so far."""
+        self._next = [] if self.is_complete else list(self._new(values))
 
-    def _new(self, entropies: Mapping[Picks, float]) -> Iterator[Picks]:
-        evaluated = list(entropies)
+    def _new(self, values: Mapping[Picks, Value]) -> Iterator[Picks]:
+        evaluated = list(values)
         visited = set(self._asked)
-        worths = [(self._designs.price(picks), entropies[picks]) for picks in evaluated]
+        worths = [(self._designs.price(picks), values[picks]) for picks in evaluated]
         for number in pareto_front(worths):
             if evaluated[number] in self._expanded:
                 continue

@@ -10,7 +10,7 @@ Measuring sensors is expensive, fusing them is cheap. So the draws of one sensor
 several draws of the others: in combination k, the draw of each sensor is k draws after that of the
 sensor before it.
 
-`RobustObjective` is what a search minimises under a `Tolerance`; `robustness` reports how far the
+`RobustFigure` is what a search minimises under a `Tolerance`; `robustness` reports how far the
 entropy of the start and of the result moves.
 """
 
@@ -29,8 +29,9 @@ from ..base.values import Angle, Number, Whole, degrees_in_file, rounded
 from ..geometry.poses import FARTHEST_M, Pose, rotate, rotation_matrix, rpy_from_matrix
 from ..scene.rig import Rig
 from ..scoring.scenarios import mean_or_worst
-from ..scoring.score import Objective, RigEvaluator, standard_error
+from ..scoring.score import RigEvaluator, standard_error
 from .domains import AXES, pose_from_values
+from .objective import Objective
 
 DRAWS = 8  # Draws by default
 COMBINATIONS = 4
@@ -160,7 +161,7 @@ def with_error(pose: Pose, error: Floats) -> Pose:
     return pose_from_values(dict(zip(AXES, (*moved.tolist(), *rpy), strict=True)))
 
 
-class RobustObjective:
+class RobustFigure:
     """The entropy of a rig with all mounting errors and failures of a tolerance: mean or worst. The
     mounting errors, drawn from `seed`, are the same for every rig."""
 
@@ -169,7 +170,7 @@ class RobustObjective:
         self._tolerance = tolerance
         self._seed = seed
 
-    def entropy(self, rig: Rig) -> float:
+    def __call__(self, rig: Rig) -> float:
         """Return the mean of the entropies of a rig's cases, or the highest [nats]."""
         entropies = self._evaluator.entropies(self._tolerance.cases(rig, self._seed))
         return mean_or_worst(entropies, self._tolerance.worst)
@@ -180,8 +181,9 @@ class RobustObjective:
 
 
 def objective_of(evaluator: RigEvaluator, tolerance: Tolerance, seed: int = 0) -> Objective:
-    """Return what a search minimises: the evaluator, or `RobustObjective` if a tolerance is on."""
-    return RobustObjective(evaluator, tolerance, seed) if tolerance.is_on else evaluator
+    """Return what a search minimises: the entropy, or `RobustFigure` if a tolerance is on."""
+    robust = RobustFigure(evaluator, tolerance, seed)
+    return Objective(robust if tolerance.is_on else evaluator.entropy)
 
 
 WORKSHOP = Tolerance(0.01, math.radians(0.3), draws=6)

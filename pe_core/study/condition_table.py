@@ -27,10 +27,10 @@ from ..scene.vehicle_state import State
 from ..scoring import Score
 from ..scoring.sampling import SEARCHED, Shift
 from ..scoring.scenarios import mean_or_worst
-from ..scoring.score import Objective, RigEvaluator, Watch
+from ..scoring.score import RigEvaluator, Watch
 from ..scoring.targets import OBJECTS, ObjectEvaluator
 from ..scoring.targets.object_evaluator import MByName
-from ..search import objective_of
+from ..search import Objective, objective_of
 from .conditions import AS_DRAWN, CLEAR, StateInWeather
 from .study import DEFAULT_SEARCH_SAMPLES, EXPECTED_AP, Study
 
@@ -256,7 +256,7 @@ def _covered(
     return found or None
 
 
-class ConditionObjective:
+class ConditionFigure:
     """What a search over a study's conditions minimises, evaluated on `samples` voxels of a
     `shift`."""
 
@@ -271,9 +271,9 @@ class ConditionObjective:
         self._evaluators = StateEvaluators(study, samples, workers, make)
 
     def __reduce__(self) -> tuple[object, ...]:
-        return ConditionObjective, self._given
+        return ConditionFigure, self._given
 
-    def entropy(self, rig: Rig) -> float:
+    def __call__(self, rig: Rig) -> float:
         """Return the mean or the worst of a rig's entropies under all conditions [nats]."""
         return self.below(rig, math.inf)
 
@@ -312,4 +312,4 @@ def study_objective(
     if not study.conditions:
         expected = "[[state]] or [[weather]] with it"
         raise InputError("optimize", "conditions", expected, "neither")
-    return ConditionObjective(study, samples, workers, shift)
+    return Objective(ConditionFigure(study, samples, workers, shift))

@@ -7,24 +7,19 @@ is infeasible, too; with `true`, one with more than the study's own.
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 from ..base.errors import InputError
 from ..base.values import rounded
 from ..scene.rig import Rig
 from ..scoring.sampling import SEARCHED
-from ..scoring.score import Objective
 from ..scoring.sight import Sight
-from ..search import shared_parts
-from ..search.dispatch import value_below
+from ..search import FeasibilityRule, violation_sum
 from ..search.figures import FIGURES, KEPT, REACH
 from ..search.limits import Limits
 from ..search.rig_view import RigView
 from .conditions import mounting_cases
 from .study import Study
-
-INFEASIBLE = 100.0
-"""Value of a placement that breaks a constraint, without the violation: above all entropies."""
 
 
 class FiguresLimit:
@@ -65,7 +60,7 @@ class FiguresLimit:
             for key, own in _costs(self._sight, self._keys, rig)
             for pair in zip(own, self._limits[key], strict=True)
         )
-        return _added((1.0 - limit / cost for cost, limit in pairs if cost > limit), enough)
+        return violation_sum((1.0 - limit / cost for cost, limit in pairs if cost > limit), enough)
 
 
 def _costs(sight: Sight, keys: Sequence[str], rig: Rig) -> Iterator[tuple[str, tuple[float, ...]]]:
@@ -95,52 +90,6 @@ class RequirementConstraint:
         return rounded(sum(self.shortfalls(rig)))
 
 
-FeasibilityRule = FiguresLimit | RequirementConstraint
-"""Something that a placement keeps, or breaks by its `violation`."""
-
-
-class FeasibleFirst:
-    """What a search with constraints minimises. The value of a placement is its entropy [nats],
-    that of the objective, if it keeps all constraints; else it is `INFEASIBLE` and the sum of the
-    violations."""
-
-    def __init__(self, objective: Objective, constraints: Sequence[FeasibilityRule]) -> None:
-        self._objective = objective
-        self._constraints = tuple(constraints)
-
-    def entropy(self, rig: Rig) -> float:
-        """Return the value of a placement."""
-        return self.below(rig, math.inf)
-
-    def below(self, rig: Rig, cutoff: float) -> float:
-        """Return the value of a placement where it is below `cutoff`; otherwise one that is not.
-        What is not below with its entropy is not if it breaks a constraint, so constraints, which
-        take longer, are then not checked; nor are further ones after a violation that is enough."""
-        if cutoff > INFEASIBLE:
-            violation = self.violation(rig, cutoff - INFEASIBLE)
-            return INFEASIBLE + violation if violation else self._objective.entropy(rig)
-        found = value_below(self._objective, rig, cutoff)
-        return math.inf if found < cutoff and self.violation(rig, 0.0) else found
-
-    def shared_parts(self) -> tuple[object, ...]:
-        """Return what workers are sent once: the parts of the objective, and the constraints."""
-        return (*shared_parts(self._objective), *self._constraints)
-
-    def violation(self, rig: Rig, enough: float = math.inf) -> float:
-        """Return the sum of the violations of all constraints; 0 where all are kept.
-        Where it comes to `enough`, further ones are not computed."""
-        return _added((each.violation(rig, enough) for each in self._constraints), enough)
-
-
-def _added(violations: Iterable[float], enough: float) -> float:
-    total = 0.0
-    for each in violations:
-        total += each
-        if (found := rounded(total)) and found >= enough:
-            break
-    return rounded(total)
-
-
 def constraints_of(study: Study) -> tuple[FeasibilityRule, ...]:
     """Return what placements of a study's search have to keep: requirements, key figures.
     `InputError` when a zone of a requirement that is to be kept cannot be placed."""
@@ -155,13 +104,3 @@ def constraints_of(study: Study) -> tuple[FeasibilityRule, ...]:
         )
         constraints.append(limit)
     return tuple(constraints)
-
-
-def feasible_first(objective: Objective, constraints: Sequence[FeasibilityRule]) -> Objective:
-    """Return what a search minimises: the objective, or `FeasibleFirst` of it."""
-    return FeasibleFirst(objective, constraints) if constraints else objective
-
-
-def is_infeasible(value: float) -> bool:
-    """Whether a value of a search is that of a placement that breaks a constraint."""
-    return value >= INFEASIBLE

@@ -4,7 +4,7 @@ Panel, headless Blender and the command line all build a `Study` and give it to 
 is why they agree to the bit.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any
@@ -466,7 +466,7 @@ class Study(Tabular):
         """
         return self.with_rig(rig_on_mounts(self.rig, self.search_space()))
 
-    def search_run(self, journal: Iterable[Sequence[Any]] = ()) -> SearchRun:
+    def search_run(self, journal: Sequence[Sequence[Any]] = ()) -> SearchRun:
         """Return the search of this study as a run that is asked and told: `SearchRun`."""
         search = self.search
         schedule = search.schedule if search.method == SCHEDULED_METHOD else None

@@ -132,9 +132,10 @@ class StepCosts:
         """Evaluate rigs side by side, as far as they are not known."""
         new = {key: rig for rig in rigs if (key := _key(rig)) not in self._values}
         if new:
+            rigs = list(new.values())
             by_sample = [
-                evaluate_all(objective, list(new.values()), executor=self._helpers())
-                for objective in self._objectives
+                [each.objective for each in evaluate_all(o, rigs, executor=self._helpers())]
+                for o in self._objectives
             ]
             self._values |= zip(new, np.array(by_sample).T, strict=True)
 

@@ -11,6 +11,7 @@ from pe_core.base.files import csv_text
 from pe_core.base.table_reader import finite
 from pe_core.motion import stories
 from pe_core.scoring.requirements import Verdict, checkable
+from pe_core.search import Limits
 from pe_core.study import Study
 from pe_core.study.requirement_file import CONFIDENCE, Preset, preset, presets
 from pe_core.study.suggestion import Suggestion
@@ -70,16 +71,16 @@ def list_checks(args: argparse.Namespace) -> Answer:
 
 
 def check_study(study: Study, args: argparse.Namespace) -> Answer:
-    """Hold a study to its requirements and stories, and to the presets that are named; with
+    """Hold a study to its requirements, stories and limits, and to the presets that are named; with
     ``--stories`` to stories alone. After Ctrl-C the verdicts that were found are printed, and
     written to the file."""
     if args.stories is not None:
         chosen = chosen_stories(study, story_names(args.stories))
-        study = replace(study, requirements=(), stories=tuple(chosen))
+        study = replace(study, requirements=(), stories=tuple(chosen), limits=Limits())
     output = output_file(args.output, args)
     study, unchecked = with_presets(study, args.preset)
-    if not (study.requirements or study.stories):
-        expected = "[[requirement]] or [[story]] in the study, or --preset ID"
+    if not (study.requirements or study.stories or _has_numbers(study.limits)):
+        expected = "[[requirement]], [[story]] or [limits] in the study, or --preset ID"
         raise InputError("check", "requirements", expected, "none")
     print_vehicle(study)
     if note := curve_note([study]):
@@ -90,6 +91,7 @@ def check_study(study: Study, args: argparse.Namespace) -> Answer:
     verdicts = job.verdicts
     driven = job.driven
     met = all(v.met for v in verdicts) and all(each.is_met for each in driven)
+    met = met and all(each.met for each in job.limits)
     status = received.status(DONE if met else NOT_MET)
     unchecked |= dict.fromkeys(job.missing, STOPPED)
     wanted = args.suggest and status == NOT_MET
@@ -100,6 +102,7 @@ def check_study(study: Study, args: argparse.Namespace) -> Answer:
         "unchecked": unchecked,
         "suggestions": {n: [each.to_dict() for each in own] for n, own in suggested.items()},
         "stories": [each.to_dict() for each in driven],
+        "limits": [each.to_dict() for each in job.limits],
     }
     text = dump_json(finite(data))
     is_table = output is not None and output.suffix == CSV
@@ -108,8 +111,13 @@ def check_study(study: Study, args: argparse.Namespace) -> Answer:
         return text, status
     lines = verdict_lines(verdicts, unchecked) if verdicts or unchecked else []
     lines += story_lines(driven) if driven else []
+    lines += [f"limit: {each.figure.name} {each.text}" for each in job.limits]
     lines += [line for name, own in suggested.items() for line in suggestion_lines(name, own)]
     return "\n".join(lines), status
+
+
+def _has_numbers(limits: Limits) -> bool:
+    return any(limit.value is not None for _, limit in limits)
 
 
 def suggested_for(job: SuggestJob) -> dict[str, list[Suggestion]]:

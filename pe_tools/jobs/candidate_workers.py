@@ -5,7 +5,7 @@ from concurrent.futures import Executor
 from contextlib import contextmanager, suppress
 from itertools import chain
 
-from pe_core.search import LazyProcesses, Objective, Unreadable, send_payload, shared_parts
+from pe_core.search import LazyProcesses, Objective, Unreadable, send_payload
 
 from .job import Job
 
@@ -19,7 +19,7 @@ def candidate_workers(
     """Yield the source of the executor that evaluates candidates of a job. The job's executor does,
     if it has one. Otherwise processes are started, which end here. They are sent what the
     objectives share, and `others` that searches have in common, such as models."""
-    parts = (part for objective in objectives for part in shared_parts(objective))
+    parts = (part for objective in objectives for part in objective.shared_parts())
     common = chain(parts, others)  # read when the processes start, if they do
     if job.executor is not None:
         given = job.executor

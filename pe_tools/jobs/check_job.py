@@ -8,6 +8,7 @@ from typing import NamedTuple
 from pe_core.base.errors import InputError, one_of, shown
 from pe_core.motion import DriveBy
 from pe_core.scoring.requirements import CheckStep, Verdict, checkable
+from pe_core.search import NUMBERED, Reading, dashboard
 from pe_core.study.study import Study
 from pe_core.study.suggestion import BLIND_SPOT, Suggestion, mended, with_blind_spot
 
@@ -24,10 +25,11 @@ class Checked(NamedTuple):
 
 
 class CheckJob(Job):
-    """Holds the rig of a study to its requirements, with mounting errors, and to its stories. A job
+    """Holds the rig of a study to requirements, with mounting errors, to its stories and limits.
+    `limits` are the figures that have a number to keep; `pe score` has the same. A job
     that is stopped keeps the `verdicts` that it has found, in the order of the requirements. With
     `fitting`, requirements that the rig cannot be held to are left out instead of raising
-    `InputError`: `unchecked` has the reason of each by name."""
+    `InputError`: `unchecked` has the reason of each by name; limits are left to the dashboard."""
 
     shown = ("verdicts", "unchecked", "driven")
 
@@ -37,6 +39,7 @@ class CheckJob(Job):
         self.verdicts: list[Verdict] = []
         self.unchecked: dict[str, str] = {}
         self.driven: list[DriveBy] = []
+        self.limits: tuple[Reading, ...] = ()
         self._progress = Progress("checking", 0.0)
 
     @property
@@ -65,7 +68,27 @@ class CheckJob(Job):
             if step.verdict is not None:
                 self.verdicts.append(step.verdict)
             yield self._progress
+        if not (self._fitting or self.stopped):
+            yield from self._look_at_limits()
         yield Progress("done", 1.0)
+
+    def _look_at_limits(self) -> Iterator[Progress]:
+        """Read the figures that have a limit; only entropy and AP need a score."""
+        numbers = [key for key, limit in self.study.limits if limit.value is not None]
+        if not numbers:
+            return
+        score = None
+        if NUMBERED & set(numbers):
+            score = yield from self._score(self.study.rig, self._progress)
+        figures = yield from self._figures([self.study.rig], self._progress)
+        objects = None if score is None else score.objects
+        rows = dashboard(
+            figures[0] if figures else None,
+            None if score is None else score.entropy,
+            limits=self.study.limits,
+            ap=None if objects is None else objects.ap,
+        )
+        self.limits = tuple(row for row in rows if row.figure.key in numbers)
 
     def _steps(self) -> Iterator[CheckStep]:
         """Yield the steps of the check; the first one takes as long as all zones to be placed."""

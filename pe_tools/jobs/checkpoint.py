@@ -78,7 +78,7 @@ def read_search(folder: str | Path) -> BegunSearch:
         expected = f"{__version__}, the version of this program"
         raise InputError(path, "version", expected, shown(data["version"]))
     rows_of = data["journals"].items()
-    journals = {n: checked_entries(rows, path, n or "evaluated") for n, rows in rows_of}
+    journals = {n: checked_entries(rows, str(path), n or "evaluated") for n, rows in rows_of}
     study = study_from_dict(load_toml(path, "study", data["study"]), str(path), path.parent)
     if fingerprint(study) != data["study_sha256"]:
         raise InputError(path, "study", "unchanged files beside the study", "changed files")

@@ -28,7 +28,7 @@ from pe_core.search.build_figures import SUMS
 from pe_core.search.figures import AP, ENTROPY, PRICE
 from pe_core.study.condition_table import is_by_ap
 from pe_core.study.file_names import SEARCH
-from pe_core.study.requirement_search import constraints_of, feasible_first, is_infeasible
+from pe_core.study.requirement_search import constraints_of
 from pe_core.study.study import Study
 
 from .candidate_workers import ExecutorSource, candidate_workers
@@ -37,7 +37,6 @@ from .front_objectives import (
     FrontValues,
     ScalarValue,
     check_objectives,
-    costs_of,
     objectives_of,
     spread,
     weights_of,
@@ -170,7 +169,7 @@ class FrontJob(Job):
             broken = [len(design.broken) + design.is_led_in for design in compared]
             fewest = min(broken)
             compared = [d for d, n in zip(compared, broken, strict=True) if n == fewest]
-        front = sorted(pareto_front([costs_of(d.figures, self.names) for d in compared]))
+        front = sorted(pareto_front([tuple(d.costs(self.names)) for d in compared]))
         refused = design_names([self._designs.models(picks) for picks in self._errors])
         return TradeOff(
             study=self.study,
@@ -194,8 +193,8 @@ class FrontJob(Job):
             for name, designs in zip(names, self._found.values(), strict=True)
             for design in designs
         ]
-        named.sort(key=lambda design: costs_of(design.figures, self.names))
-        costs = [costs_of(design.figures, self.names) for design in named]
+        named.sort(key=lambda design: design.costs(self.names))
+        costs = [design.costs(self.names) for design in named]
         lowest = [min(column) for column in zip(*costs, strict=True)]
         for number, own in enumerate(costs if self._several else ()):
             pairs = zip(self.names, own, lowest, strict=True)
@@ -279,8 +278,10 @@ class FrontJob(Job):
         if not job.history:
             return []
         value = job.reported_value(job.best.rig)
-        figures = {AP: -value} if is_by_ap(study) else {ENTROPY: value}
-        return [self._design(picks, study.with_rig(job.best.rig), figures)]
+        key = AP if is_by_ap(study) else ENTROPY
+        figures = {key: job.figure.to_figure(value)}
+        design = self._design(picks, study.with_rig(job.best.rig), figures)
+        return [replace(design, violation=value.violation)]
 
     def _search_once(
         self, picks: Picks, done: float, share: float
@@ -317,8 +318,8 @@ class FrontJob(Job):
             ideal = [min(column) for column in columns]
             span = [max(c) - min(c) or max(abs(min(c)), 1.0) for c in columns]
             scalar = ScalarValue(self._measured, weights, ideal, span)
-            value = feasible_first(scalar, constraints_of(study))
-            begin = study.with_rig(min(rigs, key=value.entropy))
+            value = Objective(scalar, constraints_of(study))
+            begin = study.with_rig(min(rigs, key=value.value))
             job = self._begin(f"point {_digits(picks)} {k}", begin, [value])
             yield from self._steps(
                 job.look(),
@@ -326,7 +327,7 @@ class FrontJob(Job):
                 done + share * k / len(points),
                 share / len(points),
             )
-            archive += [row.rig for row in job.history if not is_infeasible(row.entropy)]
+            archive += [row.rig for row in job.history if row.value.is_feasible]
         front = sorted(pareto_front(costs := [self._measured.costs(rig) for rig in archive]))
         designs = []
         for k in spread([costs[k] for k in front], self.points):

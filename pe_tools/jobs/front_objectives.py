@@ -100,7 +100,7 @@ class FrontFigures:
         self._checker = study.checker() if asks else None
         self._known: dict[tuple[object, ...], dict[str, float]] = {}
         self._of: dict[str, Callable[[Rig], float]] = {
-            ENTROPY: self._objective.entropy,
+            ENTROPY: self._objective.figure,
             AP: self._ap,
             WORST_LOSS: self._worst_loss,
             MARGIN: lambda rig: self._zones(rig)[0],
@@ -206,7 +206,7 @@ class ScalarValue:
         alone = sum(w > 0.0 for w in self._weights) == 1
         return rounded(weighted + (TIE if alone else AUGMENTED) * sum(off) / len(off))
 
-    def entropy(self, rig: Rig) -> float:
+    def __call__(self, rig: Rig) -> float:
         """Return the value of a rig."""
         return self.scalar(self._figures.costs(rig))
 

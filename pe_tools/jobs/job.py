@@ -18,7 +18,7 @@ from pe_core.scoring import RigEvaluator
 from pe_core.scoring.requirements import CheckStep, RequirementChecker, Verdict
 from pe_core.scoring.sampling import CENTERED, SEARCHED, Shift
 from pe_core.scoring.score import SURE, ObjectScore, Score, ScoreStopped
-from pe_core.search import EvaluatedRig, KeyFigures, Reading, Robustness, dashboard
+from pe_core.search import EvaluatedRig, KeyFigures, Reading, Robustness, Value, dashboard
 from pe_core.search.figures import BLIND_GROUND, BLIND_SECTOR, ENTROPY, FIGURES, TRAFFIC_AP
 from pe_core.study.condition_table import (
     ConditionTable,
@@ -26,7 +26,6 @@ from pe_core.study.condition_table import (
     is_by_ap,
     search_evaluator,
 )
-from pe_core.study.requirement_search import is_infeasible
 from pe_core.study.study import Study
 
 from ..advice import (
@@ -50,33 +49,32 @@ WAIT_S = 0.03
 
 @dataclass(frozen=True, slots=True)
 class HistoryRow:
-    """A placement that became the best: evaluation number, round, entropy [nats], and the rig. Of a
-    search by expected AP, `entropy` is the value that it minimised: minus the AP
-    (`searched_figure`)."""
+    """A placement that became the best: evaluation number, round, value, and the rig. The value is
+    what the search minimised: the entropy [nats], or minus the expected AP (`searched_figure`)."""
 
     evaluation: int
     round: int
-    entropy: float
+    value: Value
     rig: Rig
 
 
-def best_so_far(*starts: Sequence[HistoryRow]) -> tuple[tuple[int, float], ...]:
+def best_so_far(*starts: Sequence[HistoryRow]) -> tuple[tuple[int, Value], ...]:
     """Return the curve of a search: (evaluation, value) of each best so far, which never rises. The
     history from each start is given, in their order. A search that goes on with more samples
     evaluates its best placement again. Values before that are shifted by as much as that
     placement's own changed: they are of the same samples then. Placements that break requirements
     are left out once one keeps them."""
-    best: list[tuple[int, float]] = []
-    is_kept = any(not is_infeasible(row.entropy) for rows in starts for row in rows)
+    best: list[tuple[int, Value]] = []
+    is_kept = any(row.value.is_feasible for rows in starts for row in rows)
     for rows in starts:
-        curve: list[tuple[int, float]] = []
-        counted = [row for row in rows if not (is_kept and is_infeasible(row.entropy))]
+        curve: list[tuple[int, Value]] = []
+        counted = [row for row in rows if row.value.is_feasible or not is_kept]
         for row, before in zip(counted, (None, *counted), strict=False):
             if before is not None and _poses(row) == _poses(before):
-                shift = row.entropy - before.entropy
-                curve = [(evaluation, value + shift) for evaluation, value in curve]
-            elif not curve or row.entropy < curve[-1][1]:
-                curve.append((row.evaluation, row.entropy))
+                shift = row.value.rise_from(before.value)
+                curve = [(evaluation, value.worse_by(shift)) for evaluation, value in curve]
+            elif not curve or row.value < curve[-1][1]:
+                curve.append((row.evaluation, row.value))
         best += [point for point in curve if not best or point[1] < best[-1][1]]
     return tuple(best)
 
@@ -87,11 +85,11 @@ def _poses(row: HistoryRow) -> list[Pose]:
 
 @dataclass(frozen=True, slots=True)
 class StartEnd:
-    """Where a start of a search ended: its name (empty: the given one), entropy [nats] (or value,
-    as in `HistoryRow`), and how many rigs were evaluated until then."""
+    """Where a start of a search ended: its name (empty: the given one), value (as in `HistoryRow`),
+    and how many rigs were evaluated until then."""
 
     name: str
-    entropy: float
+    value: Value
     evaluations: int
 
 
@@ -262,8 +260,8 @@ class Progress:
     stage : str
     fraction : float
         Completed part of the stage, 0 to 1.
-    entropy : float or None
-        Best entropy so far [nats], or value of the search; None before the first.
+    value : Value or None
+        Best value so far of the search, or of a score; None before the first.
     evaluations : int
         Rigs evaluated so far.
     figure : SearchedFigure
@@ -275,7 +273,7 @@ class Progress:
 
     stage: str
     fraction: float
-    entropy: float | None = None
+    value: Value | None = None
     evaluations: int = 0
     figure: SearchedFigure = IN_NATS
     sample: str = ""
@@ -283,10 +281,10 @@ class Progress:
     @property
     def value_text(self) -> str:
         """The best so far: "entropy 1.2345 on 65,536 voxels"; empty before the first."""
-        if self.entropy is None:
+        if self.value is None:
             return ""
-        is_value = self.sample and not is_infeasible(self.entropy)
-        return self.figure.text(self.entropy) + (f" on {self.sample}" if is_value else "")
+        is_figure = self.sample and self.value.is_feasible
+        return self.figure.text(self.value) + (f" on {self.sample}" if is_figure else "")
 
 
 ProgressSteps = Generator[Progress, None, T | None]

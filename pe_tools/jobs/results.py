@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from pe_core.base.codec import write
 from pe_core.base.files import csv_text
 from pe_core.base.table_reader import dump_json, finite
 from pe_core.scene.rig import Rig
-from pe_core.search import AXES, EvaluatedRig
+from pe_core.search import AXES, EvaluatedRig, Value
 from pe_core.study.condition_table import ConditionScore, ConditionTable
 from pe_core.study.file_names import (
     AREAS,
@@ -37,6 +38,7 @@ from .job import HistoryRow, Outcome
 from .searched_figure import IN_NATS, SearchedFigure
 from .study_export import fingerprint, inputs_of, study_text, study_writers
 
+VIOLATION = "violation"
 EntriesOfSearches = Mapping[str, Iterable[EvaluatedRig]]
 """Entries of journals by the names of their searches; empty: that of a job with one search."""
 
@@ -102,7 +104,7 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
         flat = outcome.flatness
         data["flatness"] = None if flat is None else flat.to_dict()
         data["starts"] = [
-            {"name": e.name, figure.key: figure.to_figure(e.entropy), "evaluations": e.evaluations}
+            {"name": e.name, **_value(figure, e.value), "evaluations": e.evaluations}
             for e in outcome.starts
         ]
         data["stop_reason"] = outcome.stop_reason or None
@@ -113,13 +115,18 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
         "warnings": [each.to_dict() for each in outcome.warnings],
         "history": [
             {"evaluation": row.evaluation, "round": row.round}
-            | {figure.key: figure.to_figure(row.entropy), "placements": placements(row.rig)}
+            | {**_value(figure, row.value), "placements": placements(row.rig)}
             for row in outcome.history
         ],
         "inputs": outcome.inputs or inputs_of(start),
         "run": run_dict(outcome.seconds, host or {}),
     }
     return finite(data)  # type: ignore[no-any-return]
+
+
+def _value(figure: SearchedFigure, value: Value) -> dict[str, float | None]:
+    """Return the figure of a value, null where it breaks constraints, and by how much."""
+    return dict(zip((figure.key, VIOLATION), figure.cells(value), strict=True))
 
 
 def run_dict(seconds: float, host: Mapping[str, str]) -> dict[str, Any]:
@@ -187,8 +194,8 @@ def add_to_result(
     written, or one of the files in it was not written by this program."""
     with FileSet(folder) as files:
         files.take_away(unwanted)
-        for name, write in writers.items():
-            files.add(name, write)
+        for name, content in writers.items():
+            files.add(name, content)
         files.add(RESULT, dump_json(data).encode(errors="backslashreplace"))
 
 
@@ -197,11 +204,11 @@ def history_csv(history: tuple[HistoryRow, ...], figure: SearchedFigure = IN_NAT
     names = [s.name for s in history[0].rig] if history else []
     units = {a: "m" if a in "xyz" else "deg" for a in AXES}
     columns = [f"{name}.{axis}_{units[axis]}" for name in names for axis in AXES]
-    rows: list[list[object]] = [["evaluation", "round", figure.key, *columns]]
+    rows: list[list[object]] = [["evaluation", "round", figure.key, VIOLATION, *columns]]
     for row in history:
         poses = [(*s.pose.position, *s.pose.rotation_deg) for s in row.rig]
-        best = figure.to_figure(row.entropy)
-        rows.append([row.evaluation, row.round, best, *(v for p in poses for v in p)])
+        shown = ("" if cell is None else cell for cell in figure.cells(row.value))
+        rows.append([row.evaluation, row.round, *shown, *(v for p in poses for v in p)])
     return csv_text(rows)
 
 
@@ -249,7 +256,7 @@ class SearchState:
 
     def to_bytes(self, journals: EntriesOfSearches) -> bytes:
         """Return the content of the state file."""
-        rows = {name: list(entries) for name, entries in journals.items()}
+        rows = {name: write(list(entries)) for name, entries in journals.items()}
         return json.dumps({**self._head, "journals": rows}, ensure_ascii=False).encode()
 
     def save(
@@ -265,7 +272,7 @@ class SearchState:
         and the `other` files that it names. The folder stays unchanged after an `InputError`: it
         cannot be written, or this program did not write one of the files in it."""
         with FileSet(prepare_folder(folder)) as files:
-            for name, write in study_writers(study, STUDY).items():
+            for name, content in study_writers(study, STUDY).items():
                 if own if name == STUDY else other:
-                    files.add(name, write)
+                    files.add(name, content)
             files.add(SEARCH, self.to_bytes(journals))

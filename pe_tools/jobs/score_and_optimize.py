@@ -18,19 +18,20 @@ from pe_core.search import (
     Objective,
     Robustness,
     Step,
+    Value,
     feasible_start,
     optimize,
     robustness,
 )
 from pe_core.study.condition_table import is_by_ap, searched_study, study_objective
-from pe_core.study.requirement_search import constraints_of, feasible_first, is_infeasible
+from pe_core.study.requirement_search import constraints_of
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
 from pe_core.study.suggestion import suggestions
 
 from ..advice import Advice, condition_warnings, flatness_of, fragile, not_kept, unmet
 from .candidate_workers import ExecutorSource, candidate_workers
 from .job import HistoryRow, Job, Outcome, Progress, ProgressSteps, StartEnd, begun, best_so_far
-from .own_objective import OwnValues, own_objective
+from .own_objective import OwnValues, own_figure, own_objective
 from .searched_figure import IN_AP, level_sizes, searched_figure, searched_on, searched_samples
 from .stopping import TARGET, StopWatch, seed_scatter
 
@@ -43,11 +44,13 @@ class _Scored(NamedTuple):
     own: float | None = None
 
     @property
-    def value(self) -> float:
+    def value(self) -> Value:
         """What the search minimises, of a placement as scored."""
         if self.own is not None:
-            return self.own
-        return self.score.entropy if self.in_traffic is None else IN_AP.to_value(self.in_traffic.ap)
+            return Value(0.0, self.own)
+        if self.in_traffic is not None:
+            return IN_AP.to_value(self.in_traffic.ap)
+        return Value(0.0, self.score.entropy)
 
 
 def _nothing() -> None:
@@ -61,13 +64,12 @@ class ScoreJob(Job):
         score = yield from self._score(self.study.rig, Progress("scoring", 0.0))
         if score is None:
             return
-        warnings = yield from self._warnings(
-            self.study, score, Progress("scoring", 1.0, score.entropy)
-        )
-        seeing = Progress("looking at the ground", 1.0, score.entropy)
+        value = Value(0.0, score.entropy)
+        warnings = yield from self._warnings(self.study, score, Progress("scoring", 1.0, value))
+        seeing = Progress("looking at the ground", 1.0, value)
         figures = yield from self._figures([self.study.rig], seeing)
-        verdicts = yield from self._verdicts(self.study, Progress("checking", 1.0, score.entropy))
-        table = yield from self._conditions(self.study, Progress("conditions", 0.0, score.entropy))
+        verdicts = yield from self._verdicts(self.study, Progress("checking", 1.0, value))
+        table = yield from self._conditions(self.study, Progress("conditions", 0.0, value))
         if self.dropped:
             return
         self.outcome = Outcome(
@@ -82,7 +84,7 @@ class ScoreJob(Job):
             conditions=table,
             figures=(figures[0], figures[0]) if figures else None,
         )
-        yield Progress("done", 1.0, score.entropy)
+        yield Progress("done", 1.0, value)
 
 
 class OptimizeJob(Job):
@@ -96,7 +98,7 @@ class OptimizeJob(Job):
         Score of the study's rig, if the caller has it already: it is not computed again.
     journal : Journal, optional
         Journal of an earlier search of the same study, which is resumed.
-    objective : callable, or an object with a method ``entropy``, optional
+    objective : callable or Objective, optional
         What the search minimises in place of entropy: takes a `Rig`, returns a number. Processes
         evaluate it if it can be pickled. Limits of the study are kept; robustness and flatness,
         which are of entropy, are left out.
@@ -113,7 +115,7 @@ class OptimizeJob(Job):
         Where the starts ended so far, if the study has further ones.
     stop_reason : str
         Why the search ended before its budget did, by a rule of the study; empty otherwise.
-    descents : tuple of float
+    descents : tuple of Value
         Where the independent descents of the search ended (`Step.ends`).
     """
 
@@ -133,7 +135,7 @@ class OptimizeJob(Job):
     ) -> None:
         super().__init__(study, workers)
         self._own = None if objective is None else own_objective(study, objective)
-        self.figure = searched_figure(study) if self._own is None else self._own.figure
+        self.figure = searched_figure(study) if objective is None else own_figure(objective)
         self.journal_name = "" if self._own is None else self.figure.key
         self.target = self.figure.target(study) if target is None else target
         self.before = before
@@ -144,7 +146,7 @@ class OptimizeJob(Job):
         self.ends: list[StartEnd] = []
         self._ended: list[HistoryRow] = []
         self.stop_reason = ""
-        self.descents: tuple[float, ...] = ()
+        self.descents: tuple[Value, ...] = ()
         self._helpers: ExecutorSource = _nothing
         self._first: HistoryRow | None = None
         self._progress = Progress("preparing", 0.0)
@@ -156,7 +158,7 @@ class OptimizeJob(Job):
         return self.study.with_rig(rows[-1].rig) if rows else self.study
 
     @property
-    def curve(self) -> tuple[tuple[int, float], ...]:
+    def curve(self) -> tuple[tuple[int, Value], ...]:
         """The best so far, from all starts: `best_so_far`."""
         earlier = () if self._ended is self.history else self._ended
         return best_so_far(earlier, self.history)
@@ -195,18 +197,19 @@ class OptimizeJob(Job):
             for shift in HELD_OUT
         ]
 
-    def reported_value(self, rig: Rig) -> float:
+    def reported_value(self, rig: Rig) -> Value:
         """Return the value of a placement as it is reported: on samples that no search uses; of one
         that breaks a constraint, its violation."""
-        if is_infeasible(value := self._objectives[-1].entropy(rig)):
+        value = self._objectives[-1].value(rig)
+        if not value.is_feasible:
             return value
-        return rounded(fmean(each.entropy(rig) for each in self._held_out))
+        return Value(0.0, rounded(fmean(each.figure(rig) for each in self._held_out)))
 
     @cached_property
     def _objectives(self) -> list[Objective]:
         """Objectives that evaluate candidates, by level."""
         constraints = constraints_of(self.study)
-        return [feasible_first(each, constraints) for each in self._free]
+        return [each.under(constraints) for each in self._free]
 
     def _evaluator_of(self, samples: int) -> RigEvaluator:
         """Return what evaluates candidates on a number of voxels, or in its share of scenes."""
@@ -302,7 +305,7 @@ class OptimizeJob(Job):
         """Return an objective of one's own, for the start and the result."""
         if (own := self._own) is None:
             return None
-        return OwnValues(own.figure, own.figure_of(self.study.rig), own.figure_of(best.rig))
+        return OwnValues(self.figure, own.figure(self.study.rig), own.figure(best.rig))
 
     def _checked(self) -> list[Objective]:
         """Return the objectives; raise `InputError` before the search if it is infeasible. This
@@ -317,7 +320,7 @@ class OptimizeJob(Job):
         by_ap = is_by_ap(self.study)
         apart = by_ap and searched_study(self.study).targets != self.study.targets
         all_scenes = self.study.search.samples
-        own = None if self._own is None else self._own.entropy(rig)
+        own = None if self._own is None else self._own.value(rig).objective
         scoring = None
         if apart:
             scoring = begun(lambda: self.evaluators.searching(all_scenes, CENTERED).score(rig))
@@ -331,15 +334,15 @@ class OptimizeJob(Job):
         """Score the best placement; return the start instead if it is feasible and no worse."""
         if self.best.rig is self.study.rig:
             return before, self.study
-        waiting = self._about("scoring the result", self.history[-1].entropy)
+        waiting = self._about("scoring the result", self.history[-1].value)
         found = yield from self._scored(self.best.rig, waiting, to_the_end=True)
         if found is not None and (found.value < before.value or not self._start_may_stay):
             return found, self.best
         return before, self.study  # the search's sample overrated the placement
 
-    def _about(self, stage: str, value: float) -> Progress:
+    def _about(self, stage: str, value: Value) -> Progress:
         return Progress(
-            stage, fraction=1.0, entropy=value, evaluations=self.evaluations, figure=self.figure
+            stage, fraction=1.0, value=value, evaluations=self.evaluations, figure=self.figure
         )
 
     def _robustness(self, best: Study) -> Robustness:
@@ -356,16 +359,15 @@ class OptimizeJob(Job):
         not either if the search had a tolerance: the scores ignore mounting errors and failures,
         which the search minimized, nor if it had conditions."""
         start = self._first or self.history[0]
-        kept = start.rig is self.study.rig and not is_infeasible(start.entropy)
+        kept = start.rig is self.study.rig and start.value.is_feasible
         search = self.study.search
         return kept and not (search.tolerance.is_on or search.conditions)
 
     def _search(self) -> Iterator[Progress]:
         """Search from every start in turn; the best of what they end at is the result."""
-        objectives = self.journal.wrap(self._objectives)
         starts = self.study.search.goals.starts
         rigs = {"": self.study.rig, **{s.name: s.placed(self.study.rig) for s in starts}}
-        ended: list[tuple[float, list[HistoryRow]]] = []
+        ended: list[tuple[Value, list[HistoryRow]]] = []
         began = time.monotonic()
         for number, (name, rig) in enumerate(rigs.items()):
             if self.stopped or self.stop_reason == TARGET:
@@ -380,13 +382,20 @@ class OptimizeJob(Job):
                 target=self.target,
             )
             share = number / len(rigs), 1.0 / len(rigs)
-            yield from self._search_from(rig, objectives, watch, share)
+            yield from self._search_from(rig, watch, share)
             if len(rigs) > 1 and self.history:
                 end = self.history[-1].rig
-                levels = self._objectives if self.stopped else objectives  # resumed: known first
-                ended.append((levels[-1].entropy(end), self.history))
+                ended.append((self._end_value(end), self.history))
                 self.ends.append(StartEnd(name, self.reported_value(end), self.evaluations))
                 self.history = self._ended = min(ended, key=lambda each: each[0])[1]
+
+    def _end_value(self, rig: Rig) -> Value:
+        """Return the value of the placement that a start ended at, on the last level. A search that
+        resumes knows it already; one that was stopped asks for other placements here."""
+        last = self._objectives[-1]
+        if self.stopped:
+            return last.value(rig)
+        return self.journal.value(last, rig, len(self._objectives) - 1)
 
     def _candidate_workers(self) -> AbstractContextManager[ExecutorSource]:
         """Return what evaluates candidates of the search and of its analysis."""
@@ -394,13 +403,13 @@ class OptimizeJob(Job):
         return candidate_workers(self, self._objectives, models)
 
     def _search_from(
-        self, rig: Rig, objectives: list[Objective], watch: StopWatch, share: tuple[float, float]
+        self, rig: Rig, watch: StopWatch, share: tuple[float, float]
     ) -> Iterator[Progress]:
         """Search step by step in a thread: one candidate may take longer than a window can wait."""
         search = self.study.search
         before = self.evaluations
         steps = optimize(
-            objectives,
+            self._objectives,
             rig,
             self.study.with_rig(rig).search_space(),
             search.seed,
@@ -408,6 +417,7 @@ class OptimizeJob(Job):
             method=search.method,
             evaluations=search.from_each_start,
             executor=self._helpers,
+            journal=self.journal,
         )
         while step := (
             yield from self._awaited(begun(lambda: next(steps, None)), lambda: self._progress)
@@ -426,12 +436,12 @@ class OptimizeJob(Job):
         self._progress = Progress(
             "optimizing",
             step.fraction,
-            step.entropy,
+            step.value,
             step.evaluations,
             figure=self.figure,
             sample=self._samples[step.level],
         )
         if step.improved or not self.history:
-            row = HistoryRow(step.evaluations, step.round, step.entropy, step.best)
+            row = HistoryRow(step.evaluations, step.round, step.value, step.best)
             self.history.append(row)
             self._first = self._first or row

@@ -3,9 +3,9 @@ search minimises one value. By expected AP the value is minus the AP, which nobo
 
 from dataclasses import dataclass
 
+from pe_core.search import Value
 from pe_core.search.figures import AP
 from pe_core.study.condition_table import is_by_ap, searched_study
-from pe_core.study.requirement_search import INFEASIBLE, is_infeasible
 from pe_core.study.study import ENTROPY, EXPECTED_AP, Study
 
 
@@ -28,28 +28,33 @@ class SearchedFigure:
         key = AP if self.higher_is_better else self.key
         return study.limits.kept_value(key)
 
-    def to_figure(self, value: float) -> float:
-        """Return the figure of a value that a search minimises."""
-        return self.sign * value
+    def to_figure(self, value: Value) -> float:
+        """Return the figure of a value that a search minimises; it keeps all constraints."""
+        return self.sign * value.objective
 
-    def to_value(self, figure: float) -> float:
+    def to_value(self, figure: float) -> Value:
         """Return the value that a search minimises of a figure."""
-        return self.sign * figure
+        return Value(0.0, self.sign * figure)
+
+    def cells(self, value: Value) -> tuple[float | None, float]:
+        """Return the figure of a value, None where there is none, and its violation."""
+        return self.to_figure(value) if value.is_feasible else None, value.violation
 
     def amount(self, figure: str) -> str:
         """Return a figure in a sentence: "0.50 nats", "an expected AP of 0.65"."""
         return f"an expected AP of {figure}" if self.higher_is_better else f"{figure} nats"
 
-    def text(self, value: float) -> str:
+    def text(self, value: Value) -> str:
         """Return a placement's value as text: the figure, or by how much it breaks constraints."""
-        if is_infeasible(value):
-            return f"constraints broken by {value - INFEASIBLE:.3f}"
+        if not value.is_feasible:
+            return f"constraints broken by {value.violation:.3f}"
         return f"{self.label} {self.to_figure(value):.3f}"
 
-    def ended(self, value: float) -> str:
+    def ended(self, value: Value) -> str:
         """Return where a search ended: "at 0.500 nats", "with constraints broken by 0.473"."""
-        found = f"at {self.amount(f'{self.to_figure(value):.3f}')}"
-        return f"with {self.text(value)}" if is_infeasible(value) else found
+        if not value.is_feasible:
+            return f"with {self.text(value)}"
+        return f"at {self.amount(f'{self.to_figure(value):.3f}')}"
 
 
 IN_NATS = SearchedFigure(ENTROPY, "entropy", 1.0)

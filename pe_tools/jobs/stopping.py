@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from statistics import stdev
 
 from pe_core.base.values import rounded
-from pe_core.search import Objective, Step, Stop
-from pe_core.study.requirement_search import is_infeasible
+from pe_core.search import Objective, Step, Stop, Value
 
 from ..advice import flatness_lines
 from .job import Outcome
@@ -40,17 +39,17 @@ class StopWatch:
         self._started = started
         self._figure = figure
         self._target = None if target is None else figure.to_value(target)
-        self._bests: deque[float] = deque(maxlen=stop.over + 1)
-        self._checked: float | None = None
+        self._bests: deque[Value] = deque(maxlen=stop.over + 1)
+        self._checked: Value | None = None
 
     def reason(self, step: Step) -> str:
         """Return why the search ends after a step; empty where it goes on."""
         if self._is_at_target(step):
             return TARGET
         if self._stop.gain is not None and step.level == len(self._objectives) - 1:
-            self._bests.append(self._figure.to_figure(step.entropy))
+            self._bests.append(step.value)
             full = len(self._bests) == self._stop.over + 1
-            if full and abs(self._bests[0] - self._bests[-1]) < self._stop.gain:
+            if full and self._bests[0].rise_from(self._bests[-1]) < self._stop.gain:
                 return GAIN
         seconds = self._stop.seconds
         is_over = seconds is not None and time.monotonic() - self._started >= seconds
@@ -58,14 +57,14 @@ class StopWatch:
 
     def _is_at_target(self, step: Step) -> bool:
         target = self._target
-        if target is None or step.entropy > target:
+        if target is None or step.value > target:
             return False
         if step.level == len(self._objectives) - 1:
             return True
-        if step.entropy == self._checked:
+        if step.value == self._checked:
             return False
-        self._checked = step.entropy
-        return self._objectives[-1].entropy(step.best) <= target
+        self._checked = step.value
+        return self._objectives[-1].value(step.best) <= target
 
 
 def stop_text(outcome: Outcome) -> str:
@@ -82,12 +81,13 @@ def stop_text(outcome: Outcome) -> str:
     }.get(outcome.stop_reason, "")
 
 
-def seed_scatter(ends: Sequence[float]) -> float | None:
+def seed_scatter(ends: Sequence[Value]) -> float | None:
     """Return within what another seed would probably end [nats], by where descents of one search
     ended that shared nothing but their start; None where they are fewer than two, or infeasible."""
-    if len(ends) < 2 or not all(map(math.isfinite, ends)) or any(map(is_infeasible, ends)):
+    figures = [each.objective for each in ends]
+    if len(ends) < 2 or not all(map(math.isfinite, figures)):
         return None
-    return rounded(APART * stdev(ends))
+    return rounded(APART * stdev(figures))
 
 
 def scatter_text(outcome: Outcome) -> str:
@@ -105,6 +105,6 @@ def sureness_lines(outcome: Outcome) -> list[str]:
     lines = [] if outcome.flatness is None else list(flatness_lines(outcome.flatness))
     for end in outcome.starts:
         name = f"the start {end.name}" if end.name else "the given start"
-        lines.append(f"{name} ended {figure.ended(end.entropy)}{sample}")
+        lines.append(f"{name} ended {figure.ended(end.value)}{sample}")
     told = scatter_text(outcome), stop_text(outcome)
     return [*lines, *filter(None, told)]

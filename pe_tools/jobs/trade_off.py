@@ -20,13 +20,14 @@ from pe_core.search import (
     Selection,
     Start,
     SurfaceMount,
+    Value,
     mirrored,
     pose_from_values,
     pose_values,
     standoff_point,
 )
+from pe_core.search.build_figures import SUMS
 from pe_core.search.figures import AP, ENTROPY, PRICE, figure_of
-from pe_core.study.requirement_search import is_infeasible
 from pe_core.study.study import Study
 
 from ..advice import Advice, curve_note, hardware_note
@@ -129,6 +130,8 @@ class Design(ShortRepr):
         either.
     warnings : tuple of Advice
     verdicts : tuple of Verdict
+    violation : float
+        By how much the placement of a screening breaks constraints; its figure is then the worst.
     """
 
     name: str
@@ -138,6 +141,7 @@ class Design(ShortRepr):
     score: Score | None = None
     warnings: tuple[Advice, ...] = ()
     verdicts: tuple[Verdict, ...] = ()
+    violation: float = 0.0
 
     @property
     def price(self) -> float:
@@ -162,14 +166,20 @@ class Design(ShortRepr):
         return f"{count - len(self.broken)} of {count} met" if count else ""
 
     @property
-    def value(self) -> float:
+    def value(self) -> Value:
         """What its search minimised, as scored: entropy [nats], or minus the expected AP."""
-        return -self.figures[AP] if AP in self.figures else self.entropy
+        objective = -self.figures[AP] if AP in self.figures else self.entropy
+        return Value(self.violation, objective)
+
+    def costs(self, names: Sequence[str]) -> list[float | Value]:
+        """Return its objectives as values to minimise: sums, and figures of its placement."""
+        costs = ((name, figure_of(name).signed(self.figures[name])) for name in names)
+        return [cost if name in SUMS else Value(self.violation, cost) for name, cost in costs]
 
     @property
     def is_led_in(self) -> bool:
         """Whether its value is no figure: the screening found no placement to keep."""
-        return self.score is None and is_infeasible(self.value)
+        return self.violation > 0.0
 
 
 @dataclass(frozen=True, slots=True)

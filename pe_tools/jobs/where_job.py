@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import islice
 from math import dist, sqrt
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -13,10 +13,20 @@ from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError, one_of, shown
 from pe_core.base.values import rounded
 from pe_core.scene.rig import Rig, Sensor
+from pe_core.scoring import RigEvaluator
 from pe_core.scoring.sampling import CENTERED, SEARCHED, Shift
-from pe_core.scoring.score import Objective, standard_error
+from pe_core.scoring.score import standard_error
 from pe_core.scoring.sight import Sight
-from pe_core.search import FIGURES, Figure, MountingPlaces, SurfaceMount, SurfacePlace, evaluate_all
+from pe_core.search import (
+    FIGURES,
+    Figure,
+    MountingPlaces,
+    Objective,
+    SurfaceMount,
+    SurfacePlace,
+    as_objective,
+    evaluate_all,
+)
 from pe_core.search.figures import BLIND_SECTOR, ENTROPY, REQUIREMENTS, TRAFFIC_AP
 from pe_core.study.condition_table import search_evaluator
 from pe_core.study.requirement_search import RequirementConstraint
@@ -35,35 +45,37 @@ BEST = 5
 APART_M = 0.5
 """How many places are named as the best, and how far apart they are at least. They fit the sample
 that they were chosen on: their changes are reported on the larger one."""
+PlaceMeasure = RigEvaluator | Callable[[Rig], float]
 CONFIRMED = 40  # Places that are scored on the larger sample at most, until the best ones are
 
 
-class _RigValue(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class _RigValue:
     """Minimises the widest blind sector [deg], or minus the number of requirements met."""
 
     of: Sight | RequirementConstraint
 
-    def entropy(self, rig: Rig) -> float:
+    def __call__(self, rig: Rig) -> float:
         """Return the value of a rig."""
         if isinstance(self.of, Sight):
             return max(sector.width for sector in self.of.blind_sectors(rig))
         return -float(sum(not off for off in self.of.shortfalls(rig)))
 
 
-def _by_entropy(study: Study, samples: int, shift: Shift) -> Objective:
+def _by_entropy(study: Study, samples: int, shift: Shift) -> PlaceMeasure:
     return study.evaluator(samples, shift=shift)
 
 
-def _by_ap(study: Study, samples: int, shift: Shift) -> Objective:
+def _by_ap(study: Study, samples: int, shift: Shift) -> PlaceMeasure:
     by_ap = replace(study, search=replace(study.search, objective=EXPECTED_AP))
     return search_evaluator(by_ap, samples, shift=shift)
 
 
-def _by_sector(study: Study, _samples: int, _shift: Shift) -> Objective:
+def _by_sector(study: Study, _samples: int, _shift: Shift) -> PlaceMeasure:
     return _RigValue(study.sight())
 
 
-def _met(study: Study, _samples: int, _shift: Shift) -> Objective:
+def _met(study: Study, _samples: int, _shift: Shift) -> PlaceMeasure:
     if study.requirements:
         return _RigValue(RequirementConstraint(study))
     raise InputError("where", "requirements", "at least one, to count verdicts", "none")
@@ -71,13 +83,13 @@ def _met(study: Study, _samples: int, _shift: Shift) -> Objective:
 
 @dataclass(frozen=True, slots=True)
 class PlaceFigure:
-    """A row of `FIGURES` by which places are compared. `objective` returns what is minimised, of a
+    """A row of `FIGURES` by which places are compared. `measured` returns what is minimised, of a
     study, a number of voxels and their shift: the figure, or minus it where higher is better.
     `places` is how many are scored in about 20 s. `exact` is whether it does not depend on a
     sample, `of_voxels` whether that sample is one of voxels."""
 
     figure: Figure
-    objective: Callable[[Study, int, Shift], Objective]
+    measured: Callable[[Study, int, Shift], PlaceMeasure]
     places: int
     exact: bool = False
     of_voxels: bool = False
@@ -248,8 +260,9 @@ class WhereJob(Job):
             **own,
         )
         self.surface = self._places.surface.triangles
-        objective = row.objective(study, SAMPLES, SEARCHED)
-        self.base = rounded(row.sign * objective.entropy(study.rig))
+        measured = row.measured(study, SAMPLES, SEARCHED)
+        objective = as_objective(measured)
+        self.base = rounded(row.sign * objective.figure(study.rig))
         steps = iter(self._places)
         ahead = begun(lambda: list(islice(steps, BATCH)))
         with candidate_workers(self, [objective], [self.sensor.model]) as workers:
@@ -262,7 +275,7 @@ class WhereJob(Job):
                 self._waiting = Progress("placing", len(self.places) / self.count)
                 yield self._waiting
             if not self.stopped:
-                last = begun(partial(self._error, objective))
+                last = begun(partial(self._error, measured))
                 self.error = yield from self._awaited(last, lambda: self._waiting)
         yield Progress("done", 1.0)
 
@@ -272,7 +285,7 @@ class WhereJob(Job):
         rigs = [self._places.with_sensor(each.pose) for each in some if not each.reason]
         found = evaluate_all(objective, rigs, executor=workers())
         sign = self.row.sign
-        values = iter([rounded(sign * each) for each in found])
+        values = iter([rounded(sign * each.objective) for each in found])
         return [each if each.reason else replace(each, value=next(values)) for each in some]
 
     def _error(self, sampled: Any) -> float:
@@ -288,10 +301,10 @@ class WhereJob(Job):
         own, *by_place = sampled.residuals([self.study.rig, *rigs])
         errors = [standard_error(each - own) for each in by_place]
         samples = self.study.samples or DEFAULT_SEARCH_SAMPLES
-        larger = row.objective(self.study, samples, CENTERED)
-        self._move_to(rounded(row.sign * larger.entropy(self.study.rig)))
+        larger = as_objective(row.measured(self.study, samples, CENTERED))
+        self._move_to(rounded(row.sign * larger.figure(self.study.rig)))
         off = [
-            (place.value or 0.0) + self._moved_by - row.sign * larger.entropy(rig)
+            (place.value or 0.0) + self._moved_by - row.sign * larger.figure(rig)
             for place, rig in zip(compared, rigs, strict=True)
         ]
         self._confirm_best(larger)
@@ -316,7 +329,7 @@ class WhereJob(Job):
             if place is None:
                 return
             done.add(place.point)
-            value = self.row.sign * larger.entropy(self._places.with_sensor(place.pose))
+            value = self.row.sign * larger.figure(self._places.with_sensor(place.pose))
             at = self.places.index(place)
             self.places[at] = replace(place, value=rounded(value))
 

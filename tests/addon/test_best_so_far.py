@@ -64,7 +64,7 @@ def test_a_running_search_tells_the_view_each_time_it_finds_better(car, monkeypa
     job = jobs.OptimizeJob(scenes.study())
     lines = lines_while_running(car, job, monkeypatch)
     best_lines = [line for line in lines if line.startswith("Optimizing")]
-    assert f"best \N{ALMOST EQUAL TO} {job.curve[-1][1]:.3f}" in best_lines[-1]
+    assert f"best \N{ALMOST EQUAL TO} {job.curve[-1][1].objective:.3f}" in best_lines[-1]
     assert best_so_far.searches.pop(car.name) == tuple(job.best.rig) != tuple(job.study.rig)
 
 

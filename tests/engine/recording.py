@@ -8,7 +8,7 @@ from pe_core.search import AXES, pose_values
 class Recorder:
     """Scores a rig by a function of its poses; keeps every rig, its value and what it was told.
 
-    Duck-typed: what a search asks of an `Evaluator`, and nothing else. With `bounds`, candidates
+    Duck-typed: what an `Objective` asks of a figure, and nothing else. With `bounds`, candidates
     that are no better than what they have to be below are answered by inf.
     """
 
@@ -19,7 +19,7 @@ class Recorder:
         self.values = []
         self.cutoff = []
 
-    def entropy(self, rig):
+    def __call__(self, rig):
         return self.below(rig, math.inf)
 
     def below(self, rig, cutoff):

@@ -119,28 +119,29 @@ def test_of_wrong_values_none_is_taken(wrong):
 
 
 @pytest.mark.parametrize(
-    ("journal", "found"),
+    ("journal", "field", "found"),
     [
-        (3, "3"),
-        (None, "None"),
-        ("ab", "ab"),
-        ({"a": 1}, "a"),
-        ([1.0], "1.0"),
-        ([[1.0]], "[1.0]"),
-        ([[1.0, "a", 2]], "[1.0, 'a', 2]"),
-        ([["a", 1.0]], "['a', 1.0]"),
-        ([[True, "a"]], "[True, 'a']"),
-        ([[float("nan"), "a"]], "nan"),
-        ([[float("-inf"), "a"]], "-inf"),
-        ([[1.0, 2]], "[1.0, 2]"),
-        ([None], "None"),
+        (3, "", "3"),
+        (None, "", "None"),
+        ("ab", "", "ab"),
+        ({"a": 1}, "", "a"),
+        ([1.0], "[0]", "1.0"),
+        ([None], "[0]", "None"),
+        ([[[0.0, 1.0]]], "[0]", "[[0.0, 1.0]]"),
+        ([[[0.0, 1.0], "a", 2]], "[0]", "2"),
+        ([["a", 1.0]], "[0][0]", "a"),
+        ([[1.0, "a"]], "[0][0]", "1.0"),
+        ([[[0.0, True], "a"]], "[0][0][1]", "True"),
+        ([[[0.0, float("nan")], "a"]], "[0][0][1]", "nan"),
+        ([[[0.0, float("-inf")], "a"]], "[0][0][1]", "-inf"),
+        ([[[-1.0, 0.0], "a"]], "[0][0][0]", "-1.0"),
+        ([[[0.0, 1.0], 2]], "[0][1]", "2"),
     ],
 )
-def test_a_journal_of_a_wrong_shape_is_one_line(journal, found):
-    with pytest.raises(
-        pe.InputError, match=r"journal\[0\]: expected an entropy, a digest"
-    ) as error:
+def test_a_journal_of_a_wrong_shape_is_one_line(journal, field, found):
+    with pytest.raises(pe.InputError) as error:
         problem().search_run(journal=journal)
+    assert f"journal{field}: expected" in str(error.value)
     assert found in str(error.value) and "\n" not in str(error.value)
 
 

@@ -18,7 +18,15 @@ from pathlib import Path
 import pytest
 
 import pe_core as pe
-from pe_core.search import Processes, evaluate_all, processes, start_processes
+from pe_core.search import (
+    NO_VALUE,
+    Processes,
+    Value,
+    as_objective,
+    evaluate_all,
+    processes,
+    start_processes,
+)
 from pe_core.search.payload import Payload
 from pe_tools.cli.executors import workplace
 from tests.engine import shapes
@@ -104,6 +112,12 @@ class Landscape:
         return [path.name.split()[1] for path in self.folder.glob("unpacked *")]
 
 
+def evaluated(given, rigs, cutoff=math.inf, executor=None):
+    """Evaluate rigs below a figure, by an executor."""
+    below = NO_VALUE if cutoff == math.inf else Value(0.0, cutoff)
+    return [each.objective for each in evaluate_all(as_objective(given), rigs, below, executor)]
+
+
 def test_results_do_not_depend_on_who_evaluates(evaluator, rigs, pool):
     """To the bit: here, in one process, in two, in threads, in any order, after anything."""
     alone = [evaluator.entropy(rig) for rig in rigs]
@@ -111,8 +125,8 @@ def test_results_do_not_depend_on_who_evaluates(evaluator, rigs, pool):
     foreign = ProcessPoolExecutor(1, get_context("spawn"))
     with ThreadPoolExecutor(3) as threads, foreign:
         for executor in (None, threads, foreign, pool):
-            assert evaluate_all(evaluator, rigs, math.inf, executor) == alone
-        backward = evaluate_all(evaluator, rigs[::-1], math.inf, pool)
+            assert evaluated(evaluator, rigs, math.inf, executor) == alone
+        backward = evaluated(evaluator, rigs[::-1], math.inf, pool)
     assert backward[::-1] == alone
 
 
@@ -123,14 +137,14 @@ def test_what_is_not_below_is_reported_alike_by_all(evaluator, rigs, pool):
     expected = [entropy if entropy < cutoff else math.inf for entropy in alone]
     assert expected.count(math.inf) == CANDIDATES - 2
     for executor in (None, pool):
-        assert evaluate_all(evaluator, rigs, cutoff, executor) == expected
-        assert evaluate_all(evaluator, rigs[::-1], cutoff, executor) == expected[::-1]
+        assert evaluated(evaluator, rigs, cutoff, executor) == expected
+        assert evaluated(evaluator, rigs[::-1], cutoff, executor) == expected[::-1]
 
 
 def test_an_objective_is_sent_to_a_process_once(tmp_path, rigs, pool):
     objective = Landscape(tmp_path)
     for _ in range(3):
-        evaluate_all(objective, rigs, math.inf, pool)
+        evaluated(objective, rigs, math.inf, pool)
     assert 1 <= len(objective.unpacked) <= 2
     assert len(set(objective.unpacked)) == len(objective.unpacked)
 
@@ -148,11 +162,11 @@ def test_workers_of_a_cluster_have_an_objective_by_a_plugin(tmp_path, evaluator,
         executor.submit = lambda *call: calls.append(call) or submit(*call)
         expected = [objective.entropy(rig) for rig in rigs]
         for _ in range(2):
-            assert evaluate_all(objective, rigs, math.inf, executor) == expected
+            assert evaluated(objective, rigs, math.inf, executor) == expected
         assert 1 <= len(objective.unpacked) <= 2
         assert len(calls) == 2 * CANDIDATES
         assert not any(call[2].data for call in calls)
-        found = evaluate_all(evaluator, rigs, math.inf, executor)
+        found = evaluated(evaluator, rigs, math.inf, executor)
     assert found == [evaluator.entropy(rig) for rig in rigs]
 
 
@@ -169,14 +183,14 @@ def test_what_objectives_and_rigs_share_is_sent_once(evaluator, rigs):
 
 def test_a_worker_that_dies_is_replaced_and_its_rig_evaluated_again(tmp_path, rigs, pool):
     objective = Landscape(tmp_path, deaths=1)
-    evaluated = evaluate_all(objective, rigs, math.inf, pool)
-    assert evaluated == [rig.sensors[0].pose.position[0] for rig in rigs]
+    values = evaluated(objective, rigs, math.inf, pool)
+    assert values == [rig.sensors[0].pose.position[0] for rig in rigs]
     assert (tmp_path / "death 0").exists()
 
 
 def test_a_rig_that_kills_two_workers_is_named(tmp_path, rigs):
     with Processes(1) as fresh, pytest.raises(pe.InputError) as raised:
-        evaluate_all(Landscape(tmp_path, deaths=9), rigs, math.inf, fresh)
+        evaluated(Landscape(tmp_path, deaths=9), rigs, math.inf, fresh)
     assert str(raised.value) == (
         "workers: process: expected a worker that survives its task, "
         "found two that died with roof at [0.6, 0.0, 1.1], ahead at [0.9, 0.0, 1.1]"
@@ -186,17 +200,17 @@ def test_a_rig_that_kills_two_workers_is_named(tmp_path, rigs):
 def test_what_an_objective_raises_in_a_worker_is_raised(tmp_path, rigs, pool):
     error = pe.InputError("mount", "part", "a surface", 3.5)
     with pytest.raises(pe.InputError) as raised:
-        evaluate_all(Landscape(tmp_path, error=error), rigs, math.inf, pool)
+        evaluated(Landscape(tmp_path, error=error), rigs, math.inf, pool)
     assert str(raised.value) == str(error)
     with pytest.raises(ZeroDivisionError) as fault:
-        evaluate_all(Landscape(tmp_path, error=ZeroDivisionError()), rigs, math.inf, pool)
+        evaluated(Landscape(tmp_path, error=ZeroDivisionError()), rigs, math.inf, pool)
     assert "in entropy" in fault.value.__notes__[0], "the worker's traceback comes along"
 
 
 def test_an_objective_that_cannot_be_sent_evaluates_here(tmp_path, rigs, pool):
     objective = Landscape(tmp_path)
     objective.cannot_be_pickled = lambda: None
-    assert evaluate_all(objective, rigs, math.inf, pool) == evaluate_all(objective, rigs)
+    assert evaluated(objective, rigs, math.inf, pool) == evaluated(objective, rigs)
     assert not objective.unpacked
 
 

@@ -46,6 +46,12 @@ name = "bump"
 body = { diameter = 0.1, height = 0.05 }
 zone = { ring = [0.2, 0.5] }
 """
+LIMITS = """
+[limits]
+blind_ground = 400.0
+height = { value = 3.0, kept = false }
+entropy = -20.0
+"""
 
 
 @pytest.fixture
@@ -159,3 +165,18 @@ def test_a_blind_place_is_mended_by_the_job_and_by_the_command(study, capsys):
     assert main(["explain", str(study), "--at", "0.0", "1.6", "--suggest", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["suggestions"] == expected
     assert main(["explain", str(study), "--suggest"]) == 1
+
+
+def test_limits_with_a_number_are_checked_as_a_score_has_them(study, capsys):
+    """Also where nothing else is asked for; stories alone have none."""
+    study.write_text(STUDY.partition("[[requirement]]")[0] + LIMITS)
+    outcome = pt.ScoreJob(pe.load_study(study), 1).run()
+    capsys.readouterr()
+    assert main(["check", str(study), "--json"]) == NOT_MET
+    rows = json.loads(capsys.readouterr().out)["limits"]
+    expected = [row.to_dict() for row in outcome.dashboard if row.wanted is not None]
+    assert rows == expected and [row["met"] for row in rows] == [True, False, True]
+    assert main(["check", str(study), "--set", "limits.entropy=90"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.partition(" ")[0] for line in lines] == ["limit:"] * 3
+    assert all("(met: wanted" in line for line in lines)

@@ -6,7 +6,7 @@ import random
 import pytest
 
 import pe_core as pe
-from pe_core.search import DesignSearch, DesignSpace, above_front, pareto_front, selection
+from pe_core.search import DesignSearch, DesignSpace, Value, above_front, pareto_front, selection
 
 MODELS = ("Pandar64", "Pandar40", "HDL-64E")
 EYES = ("Camera 30 deg", "Camera 60 deg")
@@ -103,7 +103,7 @@ def test_the_front_is_what_no_other_beats():
             if q <= p and f <= e and ((q, f) != (p, e) or j < k)
         }
         assert sorted(pareto_front(worths)) == sorted(set(range(len(worths))) - beaten)
-        above = above_front(worths)
+        above = above_front([(price, Value(0.0, worth)) for price, worth in worths])
         assert all(above[k] == 0 for k in pareto_front(worths))
         assert min(above) >= 0
 
@@ -117,7 +117,7 @@ def test_the_local_search_finds_the_front_of_more_designs_than_it_looks_at(monke
     gain = {k: dict(zip((0, 1, 2, 3), (3 + k, 5 + k / 2, 6 + k, 0), strict=True)) for k in range(4)}
 
     def entropy(picks):
-        return 40.0 - sum(gain[k][pick] for k, pick in enumerate(picks))
+        return Value(0.0, 40.0 - sum(gain[k][pick] for k, pick in enumerate(picks)))
 
     search = DesignSearch(every)
     looked = {}

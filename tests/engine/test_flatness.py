@@ -58,14 +58,15 @@ def test_yaw_of_a_spinning_lidar_is_flatter_than_its_height(outcome):
 class Slope:
     """An objective that falls with z, three times as steeply as with x."""
 
-    def entropy(self, rig):
+    def __call__(self, rig):
         x, _, z = rig["roof"].pose.position
         return -3.0 * z - x
 
 
 def test_costs_of_a_slope_are_its_gradient_and_all_else_is_flat():
     rows = {
-        row.axis: row for row in axis_costs(StepCosts(study(1).rig, [Slope()]), "roof", (1.0, 5.0))
+        row.axis: row
+        for row in axis_costs(StepCosts(study(1).rig, [pe.Objective(Slope())]), "roof", (1.0, 5.0))
     }
     assert rows["z"].cost == pytest.approx({-1.0: 0.03, 1.0: -0.03, -5.0: 0.15, 5.0: -0.15})
     assert rows["x"].cost[-1.0] == pytest.approx(0.01)

@@ -147,7 +147,7 @@ def test_a_concave_front_is_reached_between_its_ends():
             return [math.cos(t), math.sin(t)]
 
     value = ScalarValue(Quarter(), (0.5, 0.5), (0.0, 0.0), (1.0, 1.0))
-    best = min(np.linspace(0.0, math.pi / 2.0, 91), key=value.entropy)
+    best = min(np.linspace(0.0, math.pi / 2.0, 91), key=value)
     assert math.degrees(best) == pytest.approx(45.0, abs=1.1)
 
 

@@ -1,5 +1,6 @@
 """What is asked of a search: when it stops, which sensors stay, from where it starts; the file."""
 
+import math
 from dataclasses import replace
 from itertools import pairwise
 from statistics import stdev
@@ -12,7 +13,6 @@ import pe_tools as pt
 from pe_core.scoring.sampling import HELD_OUT
 from pe_core.search import Front, Goals, Start, Stop
 from pe_core.study import load_study_data, study_to_dict
-from pe_core.study.requirement_search import INFEASIBLE
 from pe_tools.cli.terminal import summary
 from pe_tools.cli.verbs import parser
 from pe_tools.jobs import HistoryRow, best_so_far, result_dict, stopping
@@ -49,11 +49,11 @@ def plain():
 
 
 def test_a_search_stops_at_its_target_with_the_steps_of_the_whole_one(plain):
-    target = plain.history[2].entropy
+    target = plain.history[2].value.objective
     outcome = finished(replace(study(), limits=pe.Limits(entropy=target)))
     assert outcome.stop_reason == "target" and not outcome.stopped
-    assert outcome.history == plain.history[:3] or [r.entropy for r in outcome.history] == [
-        r.entropy for r in plain.history[:3]
+    assert outcome.history == plain.history[:3] or [r.value for r in outcome.history] == [
+        r.value for r in plain.history[:3]
     ]
     assert outcome.evaluations < plain.evaluations
     assert outcome.evaluated == plain.evaluated[: len(outcome.evaluated)]
@@ -91,12 +91,14 @@ def test_a_search_that_races_tells_within_what_another_seed_would_end(plain):
     assert plain.seed_scatter is None and result_dict(plain)["seed_scatter"] is None
     job = pt.OptimizeJob(study(evaluations=320), 1)
     driven(job)
-    assert len(job.descents) == 4 and min(job.descents) >= job.history[-1].entropy
-    scatter = stopping.APART * stdev(job.descents)
+    assert len(job.descents) == 4 and min(job.descents) >= job.history[-1].value
+    scatter = stopping.APART * stdev(each.objective for each in job.descents)
     assert job.outcome.seed_scatter == pytest.approx(scatter, abs=1e-9) and scatter > 0.0
     assert result_dict(job.outcome)["seed_scatter"] == job.outcome.seed_scatter
     assert f"another seed would probably end within {scatter:.3f} nats" in summary(job.outcome)
-    assert stopping.seed_scatter((1.0,)) is stopping.seed_scatter((1.0, INFEASIBLE)) is None
+    assert stopping.seed_scatter((pe.Value(0.0, 1.0),)) is None
+    ends = pe.Value(0.0, 1.0), pe.Value(0.5, math.inf)
+    assert stopping.seed_scatter(ends) is None
 
 
 def test_fixed_sensors_stay_and_the_others_move():
@@ -127,10 +129,12 @@ def test_several_starts_share_the_budget_and_the_best_end_is_the_result(plain):
     assert outcome.evaluations == 60 and outcome.starts[0].evaluations == 30
     halves = [study().evaluator(1024, shift=shift) for shift in HELD_OUT]
     reported = np.mean([each.entropy(outcome.study.rig) for each in halves])
-    assert any(end.entropy == pytest.approx(reported, abs=2e-9) for end in outcome.starts)
+    assert any(end.value.objective == pytest.approx(reported, abs=2e-9) for end in outcome.starts)
     assert "the start high ended at" in summary(outcome)
     assert f"\nentropy {outcome.before.entropy:.3f} nats -> " in summary(outcome)
-    broken = replace(outcome, starts=[replace(end, entropy=100.5) for end in outcome.starts])
+    broken = replace(
+        outcome, starts=[replace(end, value=pe.Value(0.5, math.inf)) for end in outcome.starts]
+    )
     assert "the start high ended with constraints broken by 0.500" in summary(broken)
     again = finished(study(Goals(starts=[Start("high", poses)])), journal=journal_of(outcome, 40))
     assert result_dict(again)["placements"] == result_dict(outcome)["placements"]
@@ -159,16 +163,20 @@ def test_the_curve_of_a_search_never_rises_and_ends_at_its_last_value(plain):
         assert all(after < before for before, after in pairwise(values))
         last += values[-1:]
     assert all(after <= before for before, after in pairwise(last))
-    assert last[-1] == several.history[-1].entropy
+    assert last[-1] == several.history[-1].value
 
 
 def test_values_of_fewer_samples_are_shifted_to_those_of_more():
     rigs = [pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(4, 90), (x, 0, 2))]) for x in range(4)]
-    given = [(1, 100.5, 0), (2, 4.0, 1), (5, 3.0, 2), (6, 3.4, 2), (9, 2.9, 3)]
-    rows = [HistoryRow(count, 0, value, rigs[k]) for count, value, k in given]
-    assert best_so_far(rows) == ((2, 4.4), (5, 3.4), (9, 2.9))
-    assert best_so_far(rows, [HistoryRow(11, 0, 3.2, rigs[0])]) == best_so_far(rows)
-    assert best_so_far(rows[:1]) == ((1, 100.5),), "as long as nothing keeps the requirements"
+    given = [(2, 4.0, 1), (5, 3.0, 2), (6, 3.4, 2), (9, 2.9, 3)]
+    broken = HistoryRow(1, 0, pe.Value(0.5, math.inf), rigs[0])
+    rows = [broken, *(HistoryRow(n, 0, pe.Value(0.0, value), rigs[k]) for n, value, k in given)]
+    curve = [(number, value.objective) for number, value in best_so_far(rows)]
+    assert curve == [(2, 4.4), (5, 3.4), (9, 2.9)]
+    later = HistoryRow(11, 0, pe.Value(0.0, 3.2), rigs[0])
+    assert best_so_far(rows, [later]) == best_so_far(rows)
+    broken_alone = best_so_far(rows[:1])
+    assert broken_alone == ((1, (0.5, math.inf)),), "as long as nothing keeps the requirements"
 
 
 def journal_of(outcome, count):

@@ -43,7 +43,7 @@ def test_an_optimize_job_improves_and_tells_its_history():
     assert outcome.after.entropy < outcome.before.entropy
     assert outcome.after.to_dict() == outcome.study.evaluator().score(outcome.study.rig).to_dict()
     assert outcome.evaluations == 1 + 7 * 6
-    entropies = [row.entropy for row in outcome.history]
+    entropies = [row.value.objective for row in outcome.history]
     assert entropies == sorted(entropies, reverse=True) and len(entropies) > 1
     assert outcome.history[0].rig is outcome.start.rig
     stages = [p.stage for p in progress]
@@ -122,8 +122,11 @@ def test_a_placement_that_only_flatters_the_sample_is_not_taken(monkeypatch):
     worse = pe.Rig([job.study.rig.sensors[0].moved(pe.Pose((0.0, 0.0, 0.5)))])
 
     def flattering():
-        job.history += [HistoryRow(1, 0, 9.0, job.study.rig), HistoryRow(2, 0, 1.0, worse)]
-        yield pt.Progress("optimizing", 1.0, 1.0, 2)
+        job.history += [
+            HistoryRow(1, 0, pe.Value(0.0, 9.0), job.study.rig),
+            HistoryRow(2, 0, pe.Value(0.0, 1.0), worse),
+        ]
+        yield pt.Progress("optimizing", 1.0, pe.Value(0.0, 1.0), 2)
 
     monkeypatch.setattr(job, "_search", flattering)
     _, outcome = finished(job)

@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 
 import pe_core as pe
-from pe_core.search import METHODS, Parametrization, pose_values
+from pe_core.search import METHODS, Parametrization, Value, pose_values
 from pe_core.search.methods import Given, Question
 from pe_core.search.methods.method import Incumbent, Phase
 from pe_core.search.methods.portfolio_survey import to_best_corners
@@ -138,13 +138,14 @@ def test_what_a_method_asks_follows_from_its_answers_alone():
     for method in METHODS.values():
         asked = []
         for _ in range(2):
-            given = Given(coding, coding.start, 1.0, seed=4, evaluations=60)
+            given = Given(coding, coding.start, Value(0.0, 1.0), seed=4, evaluations=60)
             asking = method.ask(given)
             questions = []
             question = next(asking)
             for number in range(8):
                 questions.append([c and c.vector for c in question.candidates])
-                values = [math.sin(number + k) for k in range(len(question.candidates))]
+                count = len(question.candidates)
+                values = [Value(0.0, math.sin(number + k)) for k in range(count)]
                 question = asking.send(values)
             asked.append(questions)
         assert asked[0] == asked[1]
@@ -160,19 +161,20 @@ def answered(asking, value):
     try:
         question = next(asking)
         while True:
-            answers = [c and value(c) for c in question.candidates]
+            answers = [c and Value(0.0, value(c)) for c in question.candidates]
             question = asking.send(answers)
     except StopIteration as stop:
         return stop.value
 
 
 def test_a_corner_that_is_worse_than_the_start_is_left(coding):
-    given = Given(coding, coding.start, 3.0)
-    incumbent = Incumbent(coding.start, 3.0)
+    given = Given(coding, coding.start, Value(0.0, 3.0))
+    incumbent = Incumbent(coding.start, Value(0.0, 3.0))
     answered(to_best_corners(given, incumbent, PHASE), lambda c: 4.0)
-    assert (incumbent.best, incumbent.entropy) == (given.start, 3.0) and incumbent.count > 0
+    assert incumbent.best is given.start and incumbent.value == Value(0.0, 3.0)
+    assert incumbent.count > 0
     answered(to_best_corners(given, incumbent, PHASE), lambda c: 2.0 + c.vector[0] / 10.0)
-    assert incumbent.entropy < 2.0
+    assert incumbent.value < Value(0.0, 2.0)
     assert incumbent.best.vector[0] == given.parametrization.variables[0].low
 
 
@@ -182,9 +184,9 @@ def test_a_lower_level_screens_candidates_but_makes_none_the_incumbent(monkeypat
     near, far = (coding.candidate([x, 0.0, 1.5, 0.0]) for x in (0.5, 0.9))
 
     def ask(given):
-        assert (yield Question((near,), level=1)) == [0.5]
-        assert (yield Question((far,), level=0)) == [-1.0]
-        assert (yield Question((far,), level=1)) == [0.9]
+        assert (yield Question((near,), level=1)) == [Value(0.0, 0.5)]
+        assert (yield Question((far,), level=0)) == [Value(0.0, -1.0)]
+        assert (yield Question((far,), level=1)) == [Value(0.0, 0.9)]
 
     monkeypatch.setitem(METHODS, "screened", pe.Method("Screened", "for a test", ask))
     levels = [Recorder(lambda rig: -1.0), Recorder(lambda rig: rig["roof"].pose.position[0])]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.search import Parametrization, pose_values
+from pe_core.search import Parametrization, Value, pose_values
 from pe_core.search.methods import portfolio
 from pe_core.search.methods.method import Given, Incumbent, Phase
 from pe_core.search.methods.portfolio import PLACEMENTS_PER_START
@@ -33,7 +33,7 @@ def answered(part, landscape):
         question = next(part)
         while True:
             sizes.append(len(question.candidates))
-            question = part.send([landscape(c.rig) for c in question.candidates])
+            question = part.send([Value(0.0, landscape(c.rig)) for c in question.candidates])
     except StopIteration:
         return sizes
 
@@ -47,8 +47,8 @@ def descended(landscape, rig, space, evaluations, seed=0):
         asked.append(rig)
         return landscape(rig)
 
-    incumbent = Incumbent(coding.start, landscape(rig))
-    steps = MultiscaleDescent(Given(coding, coding.start, incumbent.entropy), [seed])
+    incumbent = Incumbent(coding.start, Value(0.0, landscape(rig)))
+    steps = MultiscaleDescent(Given(coding, coding.start, incumbent.value), [seed])
     answered(steps.descend(incumbent, PHASE, evaluations), noted)
     return incumbent, asked
 
@@ -79,7 +79,7 @@ def test_a_race_tells_where_its_descents_ended_and_a_small_budget_has_none():
         evaluations = 2 * 2 * PLACEMENTS_PER_START - short
         _, steps = searched(rugged, rig, space, evaluations)
         assert len(steps[-1].ends) == (0 if short else 2)
-        assert all(end >= steps[-1].entropy for end in steps[-1].ends)
+        assert all(end >= steps[-1].value for end in steps[-1].ends)
     *_, last = searched(rugged, rig, space, 2 * 4 * PLACEMENTS_PER_START)[1]
     assert len(set(last.ends)) == portfolio.RACING
 
@@ -96,7 +96,7 @@ def test_sensors_of_one_model_take_values_from_each_other_and_move_together():
     unlike = pe.Rig([rig["roof"], replace(rig["b"], model=replace(other, name="of another make"))])
     ends = []
     for each in (rig, unlike):
-        ends.append(descended(ridge, each, space, 300)[0].entropy)
+        ends.append(descended(ridge, each, space, 300)[0].value.objective)
     assert ends[0] < 0.02 and ends[1] > 0.2
 
 
@@ -108,8 +108,8 @@ def test_sensors_of_one_model_are_tried_beside_the_mirror_image_of_each_other():
     asked = []
     for each in (rig, pe.Rig([rig["roof"], unlike])):
         coding = Parametrization(each, space)
-        images = Survey(Given(coding, coding.start, 5.0)).images(
-            Incumbent(coding.start, 5.0), PHASE
+        images = Survey(Given(coding, coding.start, Value(0.0, 5.0))).images(
+            Incumbent(coding.start, Value(0.0, 5.0)), PHASE
         )
         sizes = answered(images, lambda rig: asked.append(rig) or 9.0)
         assert len(sizes) == (2 if each is rig else 0)
@@ -154,11 +154,11 @@ def test_a_valley_as_narrow_as_a_step_is_found_beside_a_wide_one():
 
     rig, space = mounting.space(can((0.0, 0.0, 1.6)), free=("x",))
     coding = Parametrization(rig, space)
-    incumbent = Incumbent(coding.start, valleys(rig))
-    steps = MultiscaleDescent(Given(coding, coding.start, incumbent.entropy), [0])
+    incumbent = Incumbent(coding.start, Value(0.0, valleys(rig)))
+    steps = MultiscaleDescent(Given(coding, coding.start, incumbent.value), [0])
     sizes = answered(steps.descend(incumbent, PHASE, 300), valleys)
     assert set(sizes) == {BATCH} and incumbent.count == sum(sizes) < 300 + BATCH
-    assert incumbent.entropy < 0.2
+    assert incumbent.value < Value(0.0, 0.2)
 
 
 def test_sensors_in_slots_exchange_them_and_move_two_at_a_time():
@@ -191,13 +191,13 @@ def test_the_first_survey_is_the_same_for_every_seed_and_the_second_is_not():
 def test_a_survey_asks_for_one_sensor_at_a_time_and_tells_what_the_next_has_to_be_below():
     rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"))
     coding = Parametrization(rig, space)
-    survey = Survey(Given(coding, coding.start, 5.0))
-    part = survey.survey(Incumbent(coding.start, 5.0), PHASE, 4)
+    survey = Survey(Given(coding, coding.start, Value(0.0, 5.0)))
+    part = survey.survey(Incumbent(coding.start, Value(0.0, 5.0)), PHASE, 4)
     question = next(part)
-    assert (len(question.candidates), question.cutoff) == (4, 5.0)
+    assert (len(question.candidates), question.cutoff) == (4, Value(0.0, 5.0))
     assert {c.rig["b"].pose for c in question.candidates} == {rig["b"].pose}
-    question = part.send([value for value in (6.0, 3.0, 4.0, 7.0)])
-    assert question.cutoff == 3.0
+    question = part.send([Value(0.0, figure) for figure in (6.0, 3.0, 4.0, 7.0)])
+    assert question.cutoff == Value(0.0, 3.0)
     assert len({c.rig["roof"].pose for c in question.candidates}) == 1
 
 
@@ -212,7 +212,8 @@ def rugged(rig):
 def test_among_small_valleys_a_descent_goes_on():
     rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"), free=("x", "y"))
     ends = [
-        descended(rugged, rig, space, evaluations=200, seed=seed)[0].entropy for seed in range(5)
+        descended(rugged, rig, space, evaluations=200, seed=seed)[0].value.objective
+        for seed in range(5)
     ]
     assert np.median(ends) < 0.12 < rugged(rig) / 10.0
 
@@ -243,4 +244,4 @@ def test_infinite_values_are_left_behind():
         return x * x if x > -0.5 else math.inf
 
     rig, space = mounting.space(can((-1.0, 0.0, 1.6)), free=("x", "y"))
-    assert half(rig) == math.inf and descended(half, rig, space, 200)[0].entropy < 0.01
+    assert half(rig) == math.inf and descended(half, rig, space, 200)[0].value.objective < 0.01

@@ -20,9 +20,8 @@ from pe_core.scoring.requirements import (
     Zone,
 )
 from pe_core.scoring.sight import BLIND_TO_M, Sight
-from pe_core.search import FIGURES, Goals, RigView, Tolerance
-from pe_core.search.dispatch import value_below
-from pe_core.study.requirement_search import INFEASIBLE, constraints_of, feasible_first
+from pe_core.search import FIGURES, NO_VALUE, Goals, RigView, Tolerance
+from pe_core.study.requirement_search import constraints_of
 from pe_core.study.suggestion import BLIND_SPOT, SAMPLES, mended, suggestions, with_blind_spot
 from pe_tools import advice
 from pe_tools.jobs import result_dict
@@ -68,9 +67,10 @@ def test_a_search_that_starts_with_two_requirements_broken_ends_with_none():
     assert [v.met for v in start.verdicts()] == [True, False, False]
     outcome = finished(pt.OptimizeJob(start, workers=1))
     assert [v.met for v in outcome.verdicts] == [True, True, True]
-    values = [row.entropy for row in outcome.history]
-    assert values[0] > INFEASIBLE > values[-1] and values == sorted(values, reverse=True)
-    assert values[-1] == pytest.approx(outcome.after.entropy, abs=0.5)
+    values = [row.value for row in outcome.history]
+    assert not values[0].is_feasible and values[-1].is_feasible
+    assert values == sorted(values, reverse=True)
+    assert values[-1].objective == pytest.approx(outcome.after.entropy, abs=0.5)
     assert not [w for w in outcome.warnings if w.code == "requirement"]
 
 
@@ -229,10 +229,9 @@ def test_shortfalls_are_zero_exactly_where_a_verdict_says_met():
     again = pickle.loads(pickle.dumps(checker))
     assert again.shortfalls(moved) == offs
     evaluator = own.evaluator()
-    objective = feasible_first(evaluator, constraints_of(own))
+    objective = pe.Objective(evaluator.entropy, constraints_of(own))
     free = replace(own, limits=pe.Limits())
-    kept = feasible_first(evaluator, constraints_of(free))
-    assert kept is evaluator and objective.entropy(own.rig) > INFEASIBLE
+    assert constraints_of(free) == () and not objective.value(own.rig).is_feasible
 
 
 def tilted(keep=(), method="portfolio", **limits):
@@ -278,18 +277,18 @@ def test_workers_and_cutoffs_keep_the_same_blind_ground():
     given = tilted(BLIND)
     assert constraints_of(tilted()) == ()
     (limit,) = constraints_of(given)
-    objective = feasible_first(given.evaluator(), (limit,))
+    objective = pe.Objective(given.evaluator().entropy, (limit,))
     level = given.rig.with_poses([pe.Pose((2.6, 0.0, 1.0), (0.0, 0.0, 0.0))])
     assert limit.violation(given.rig) == 0.0 < limit.violation(level) <= 1.0
     again = pickle.loads(pickle.dumps(limit))
     assert again.violation(level) == limit.violation(level)
-    value = objective.entropy(level)
-    assert value == INFEASIBLE + limit.violation(level)
+    assert objective.value(level) == (limit.violation(level), math.inf)
     entropy = given.evaluator().entropy(given.rig)
-    for cutoff in (entropy - 0.5, entropy, entropy + 0.5, INFEASIBLE + 2.0):
+    cutoffs = [pe.Value(0.0, entropy + by) for by in (-0.5, 0.0, 0.5)]
+    for cutoff in (*cutoffs, pe.Value(2.0, math.inf)):
         for rig in (given.rig, level):
-            value = objective.entropy(rig)
-            assert value_below(objective, rig, cutoff) == (value if value < cutoff else math.inf)
+            value = objective.value(rig)
+            assert objective.below(rig, cutoff) == (value if value < cutoff else NO_VALUE)
     one, two = (finished(pt.OptimizeJob(given, workers)) for workers in (1, 2))
     assert one.evaluated == two.evaluated and one.after == two.after
 
@@ -297,16 +296,16 @@ def test_workers_and_cutoffs_keep_the_same_blind_ground():
 def test_after_a_violation_that_is_enough_no_further_cost_is_computed(monkeypatch):
     given = tilted((*BLIND, "blind_sector"))
     (limit,) = constraints_of(given)
-    objective = feasible_first(given.evaluator(), (limit,))
+    objective = pe.Objective(given.evaluator().entropy, (limit,))
     level = given.rig.with_poses([pe.Pose((2.6, 0.0, 1.0), (0.0, 0.0, 0.0))])
     whole = limit.violation(level)
     asked = []
     sectors = Sight.blind_sectors
     monkeypatch.setattr(Sight, "blind_sectors", lambda *of: asked.append(of) or sectors(*of))
-    assert value_below(objective, level, INFEASIBLE + whole + 0.1) == INFEASIBLE + whole
+    assert objective.below(level, pe.Value(whole + 0.1, math.inf)) == (whole, math.inf)
     assert len(asked) == 1
-    for cutoff in (INFEASIBLE - 1.0, INFEASIBLE + 1e-6):
-        assert value_below(objective, level, cutoff) == math.inf
+    for cutoff in (pe.Value(0.0, 99.0), pe.Value(1e-6, math.inf)):
+        assert objective.below(level, cutoff) == NO_VALUE
     assert len(asked) == 1
     shares = {"blind_ground": 1.0 - 1e-13, "blind_sector": 0.5}  # the former rounds to no violation
     sight = given.sight()

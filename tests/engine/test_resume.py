@@ -98,7 +98,7 @@ def test_every_method_goes_on_to_the_bits_of_an_unbroken_search(method):
     assert end.evaluated == whole.evaluated
 
 
-def search(study, objectives):
+def search(study, objectives, journal):
     return pe.optimize(
         objectives,
         study.rig,
@@ -106,17 +106,18 @@ def search(study, objectives):
         study.search.seed,
         schedule=study.search.schedule,
         method=study.search.method,
+        journal=journal,
     )
 
 
 def test_a_journal_of_other_placements_is_refused():
     study = a_study()
     journal = Journal()
-    list(search(study, journal.wrap([Recorder(distance_to({"x": 0.1}))])))
+    list(search(study, [Recorder(distance_to({"x": 0.1}))], journal=journal))
     other = replace(study, search=replace(study.search, seed=4))
     again = Journal(journal.entries, "out/search.json")
     with pytest.raises(pe.InputError, match=r"evaluated\[1\]: expected the placements"):
-        list(search(other, again.wrap([Recorder(distance_to({"x": 0.1}))])))
+        list(search(other, [Recorder(distance_to({"x": 0.1}))], journal=again))
 
 
 def broken_off(signum, moment, *arguments):
@@ -157,14 +158,17 @@ def begun_in(folder, **changes):
         ({"study": 3}, "file: expected the state of a search"),
         ({"study": "samples = 1024"}, "sensor: expected at least one [[sensor]], found none"),
         ({"study_sha256": "0"}, "study: expected unchanged files beside the study, found"),
-        ({"journals": {"": [[1.0, "a"], [1, 2]]}}, "evaluated[1]: expected an entropy, a digest"),
+        ({"journals": {"": [[[0.0, 1.0], "a"], [[0, 1], 2]]}}, "evaluated[1][1]: expected a text"),
         ({"journals": {"": [[math.nan, "a"]]}}, "file: expected valid JSON, found NaN"),
-        ({"journals": {"": [[1.0, "\ud800"]]}}, "file: expected valid JSON, found half a"),
+        ({"journals": {"": [[[0.0, 1.0], "\ud800"]]}}, "file: expected valid JSON, found half a"),
         ({"inputs": {"study": "\udfff"}}, "file: expected valid JSON, found half a surrogate"),
-        ({"journals": {"": None}}, "evaluated[0]: expected an entropy, a digest, found None"),
-        ({"journals": {"": {"a": 1}}}, "evaluated[0]: expected an entropy, a digest, found"),
-        ({"journals": {"": [[-math.inf, "a"]]}}, "evaluated[0]: expected an entropy, a digest"),
-        ({"journals": {"": [[1.0, "a", "b"]]}}, "evaluated[0]: expected an entropy, a digest"),
+        ({"journals": {"": None}}, "evaluated: expected an array"),
+        ({"journals": {"": {"a": 1}}}, "evaluated: expected an array"),
+        ({"journals": {"": [[[0.0, -math.inf], "a"]]}}, "evaluated[0][0][1]: expected a number"),
+        (
+            {"journals": {"": [[[0, 1], "a", "b"]]}},
+            "evaluated[0]: expected a list of value, digest",
+        ),
         ({"journals": {"": [], "other": []}}, "journals: expected the journal of one search"),
     ],
 )

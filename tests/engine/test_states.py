@@ -246,7 +246,7 @@ def test_a_sensor_that_a_state_moves_may_fail_in_a_search():
     evaluator = pe.Evaluator(study.space, study.prior, OPEN.vehicle(car()), samples=1024)
     worths = [evaluator.entropy(pe.Rig([sensor])) for sensor in OPEN.rig(rig(), car())]
     objective = study_objective(study, study.evaluator(), 1024, shift=CENTERED)
-    assert objective.entropy(study.rig) == pytest.approx(np.mean(worths), abs=2e-9)
+    assert objective.value(study.rig).objective == pytest.approx(np.mean(worths), abs=2e-9)
     with pytest.raises(pe.InputError, match=r"move\.sensors"):
         study.with_rig(pe.Rig([study.rig["roof"]]))
     # a design may leave it out; what else the state moves goes on
@@ -271,8 +271,8 @@ def test_a_search_minimises_the_mean_or_the_worst_of_the_table(how):
     objective = pickle.loads(pickle.dumps(made))
     table = condition_table(study)
     expected = table.mean if how == "mean" else table.worst.entropy
-    assert objective.entropy(study.rig) == expected
-    below = objective.below(study.rig, -100.0)  # one condition settles the worst
+    assert objective.value(study.rig).objective == expected
+    below = objective.figure.below(study.rig, -100.0)  # one condition settles the worst
     assert below == (math.inf if how == "worst" else expected)
     assert study_to_dict(study)["optimize"]["conditions"] == how
     with pytest.raises(pe.InputError, match=r"\[\[state\]\] or \[\[weather\]\]"):

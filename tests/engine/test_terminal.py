@@ -5,6 +5,7 @@ import re
 
 import pytest
 
+from pe_core.search import Value
 from pe_tools.cli import progress_line
 from pe_tools.cli.progress_line import Reporter
 from pe_tools.cli.terminal import MAX_LINE_LENGTH, one_line, printable
@@ -21,7 +22,7 @@ STEERING = {
     "\U000e0041": r"\udb40\udc41",
 }
 SCORING = [Progress("scoring the start", 0.0), Progress("scoring the start", 0.5)]
-SEARCHING = [Progress("optimizing", k / 4, 1.5 - 0.1 * k, k) for k in range(5)]
+SEARCHING = [Progress("optimizing", k / 4, Value(0.0, 1.5 - 0.1 * k), k) for k in range(5)]
 
 
 @pytest.mark.parametrize("text", STEERING)

@@ -8,7 +8,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.geometry.poses import rotate
-from pe_core.search import RobustObjective
+from pe_core.search import RobustFigure
 from pe_core.search.tolerance import COMBINATIONS, FRESH, mounted_off, with_error, without_each
 from pe_core.study.study_file import study_from_dict, study_to_dict
 from tests.engine import shapes
@@ -134,8 +134,8 @@ def test_a_candidate_is_worth_the_mean_or_the_worst_of_its_cases(tolerance, eval
     fresh = pe.Evaluator(evaluator.space, evaluator.prior, evaluator.vehicle, samples=1024)
     each = [fresh.entropy(case) for case in tolerance.cases(rig(), 3)]
     expected = max(each) if tolerance.worst else sum(each) / len(each)
-    objective = RobustObjective(evaluator, tolerance, 3)
-    assert objective.entropy(rig()) == pytest.approx(expected, abs=1e-9)
+    objective = RobustFigure(evaluator, tolerance, 3)
+    assert objective(rig()) == pytest.approx(expected, abs=1e-9)
 
 
 def test_failures_are_the_loss_of_each_sensor():
@@ -151,12 +151,12 @@ def test_failures_are_the_loss_of_each_sensor():
 
 def test_a_search_minimises_what_placements_are_worth_mounted_off(evaluator):
     bounds = {"roof": {"z": (1.5, 2.2), "pitch": (-0.2, 0.2)}}
-    objective = RobustObjective(evaluator, BOTH)
+    objective = RobustFigure(evaluator, BOTH)
     schedule = pe.Schedule(4)
     *_, last = pe.optimize(
         objective, rig(), pe.SearchSpace(bounds), seed=1, schedule=schedule, method="random"
     )
-    assert last.entropy == objective.entropy(last.best) < objective.entropy(rig())
+    assert last.entropy == objective(last.best) < objective(rig())
 
 
 # --- studies --------------------------------------------------------------------------------------

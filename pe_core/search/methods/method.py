@@ -10,22 +10,22 @@ A minimal method::
     def ask(given):
         for number in range(100):
             candidate = sampled_candidate(given.parametrization, sample)
-            [answer] = yield Question((candidate,), given.entropy, number, 100)
+            [answer] = yield Question((candidate,), given.value, number, 100)
 
 Vectors are those of `Parametrization`: its method `candidate` makes a placement of a vector,
 `DesignVariable.clipped` keeps a value in its range, and `sampled_candidate` samples vectors until
 one breaks no rule.
 """
 
-import math
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
+from ..objective import NO_VALUE, Value
 from ..parametrization import Candidate, Parametrization
 from ..search_space import Schedule
 
-Answered = list[float | None]
+Answered = list[Value | None]
 T = TypeVar("T")
 MAX_SAMPLED = 100
 """Placements sampled for one candidate; where all of them break a rule, none is evaluated."""
@@ -39,7 +39,7 @@ class Given:
 
     `parametrization`: The design variables and what they mean. There is at least one variable.
     `start`: It breaks no rule.
-    `entropy`: Of the start, on level 0 [nats].
+    `value`: That of the start, on level 0.
     `levels`: How many objectives there are: 0 is the cheapest, `levels - 1` is what the search
         minimises.
     `batch`: How many placements are evaluated in parallel. The questions of a method may depend on
@@ -49,7 +49,7 @@ class Given:
 
     parametrization: Parametrization
     start: Candidate
-    entropy: float
+    value: Value
     seed: int = 0
     schedule: Schedule = field(default_factory=Schedule)
     levels: int = 1
@@ -62,7 +62,7 @@ class Question:
     """A batch of placements to evaluate, all on one level and independently of each other.
 
     `candidates`: None where no feasible candidate was sampled; its answer is None.
-    `cutoff`: A value that is not below the cutoff is answered by inf [nats].
+    `cutoff`: A value that is not below the cutoff is answered by `NO_VALUE`.
     `round`: From 0, for progress reports.
     `total`: Candidates of the whole search, as far as is known, for the progress bar.
     `level`: The objective that evaluates. After a question on a higher level, answers on a lower
@@ -71,11 +71,11 @@ class Question:
     """
 
     candidates: Sequence[Candidate | None]
-    cutoff: float = math.inf
+    cutoff: Value = NO_VALUE
     round: int = 0
     total: int = 1
     level: int = 0
-    ends: tuple[float, ...] = ()
+    ends: tuple[Value, ...] = ()
 
 
 QuestionStream = Generator[Question, Answered, None]
@@ -113,17 +113,17 @@ class Phase:
     round: int
     total: int
     level: int = 0
-    ends: tuple[float, ...] = ()
+    ends: tuple[Value, ...] = ()
 
     def evaluate(
-        self, candidates: Sequence[Candidate | None], cutoff: float = math.inf, below: int = 0
-    ) -> MethodPart[list[float]]:
-        """Evaluate the candidates, `below` levels lower; return one value for each: inf for one
-        that is missing or not below the cutoff."""
+        self, candidates: Sequence[Candidate | None], cutoff: Value = NO_VALUE, below: int = 0
+    ) -> MethodPart[list[Value]]:
+        """Evaluate the candidates, `below` levels lower; return one value for each: `NO_VALUE` for
+        one that is missing or not below the cutoff."""
         answers = yield Question(
             candidates, cutoff, self.round, self.total, level=self.level - below, ends=self.ends
         )
-        return [math.inf if answer is None else answer for answer in answers]
+        return [NO_VALUE if answer is None else answer for answer in answers]
 
 
 def sampled_candidate(
@@ -140,41 +140,41 @@ def sampled_candidate(
 
 
 class Incumbent:
-    """The best placement so far, its entropy on the level in use [nats], and what was evaluated.
+    """The best placement so far, its value on the level in use, and what was evaluated.
     Descents are incumbents of their own.
 
-    `screened` is its entropy on the level below, where candidates are screened; None: they are not.
+    `screened` is its value on the level below, where candidates are screened; None: they are not.
     A step found on few voxels is often better on those alone. So only a candidate that comes near
     the incumbent there is evaluated on the level in use, which decides.
     """
 
-    def __init__(self, best: Candidate, entropy: float) -> None:
+    def __init__(self, best: Candidate, value: Value) -> None:
         self.best = best
-        self.entropy = entropy
+        self.value = value
         self.count = 0
-        self.screened: float | None = None
+        self.screened: Value | None = None
 
     def raised(self, phase: Phase, screening: bool = False) -> MethodPart[None]:
         """Evaluate the best on the next level, that of a phase; screen candidates on this one."""
-        self.screened = self.entropy if screening else None
-        [self.entropy] = yield from phase.evaluate([self.best])
+        self.screened = self.value if screening else None
+        [self.value] = yield from phase.evaluate([self.best])
 
-    def tried(self, candidates: Sequence[Candidate], phase: Phase) -> MethodPart[list[float]]:
-        """Evaluate placements, and take the best; return their entropies, inf where no better."""
-        passed: dict[int, float | None] = dict.fromkeys(range(len(candidates)))
+    def tried(self, candidates: Sequence[Candidate], phase: Phase) -> MethodPart[list[Value]]:
+        """Evaluate placements, and take the best; `NO_VALUE` where one is no better."""
+        passed: dict[int, Value | None] = dict.fromkeys(range(len(candidates)))
         if self.screened is not None:
-            cutoff = self.screened + SCREENED_WITHIN
+            cutoff = self.screened.worse_by(SCREENED_WITHIN)
             coarse = yield from phase.evaluate(candidates, cutoff, below=1)
-            passed = {k: value for k, value in enumerate(coarse) if value < math.inf}
+            passed = {k: value for k, value in enumerate(coarse) if value < NO_VALUE}
             self.count += len(candidates)
-        values = [math.inf] * len(candidates)
+        values = [NO_VALUE] * len(candidates)
         if passed:
-            found = yield from phase.evaluate([candidates[k] for k in passed], self.entropy)
+            found = yield from phase.evaluate([candidates[k] for k in passed], self.value)
             self.count += len(passed)
             for (k, screened), value in zip(passed.items(), found, strict=True):
                 values[k] = value
-                if value < self.entropy:
+                if value < self.value:
                     self.best = candidates[k]
-                    self.entropy = value
+                    self.value = value
                     self.screened = screened
         return values

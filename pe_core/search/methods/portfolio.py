@@ -8,6 +8,7 @@ Sensors on lists of slots try all slots, exchange them, and move two at a time.
 """
 
 from ...scoring.sampling import MAX_SAMPLES
+from ..objective import Value
 from .method import Given, Incumbent, MethodPart, Phase, QuestionStream
 from .portfolio_steps import EXPLORING, REFINING, MultiscaleDescent
 from .portfolio_survey import Survey, to_best_corners
@@ -70,14 +71,14 @@ def ask(given: Given) -> QuestionStream:
     """Survey on few voxels; then descend on all voxels of the search until the budget is spent."""
     sensors = len(given.parametrization.blocks)
     total = given.evaluations or budget(sensors)
-    incumbent = Incumbent(given.start, given.entropy)
+    incumbent = Incumbent(given.start, given.value)
     survey = Survey(given)
     count = max(1, min(SURVEYED, int(SURVEY_SHARE * total / (SURVEYS * sensors))))
     for _ in range(SURVEYS):
         yield from survey.survey(incumbent, Phase(0, total), count)
         survey.reseed()
     steps = None
-    ends = tuple[float, ...]()
+    ends = tuple[Value, ...]()
     if not survey.has_slots_alone:
         incumbent, steps, ends = yield from _race(given, incumbent, survey, total, surveyed=count)
     else:
@@ -86,11 +87,11 @@ def ask(given: Given) -> QuestionStream:
     number = 1
     stalled = 0
     while incumbent.count < total and stalled < STALLED:
-        before = incumbent.count, incumbent.entropy
+        before = incumbent.count, incumbent.value
         phase = Phase(number, total, given.levels - 1, ends)
         if steps is None:
             yield from survey.two_moved(incumbent, phase)
-            stalled = 0 if incumbent.entropy < before[1] else stalled + 1
+            stalled = 0 if incumbent.value < before[1] else stalled + 1
         else:
             left = total - incumbent.count
             share = STEP_SHARE if left > LAST_STEPS * sensors else 1.0
@@ -105,7 +106,7 @@ def ask(given: Given) -> QuestionStream:
 
 def _race(
     given: Given, incumbent: Incumbent, survey: Survey, total: int, surveyed: int
-) -> MethodPart[tuple[Incumbent, MultiscaleDescent, tuple[float, ...]]]:
+) -> MethodPart[tuple[Incumbent, MultiscaleDescent, tuple[Value, ...]]]:
     """Race descents from the best of the surveys and from the start, in turn.
 
     All but two have a survey of their own first; in all of them each sensor tries its corners. The
@@ -121,7 +122,7 @@ def _race(
     racing = list[tuple[Incumbent, MultiscaleDescent]]()
     before = incumbent.count
     for k in range(runners):
-        begun = (given.start, given.entropy) if k % 2 else (incumbent.best, incumbent.entropy)
+        begun = (given.start, given.value) if k % 2 else (incumbent.best, incumbent.value)
         own = Incumbent(*begun)
         if k > 1:
             yield from survey.survey(own, first, surveyed)
@@ -135,14 +136,14 @@ def _race(
             yield from own.raised(second)
     left = total - before - sum(own.count for own, _ in racing)
     yield from _go_on(racing, survey, second, RACE_SHARE * left)
-    finalists = sorted(racing, key=lambda each: each[0].entropy)[: max(1, runners // 2)]
+    finalists = sorted(racing, key=lambda each: each[0].value)[: max(1, runners // 2)]
     if last.level > second.level:
         for own, _ in finalists:
             yield from own.raised(last, screening=True)
     if runners > 2:
         yield from _go_on(finalists, survey, last, 2.0 * RACE_SHARE * left)
-    winner, steps = min(finalists, key=lambda each: each[0].entropy)
-    ends = tuple(own.entropy for own, _ in racing) if runners > 1 else ()
+    winner, steps = min(finalists, key=lambda each: each[0].value)
+    ends = tuple(own.value for own, _ in racing) if runners > 1 else ()
     winner.count = before + sum(own.count for own, _ in racing)
     return winner, steps, ends
 

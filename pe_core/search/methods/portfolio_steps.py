@@ -71,11 +71,11 @@ class MultiscaleDescent:
             tried = self._batch(incumbent.best)
             if not tried:
                 return
-            before = incumbent.entropy
+            before = incumbent.value
             candidates = [candidate for _, candidate in tried]
             values = yield from incumbent.tried(candidates, phase)
             for (number, _), value in zip(tried, values, strict=True):
-                gain = min(max(before - value, 0.0) / FULL_GAIN, 1.0)
+                gain = min(max(before.rise_from(value), 0.0) / FULL_GAIN, 1.0)
                 self._gains[number] += MEMORY * (gain - self._gains[number])
 
     def _batch(self, base: Candidate) -> list[tuple[int, Candidate]]:

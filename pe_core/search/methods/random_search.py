@@ -18,18 +18,18 @@ def ask(given: Given) -> QuestionStream:
     schedule = given.schedule
     rng = np.random.default_rng(given.seed)
     best = given.start
-    entropy = given.entropy
+    value = given.value
     total = len(schedule.scales) * schedule.candidates
     for number, scale in enumerate(schedule.scales):
         center = best
         for asked in range(0, schedule.candidates, given.batch):
             count = min(given.batch, schedule.candidates - asked)
             candidates = [_neighbour(center, given, scale, rng) for _ in range(count)]
-            answers = yield Question(candidates, entropy, number, total)
+            answers = yield Question(candidates, value, number, total)
             for candidate, answer in zip(candidates, answers, strict=True):
-                if candidate is not None and answer is not None and answer < entropy:
+                if candidate is not None and answer is not None and answer < value:
                     best = candidate
-                    entropy = answer
+                    value = answer
 
 
 def _neighbour(

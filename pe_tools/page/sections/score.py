@@ -13,7 +13,6 @@ from pe_core.scoring.sight import SECTOR_RADIUS_M
 from pe_core.search import FIGURES, Figure, KeyFigures
 from pe_core.search.figures import AP_RINGS, BLIND_SECTOR
 from pe_core.study.condition_table import ConditionTable
-from pe_core.study.requirement_search import INFEASIBLE, is_infeasible
 
 from ... import advice, jobs
 from ..markup import capitalized, escaped, joined, macros, number
@@ -179,10 +178,8 @@ def _curve(context: ReportContext, figure: jobs.SearchedFigure) -> tuple[Markup 
         return "", ""
     found = jobs.best_so_far(context.outcome.history)
     by_ap = figure.higher_is_better
-    is_broken = is_infeasible(found[-1][1])
-    points = [
-        (n, value - INFEASIBLE if is_broken else figure.to_figure(value)) for n, value in found
-    ]
+    is_broken = not found[-1][1].is_feasible
+    points = [(n, v.violation if is_broken else figure.to_figure(v)) for n, v in found]
     first, last = (number(points[k][1], 3 if by_ap or is_broken else 2) for k in (0, -1))
     own = context.outcome.own is not None
     what = figure.label

@@ -3,11 +3,16 @@ imported on top that takes long."""
 
 import os
 import signal
+import sys
 from types import FrameType
+
+from .versions import versions_text
 
 
 def main() -> None:
     """Run the command and exit with its status."""
+    if sys.argv[1:] == ["--version"] and _printed(versions_text()):
+        return
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, _leave)
     from .cli import leave
@@ -16,6 +21,15 @@ def main() -> None:
     if signal.getsignal(signal.SIGINT) is _leave:
         signal.signal(signal.SIGINT, signal.default_int_handler)
     leave(run())
+
+
+def _printed(text: str) -> bool:
+    """Print a line; return whether that worked. If not, the command says why."""
+    try:
+        print(text, flush=True)
+    except OSError:
+        return False
+    return True
 
 
 def _leave(_signum: int, _frame: FrameType | None) -> None:

@@ -2,19 +2,16 @@
 open scene as the source of studies."""
 
 import argparse
-import platform
 import sys
 from collections.abc import Callable, Sequence
 from importlib.metadata import EntryPoint
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from pe_core.base.errors import InputError
 from pe_core.base.plugins import call_plugin, find_plugins, load_plugin, plugin_name, shipped
 from pe_core.search.payload import keep_freed_memory
-from pe_core.version import __version__
 
+from ..versions import versions_text
 from .catalog_verb import show_sensors
 from .check_verb import check
 from .command import Parser, as_typed, run
@@ -98,9 +95,7 @@ def answer(args: argparse.Namespace, prog: str, argv: Sequence[str]) -> Answer:
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of ``pe``."""
-    about = f"pe {__version__}, NumPy {np.__version__}, Python {platform.python_version()}"
-    about += f", {platform.platform()}"
-    top, verbs = command_parser("pe", about, VERBS, StudyFiles())
+    top, verbs = command_parser("pe", versions_text(), VERBS, StudyFiles())
     for plugin in find_plugins("verb"):
         _add_plugin_verbs(plugin, verbs)
     return top

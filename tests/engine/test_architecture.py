@@ -56,6 +56,7 @@ ROOMS = {
         "__main__": set(),
     },
     "pe_tools": {
+        "versions": set(),
         "formats": set(),
         "exchange": {"formats"},
         "graphics": set(),
@@ -65,11 +66,21 @@ ROOMS = {
         "jobs": {"wording", "formats", "advice"},
         "outputs": {"exchange", "graphics"},
         "sweep": {"wording", "jobs"},
-        "cli": {"wording", "formats", "graphics", "exchange", "advice", "jobs", "outputs", "sweep"},
+        "cli": {
+            "versions",
+            "wording",
+            "formats",
+            "graphics",
+            "exchange",
+            "advice",
+            "jobs",
+            "outputs",
+            "sweep",
+        },
         "page": {"wording", "formats", "graphics", "advice", "jobs", "cli"},
         "plot": {"graphics"},
         "public": {"formats", "exchange", "advice", "jobs", "plot"},
-        "__main__": {"cli"},
+        "__main__": {"versions", "cli"},
     },
 }
 """Rooms by package, lowest first, and those they may look into: all of them further up here.

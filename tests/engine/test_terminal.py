@@ -2,6 +2,8 @@
 
 import io
 import re
+import subprocess
+import sys
 
 import pytest
 
@@ -11,6 +13,7 @@ from pe_tools.cli.progress_line import Reporter
 from pe_tools.cli.terminal import MAX_LINE_LENGTH, one_line, printable
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import Progress
+from pe_tools.versions import versions_text
 
 STEERING = {
     "\x1b[31m": r"\u001b[31m",
@@ -103,3 +106,13 @@ def test_a_log_has_lines_and_no_bar():
     lines = told(io.StringIO()).splitlines()
     assert lines[0] == "scoring the start   0%" and lines[-1] == "optimizing 100%  entropy 1.100"
     assert len(lines) == len(SCORING + SEARCHING)
+
+
+def test_the_version_is_told_before_anything_is_loaded():
+    """Neither NumPy nor the verbs: a script that asks for the version does not wait for them."""
+    code = "import sys; from pe_tools.__main__ import main; sys.argv = ['pe', '--version']; main()"
+    code += "; print(sorted({'numpy', 'pe_tools.cli'} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    told, loaded = done.stdout.splitlines()
+    assert told == versions_text()
+    assert loaded == "[]"

@@ -49,7 +49,7 @@ def test_a_job_tells_how_far_it_is_and_writes_at_its_end(job_of, tmp_path, name)
         steps.append(step)
     shares = [step.fraction for step in steps]
     assert shares == sorted(shares) and shares[0] >= 0.0 and shares[-1] <= 1.0
-    assert all(step.entropy is None for step in steps), "no search: it has no best so far"
+    assert all(step.value is None for step in steps), "no search: it has no best so far"
     assert job.written.paths == (tmp_path / name,) and (tmp_path / name).stat().st_size > 1000
     stages = [stage for stage, _ in itertools.groupby(step.stage for step in steps)]
     assert [stage.split()[0] for stage in stages] == STAGES[name]

@@ -36,7 +36,7 @@ def load(study):
 def history(study):
     job = pt.OptimizeJob(study, 1)
     list(job)
-    rows = [(row.entropy, [s.pose for s in row.rig]) for row in job.history]
+    rows = [(row.value, [s.pose for s in row.rig]) for row in job.history]
     return rows, job.outcome.after.entropy
 
 

@@ -106,7 +106,7 @@ def test_a_study_with_areas_is_written_with_them_and_searches_the_same(folder, t
 def run(study):
     job = pt.OptimizeJob(study)
     list(job)
-    return [(row.entropy, row.rig["roof"].pose) for row in job.history]
+    return [(row.value, row.rig["roof"].pose) for row in job.history]
 
 
 def test_a_study_whose_areas_are_in_no_file_is_not_saved_alone(tmp_path):

@@ -41,6 +41,7 @@ from .frames import Frames
 Measurement = tuple[CurveOf, NDArray]
 """Curve and m of a fusion group: integers (beams) or floats (pixels)."""
 MAX_TABLE = (1 << 16) - 1  # Counts are stored in 16 bits
+AREAS_KEPT = 8  # Arrays of areas whose 1 / sigma^2 is cached
 MAX_BYTE_COUNTS = 257  # Maximum number of 8-bit counts whose sum fits 16 bits
 GroupCounts = tuple[CurveOf, NDArray]
 Areas = tuple[CurveOf, slice, NDArray[np.floating]]
@@ -111,6 +112,8 @@ class Fusion:
     def __init__(self, model: Curves) -> None:
         self.model = model
         self._tables: dict[CurveOf, CountTables] = {}
+        self._dense: list[tuple[CurveOf, NDArray, Floats]] = []
+        """The last AREAS_KEPT areas and their 1 / sigma^2: those of unmoved sensors return."""
 
     def curve(self, kind: CurveOf) -> ApCurve:
         """Return the AP curve of a kind, or the sensor's own."""
@@ -138,6 +141,20 @@ class Fusion:
         if is_whole(m):
             return np.take(self.tables(kind).precision, m, mode="clip")
         return precision_of(m, self.curve(kind))
+
+    def _precision_at(self, index: Ints, kind: CurveOf, m: NDArray) -> Floats:
+        """1 / sigma^2 of a group's measurement at some voxels; of areas from the cache."""
+        if is_whole(m):
+            return self.precision(m.take(index), kind)
+        for known, areas, precision in self._dense:
+            if areas is m and known == kind:
+                return precision.take(index)
+        curve = self.curve(kind)
+        dense = np.full(m.shape, precision_of(np.zeros(1), curve))  # the bits of arrays
+        some = np.flatnonzero(m > 0)
+        np.put(dense, some, precision_of(m.take(some), curve))
+        self._dense = [(kind, m, dense), *self._dense[: AREAS_KEPT - 1]]
+        return dense.take(index)
 
     def fused(self, kinds: Sequence[CurveOf], precisions: Sequence[Floats]) -> Floats:
         """Fused 1 / sigma^2 of groups: late fusion (eq. 7), over the model's frames (eq. T2)."""
@@ -167,7 +184,7 @@ class Fusion:
             by_others = np.logical_or.reduce([m > 0 for _, m in others])
             visible |= by_others
             seen = np.flatnonzero(by_others | (not ignores_blind))  # faster than by flags
-            precisions = [self.precision(m.take(seen), kind) for kind, m in groups]  # eqs. 4 and 5
+            precisions = [self._precision_at(seen, *group) for group in groups]  # eqs. 4 and 5
             fused = self.fused([kind for kind, _ in groups], precisions)
             np.put(entropies, seen, entropy_of(fused))
         return entropies, visible

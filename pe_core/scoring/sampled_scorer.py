@@ -40,9 +40,10 @@ SENSORS_FUSED = 80
 """Sensors that are fused in the time in which one is measured (measured: 40 to 100)."""
 
 
-class _ZoneBins:
-    """Sums values by run of the sequence in all zones at once: zones overlap, so values are summed
-    by what zones they are in, and by run."""
+class _ZoneSums:
+    """Sums values by run of the sequence, of the whole sample and of all zones at once. Zones
+    overlap, so values are summed by the zones that they are in, and by run. Fast because values are
+    put in order once, and each sum is then one of neighbours."""
 
     def __init__(self, zones: Mapping[str, NDArray[np.bool_]], run: Ints) -> None:
         code = np.ones(len(run), np.int64)  # a bit for the rig, and one for each zone
@@ -51,23 +52,32 @@ class _ZoneBins:
         parts, part = np.unique(code, return_inverse=True)
         bits = np.arange(1 + len(zones))[:, None]
         self._members = (parts >> bits & 1).astype(bool)  # (1 + zones, parts)
-        self._bin = part * BLOCKS + run
+        part_and_run = part * BLOCKS + run
+        self._order = np.argsort(part_and_run, kind="stable")
+        self._bins, self._starts = np.unique(part_and_run[self._order], return_index=True)
         self._keys = [("rig", ""), *(("zone", name) for name in zones)]
-        self._counts = self._by_run(None)  # (1 + zones, BLOCKS)
+        self.counts = self.by_run(np.ones(len(run)))
+        """Number of voxels of the rig and of each zone, by run (1 + zones, BLOCKS)."""
 
-    def _by_run(self, values: Floats | None) -> Floats:
+    def by_run(self, values: Floats) -> Floats:
+        """Return the sums (1 + zones, BLOCKS) of values (V,), of the rig and of each zone."""
         parts = self._members.shape[1]
-        sums = np.bincount(self._bin, values, parts * BLOCKS).reshape(parts, BLOCKS)
-        return np.asarray((self._members[:, :, None] * sums).sum(axis=1), float)
+        sums = np.zeros(parts * BLOCKS)
+        sums[self._bins] = np.add.reduceat(values.take(self._order), self._starts)
+        by_part = sums.reshape(parts, BLOCKS)
+        return np.asarray((self._members[:, :, None] * by_part).sum(axis=1), float)
 
-    def residuals(self, measures: Mapping[str, Floats]) -> dict[FigureKey, tuple[float, ...]]:
-        """Return the residuals (`Scatter`) of measures (V,), of the rig and of each zone."""
-        mass = self._counts.sum(axis=1, keepdims=True)
+    def means(self, sums: Floats) -> Floats:
+        """Return the means (1 + zones,) of values with these sums by run."""
+        return np.asarray(sums.sum(axis=1) / self.counts.sum(axis=1))
+
+    def residuals(self, sums: Mapping[str, Floats]) -> dict[FigureKey, tuple[float, ...]]:
+        """Return the residuals (`Scatter`) of measures, of the rig and of each zone, from their
+        sums by run."""
+        mass = self.counts.sum(axis=1, keepdims=True)
         found = dict[FigureKey, tuple[float, ...]]()
-        for measure, values in measures.items():
-            sums = self._by_run(values)
-            mean = sums.sum(axis=1, keepdims=True) / mass
-            rows = (sums - mean * self._counts) / mass
+        for measure, by_run in sums.items():
+            rows = (by_run - self.means(by_run)[:, None] * self.counts) / mass
             for key, row in zip(self._keys, rows, strict=True):
                 found[(*key, measure)] = tuple(map(rounded, row.tolist()))
         return found
@@ -94,8 +104,9 @@ class SampledScorer:
         x = self._sample.centers[:, 0]
         y = self._sample.centers[:, 1]
         masks = {name: mask for name, mask in zone_masks(x, y).items() if mask.any()}
-        self._zones = {n: (np.flatnonzero(m), rounded(float(np.mean(m)))) for n, m in masks.items()}
-        self._bins = _ZoneBins(masks, self._sample.run)
+        self._shares = {name: rounded(float(np.mean(mask))) for name, mask in masks.items()}
+        self._by_zone = _ZoneSums(masks, self._sample.run)
+        self._by_class = np.ascontiguousarray(self._sample.classes.T)  # (C, V)
         voxels = Voxels(space, self._sample.index, self._sample.centers)
         self._sensors = MeasurementCache(voxels, vehicle, fusion.saturation_count)
         self._lock = threads().RLock()
@@ -165,33 +176,40 @@ class SampledScorer:
     def _summary(self, rig: Rig, entropies: Floats, visible: NDArray[np.bool_]) -> Score:
         entropy, coverage = self._whole(entropies, visible)
         measures = {"entropy": entropies, "coverage": visible.astype(float)}
+        sums = {name: self._by_zone.by_run(values) for name, values in measures.items()}
         return Score(
             entropy,
             coverage,
-            self._standard_error(entropies, len(rig.groups)),
-            per_class=self._classes(entropies, visible),
-            per_zone={
-                name: PartScore(*self._whole(entropies.take(inside), visible.take(inside)), share)
-                for name, (inside, share) in self._zones.items()
-            },
+            self._standard_error(entropies, sums["entropy"][0], len(rig.groups)),
+            per_class=self._classes(**measures),
+            per_zone=self._zones(**sums),
             per_sensor={},
             voxels=len(self._sample.index),
-            scatter=Scatter(self._digest, self._bins.residuals(measures)),
+            scatter=Scatter(self._digest, self._by_zone.residuals(sums)),
         )
 
     def _whole(self, entropies: Floats, visible: NDArray[np.bool_]) -> tuple[float, float]:
         """Return mean entropy and coverage."""
         return rounded(float(np.mean(entropies))), rounded(float(np.mean(visible)))
 
-    def _classes(self, entropies: Floats, visible: NDArray[np.bool_]) -> dict[str, PartScore]:
+    def _zones(self, entropy: Floats, coverage: Floats) -> dict[str, PartScore]:
+        """Return the score by zone, from the sums by run of the rig and of each zone."""
+        entropies = self._by_zone.means(entropy)[1:]  # the rig is first
+        coverages = self._by_zone.means(coverage)[1:]
+        rows = zip(self._shares.items(), entropies, coverages, strict=True)
+        return {name: PartScore(rounded(h), rounded(c), share) for (name, share), h, c in rows}
+
+    def _classes(self, entropy: Floats, coverage: Floats) -> dict[str, PartScore]:
         """Return the score by class; a voxel counts by the probability that its object is of it."""
-        per_class = {}
-        for name, likely in zip(self._sample.names, self._sample.classes.T, strict=True):
-            mass = float(likely.sum())
-            if mass > 0.0:
-                h, c = (float((values * likely).sum()) / mass for values in (entropies, visible))
-                per_class[name] = PartScore(rounded(h), rounded(c), rounded(mass / len(likely)))
-        return per_class
+        masses = self._by_class.sum(axis=1)
+        entropies = self._by_class @ entropy  # rounded: BLAS
+        coverages = self._by_class @ coverage
+        rows = zip(self._sample.names, entropies, coverages, masses, strict=True)
+        return {
+            name: PartScore(rounded(h / mass), rounded(c / mass), rounded(mass / len(entropy)))
+            for name, h, c, mass in rows
+            if mass > 0.0
+        }
 
     def _class_residuals(
         self, entropies: Floats, visible: NDArray[np.bool_]
@@ -226,8 +244,8 @@ class SampledScorer:
         progress.add(1.0 / SENSORS_FUSED)
         return sensor_score(alone, coverage, rounded(lost), occlusion)
 
-    def _standard_error(self, entropies: Floats, groups: int) -> float:
-        """Return the standard error from the scatter of runs of the sequence.
+    def _standard_error(self, entropies: Floats, by_run: Floats, groups: int) -> float:
+        """Return the standard error from the scatter of runs of the sequence, with these sums.
 
         Each run is a lattice, so this overestimates the error. Where all voxels have equal entropy,
         it is half of the bound by the rule of three, for voxels that may have any entropy from
@@ -236,8 +254,6 @@ class SampledScorer:
         if np.ptp(entropies) <= ALIKE:
             largest = H_BLIND - H_BEST + np.log(groups)
             return rounded(RULE_OF_THREE / 2.0 * largest / len(entropies))
-        run = self._sample.run
-        sums = np.bincount(run, entropies, BLOCKS)
-        sizes = np.bincount(run, minlength=BLOCKS)
-        means = sums[sizes > 0] / sizes[sizes > 0]
+        sizes = self._by_zone.counts[0]
+        means = by_run[sizes > 0] / sizes[sizes > 0]
         return rounded(float(np.std(means, ddof=1)) / np.sqrt(len(means)))

@@ -1,12 +1,21 @@
 """What ``pe --version`` prints. Nothing is imported for it that takes long."""
 
 import platform
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 
 from pe_core.version import __version__
 
 
 def versions_text() -> str:
     """Return the versions of the program, NumPy and Python, and the machine."""
-    numpy = f"NumPy {version('numpy')}"
+    numpy = f"NumPy {_numpy_version()}"
     return f"pe {__version__}, {numpy}, Python {platform.python_version()}, {platform.platform()}"
+
+
+def _numpy_version() -> str:
+    try:
+        return version("numpy")
+    except PackageNotFoundError:  # copied into a folder without what pip notes of it
+        import numpy
+
+        return numpy.__version__

@@ -107,6 +107,7 @@ class SampledScorer:
         self._shares = {name: rounded(float(np.mean(mask))) for name, mask in masks.items()}
         self._by_zone = _ZoneSums(masks, self._sample.run)
         self._by_class = np.ascontiguousarray(self._sample.classes.T)  # (C, V)
+        self._class_masses = self._by_class.sum(axis=1)
         voxels = Voxels(space, self._sample.index, self._sample.centers)
         self._sensors = MeasurementCache(voxels, vehicle, fusion.saturation_count)
         self._lock = threads().RLock()
@@ -201,10 +202,9 @@ class SampledScorer:
 
     def _classes(self, entropy: Floats, coverage: Floats) -> dict[str, PartScore]:
         """Return the score by class; a voxel counts by the probability that its object is of it."""
-        masses = self._by_class.sum(axis=1)
         entropies = self._by_class @ entropy  # rounded: BLAS
         coverages = self._by_class @ coverage
-        rows = zip(self._sample.names, entropies, coverages, masses, strict=True)
+        rows = zip(self._sample.names, entropies, coverages, self._class_masses, strict=True)
         return {
             name: PartScore(rounded(h / mass), rounded(c / mass), rounded(mass / len(entropy)))
             for name, h, c, mass in rows

@@ -104,6 +104,11 @@ class FigureLimits:
         return None if limit is None else limit.value
 
     @property
+    def with_number(self) -> tuple[str, ...]:
+        """The figures whose limit has a number, in the order of `FIGURES`."""
+        return tuple(key for key, limit in self if limit.value is not None)
+
+    @property
     def keeps_requirements(self) -> bool:
         """Whether placements that meet all requirements are better than all that do not."""
         return self.limit_on(REQUIREMENTS) is not None

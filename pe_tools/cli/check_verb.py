@@ -79,7 +79,7 @@ def check_study(study: Study, args: argparse.Namespace) -> Answer:
         study = replace(study, requirements=(), stories=tuple(chosen), limits=Limits())
     output = output_file(args.output, args)
     study, unchecked = with_presets(study, args.preset)
-    if not (study.requirements or study.stories or _has_numbers(study.limits)):
+    if not (study.requirements or study.stories or study.limits.with_number):
         expected = "[[requirement]], [[story]] or [limits] in the study, or --preset ID"
         raise InputError("check", "requirements", expected, "none")
     print_vehicle(study)
@@ -114,10 +114,6 @@ def check_study(study: Study, args: argparse.Namespace) -> Answer:
     lines += [f"limit: {each.figure.name} {each.text}" for each in job.limits]
     lines += [line for name, own in suggested.items() for line in suggestion_lines(name, own)]
     return "\n".join(lines), status
-
-
-def _has_numbers(limits: Limits) -> bool:
-    return any(limit.value is not None for _, limit in limits)
 
 
 def suggested_for(job: SuggestJob) -> dict[str, list[Suggestion]]:

@@ -74,11 +74,11 @@ class CheckJob(Job):
 
     def _look_at_limits(self) -> Iterator[Progress]:
         """Read the figures that have a limit; only entropy and AP need a score."""
-        numbers = [key for key, limit in self.study.limits if limit.value is not None]
+        numbers = self.study.limits.with_number
         if not numbers:
             return
         score = None
-        if NUMBERED & set(numbers):
+        if NUMBERED.intersection(numbers):
             score = yield from self._score(self.study.rig, self._progress)
         figures = yield from self._figures([self.study.rig], self._progress)
         objects = None if score is None else score.objects

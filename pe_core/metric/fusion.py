@@ -16,6 +16,7 @@ backwards over the groups: as many additions as there are groups, and no subtrac
 cost digits. The floor rule for blind sensors is assumed.
 """
 
+import weakref
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import reduce
@@ -112,8 +113,9 @@ class Fusion:
     def __init__(self, model: Curves) -> None:
         self.model = model
         self._tables: dict[CurveOf, CountTables] = {}
-        self._dense: list[tuple[CurveOf, NDArray, Floats]] = []
-        """The last AREAS_KEPT areas and their 1 / sigma^2: those of unmoved sensors return."""
+        self._dense: list[tuple[CurveOf, weakref.ref[NDArray], Floats]] = []
+        """The last AREAS_KEPT areas and their 1 / sigma^2: those of unmoved sensors return. Areas
+        that nobody else keeps, as of a sensor that has moved on, are not kept here either."""
 
     def curve(self, kind: CurveOf) -> ApCurve:
         """Return the AP curve of a kind, or the sensor's own."""
@@ -147,13 +149,14 @@ class Fusion:
         if is_whole(m):
             return self.precision(m.take(index), kind)
         for known, areas, precision in self._dense:
-            if areas is m and known == kind:
+            if areas() is m and known == kind:
                 return precision.take(index)
         curve = self.curve(kind)
         dense = np.full(m.shape, precision_of(np.zeros(1), curve))  # the bits of arrays
         some = np.flatnonzero(m > 0)
         np.put(dense, some, precision_of(m.take(some), curve))
-        self._dense = [(kind, m, dense), *self._dense[: AREAS_KEPT - 1]]
+        in_use = [row for row in self._dense if row[1]() is not None]
+        self._dense = [(kind, weakref.ref(m), dense), *in_use[: AREAS_KEPT - 1]]
         return dense.take(index)
 
     def fused(self, kinds: Sequence[CurveOf], precisions: Sequence[Floats]) -> Floats:

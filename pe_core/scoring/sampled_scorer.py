@@ -107,7 +107,7 @@ class SampledScorer:
         self._shares = {name: rounded(float(np.mean(mask))) for name, mask in masks.items()}
         self._by_zone = _ZoneSums(masks, self._sample.run)
         self._by_class = np.ascontiguousarray(self._sample.classes.T)  # (C, V)
-        self._class_masses = self._by_class.sum(axis=1)
+        self._class_masses = self._by_class.sum(axis=1).tolist()
         voxels = Voxels(space, self._sample.index, self._sample.centers)
         self._sensors = MeasurementCache(voxels, vehicle, fusion.saturation_count)
         self._lock = threads().RLock()
@@ -202,14 +202,14 @@ class SampledScorer:
 
     def _classes(self, entropy: Floats, coverage: Floats) -> dict[str, PartScore]:
         """Return the score by class; a voxel counts by the probability that its object is of it."""
-        entropies = self._by_class @ entropy  # rounded: BLAS
-        coverages = self._by_class @ coverage
-        rows = zip(self._sample.names, entropies, coverages, self._class_masses, strict=True)
-        return {
-            name: PartScore(rounded(h / mass), rounded(c / mass), rounded(mass / len(entropy)))
-            for name, h, c, mass in rows
-            if mass > 0.0
-        }
+        per_class = {}
+        rows = zip(self._sample.names, self._by_class, self._class_masses, strict=True)
+        for name, likely, mass in rows:
+            if mass > 0.0:
+                # Not by BLAS: on small products its threads only wait for each other.
+                h, c = (float((values * likely).sum()) / mass for values in (entropy, coverage))
+                per_class[name] = PartScore(rounded(h), rounded(c), rounded(mass / len(likely)))
+        return per_class
 
     def _class_residuals(
         self, entropies: Floats, visible: NDArray[np.bool_]

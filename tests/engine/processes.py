@@ -42,7 +42,7 @@ ANALYSE = (
     (
         "import threading\n"
         "from pe_tools.jobs import score_and_optimize\n"
-        "score_and_optimize.robustness = lambda *_: threading.Event().wait()\n"
+        "score_and_optimize.robustness = lambda *_, **__: threading.Event().wait()\n"
     ),
 )
 """Whether the analysis of a search never ends."""

@@ -53,7 +53,7 @@ def test_an_optimize_job_improves_and_tells_its_history():
 @pytest.mark.parametrize("job_class", [pt.ScoreJob, pt.OptimizeJob])
 def test_stop_before_a_score_is_complete_leaves_no_outcome(job_class, monkeypatch):
     goes_on = threading.Event()
-    monkeypatch.setattr(pe.Evaluator, "score", lambda *_: goes_on.wait())
+    monkeypatch.setattr(pe.Evaluator, "score", lambda *_, **__: goes_on.wait())
     job = job_class(study())
     for progress in job:
         if progress.stage.startswith("scoring"):

@@ -6,8 +6,8 @@ What is imported here is what other modules of the add-on take from it.
 from .apply_variant import apply_records, shown_collection
 from .conditions import as_drawn, conditions_of, read_states, shown_motions, shown_state, with_drawn
 from .fingerprint import Fingerprint, fingerprint
-from .limits import NONE, keep_property, limit_property, limits_of
-from .loading import load_into, record_of_study
+from .limits import NONE, keep_property, limit_of, limit_property, limits_of, put_limit
+from .loading import load_into
 from .mirroring import (
     clear_mirrors,
     follow_mirrors,
@@ -62,23 +62,13 @@ from .rig import (
     view_layer_of,
 )
 from .scene_diagnostics import check_placeable, missing_data, scene_advice
-from .scene_record import (
+from .scene_study import (
     check_scene,
     study_as_drawn,
     study_from_scene,
     study_of,
     study_of_rig,
     vehicle_of_scene,
-)
-from .scene_settings import (
-    clearance_of,
-    perception_of,
-    property_value,
-    reference_of,
-    space_of,
-    targets_of,
-    value_of_property,
-    write_reference,
 )
 from .sensor_colors import assign_colors
 from .sensor_records import (
@@ -89,11 +79,28 @@ from .sensor_records import (
     same_sensors,
     write_records,
 )
+from .study_table import (
+    REFERENCE,
+    SCORED,
+    Path,
+    as_typed,
+    document_of,
+    has_axles,
+    has_mounting_errors,
+    has_own_curve,
+    in_file,
+    new_table,
+    property_value,
+    put,
+    switch_axles,
+    switch_mounting_errors,
+    switch_own_curve,
+    value_at,
+    value_of_property,
+)
 from .time import (
     body_place,
-    by_name_of,
     clear_stale_stories,
-    confirmation_of,
     frame_rate,
     store_driven,
     story_of,

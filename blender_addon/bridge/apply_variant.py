@@ -13,8 +13,8 @@ from bpy.types import Collection, Object, Scene, ViewLayer
 from ..engine import graphics
 from .mirroring import SENSORS
 from .rig import color_of, place_poses, put_curve, sensor_objects, view_layer_of
-from .scene_settings import write_values
 from .sensor_records import SensorRecord
+from .study_table import write_values
 
 PARKED = "Sensors of Other Variants"
 BETWEEN = "\n"

@@ -12,7 +12,7 @@ from .conditions import conditions_signature
 from .own_sensors import own_sensors_signature
 from .prior import prior_signature
 from .rig import last_written_pose, pose_of_matrix, sensor_objects, view_layer_of
-from .scene_settings import settings_signature, targets_signature
+from .study_table import signature_of
 
 SensorState = tuple[object, ...]
 """Model, fusion group, pose and its own AP curve or None; empty for a hidden sensor."""
@@ -51,9 +51,8 @@ def fingerprint(
     layer = view_layer_of(scene)
     objects = sensor_objects(scene) if sensors is None else sensors
     states = {obj.name: _sensor_state(obj, obj.visible_get(view_layer=layer)) for obj in objects}
-    more = [*settings_signature(settings), *own_sensors_signature(scene)]
-    more += [*targets_signature(settings), *conditions_signature(settings)]
-    rest = (prior_signature(scene), settings.score_samples, shape, *([more] if more else []))
+    own = [*signature_of(settings), *own_sensors_signature(scene), *conditions_signature(settings)]
+    rest = prior_signature(scene), shape, own
     return Fingerprint(states, repr(rest))
 
 

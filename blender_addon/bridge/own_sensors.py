@@ -14,7 +14,7 @@ from ..choices import free_name
 from ..engine import catalog, pe
 from ..sensor_kinds import OwnCamera, OwnLidar
 from .rig import sensor_objects
-from .scene_settings import values_of
+from .study_table import values_of
 
 _added: dict[str, dict[str, Any]] = {}
 """Tables that this add-on has added to the catalogue, by name."""

@@ -11,7 +11,7 @@ from bpy.types import Depsgraph, Object, PropertyGroup, Scene, ViewLayer
 from mathutils import Matrix
 
 from ..engine import catalog, geometry, graphics, kinds, pe, search
-from .scene_settings import values_of
+from .study_table import values_of
 
 SCALE_TOLERANCE = 1e-4
 """How far a sensor's axes may be from unit length and from right angles."""

@@ -25,7 +25,7 @@ from .rig import (
     sheet_of,
     view_layer_of,
 )
-from .scene_settings import pair_as_typed
+from .study_table import as_typed
 from .transform_constraints import locked_axes
 
 NO_BOUNDS = (False,) * len(search.AXES)
@@ -302,7 +302,7 @@ def bounds_by_axis(
     limits = {}
     for n, axis in enumerate(search.AXES):
         if bounded[n]:
-            bounds = pair_as_typed((low[n], high[n]))
+            bounds = as_typed(low[n]), as_typed(high[n])
             if axis not in search.POSITION_AXES:
                 bounds = math.radians(bounds[0]), math.radians(bounds[1])
             limits[axis] = bounds

@@ -200,7 +200,7 @@ def import_rig(context: bpy.types.Context, filepath: str, format: str) -> Told:
     scene = context.scene
     several = [row.files for row in exchange.RIG_FORMATS.values() if row.is_folder]
     place = path.parent if any(path.name in files for files in several) else path
-    reference = bridge.reference_of(scene.perception_entropy)
+    reference = bridge.document_of(scene.perception_entropy, "reference").reference
     name = format
     found = exchange.import_rig(place, None if name == BY_NAME else name, reference)
     title = path.stem or path.parent.name

@@ -5,7 +5,7 @@ the keys of a study file.
 """
 
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from copy import deepcopy
 from typing import Any
 
@@ -13,10 +13,9 @@ from bpy.types import Context, PropertyGroup
 
 from .. import bridge, signals
 from ..engine import pe, requirements, studies
-from .callbacks import changed
 from .declared import mixin, property_of
-from .fields import menu, text
-from .list_rows import Switched
+from .fields import menu, text, view
+from .list_rows import Switched, Tabled
 
 TableData = dict[str, Any]
 Change = Callable[[TableData, Any], None]
@@ -55,26 +54,23 @@ SECTIONS = {
 }
 
 
-def _view(get: Callable[[TableData], Any], put: Change) -> dict[str, Any]:
+def _view(
+    get: Callable[[TableData], Any], put: Change, items: Sequence[tuple[Any, ...]] = ()
+) -> dict[str, Any]:
     """Return the callbacks of a property: read from a row's full table, and changed in it."""
 
-    def getter(row: PropertyGroup) -> Any:
-        return get(bridge.full_table(row))
-
-    def setter(row: PropertyGroup, value: Any) -> None:
+    def write(row: PropertyGroup, value: Any) -> None:
         bridge.edit_row(row, lambda table: put(table, value))
         signals.study_changed.emit()
 
-    return {"get": getter, "set": setter}
+    return view(lambda row: get(bridge.full_table(row)), write, items)
 
 
 def _choice(
     items: tuple[tuple[str, str, str], ...], get: Callable[..., str], put: Change
 ) -> dict[str, Any]:
-    """Return items and callbacks of a menu: Blender hands over the numbers of its entries."""
-    names = [item[0] for item in items]
-    view = _view(lambda t: names.index(get(t)), lambda t, number: put(t, names[number]))
-    return {"items": items, **view}
+    """Return items and callbacks of a menu."""
+    return {"items": items, **_view(get, put, items)}
 
 
 def _declared() -> Any:
@@ -93,7 +89,7 @@ def _declared() -> Any:
 def _declared_view(section: str, setting: studies.Setting) -> dict[str, Any]:
     """Return the callbacks of a declared setting; its default removes the key."""
     name = setting.name
-    default = setting.default
+    default = bridge.in_file(setting)
 
     def get(table: TableData) -> Any:
         value = table.get(section, {}).get(name, default)
@@ -104,10 +100,11 @@ def _declared_view(section: str, setting: studies.Setting) -> dict[str, Any]:
         own = table.setdefault(section, {})
         own.pop(name, None)
         if name in ZERO_COUNTS or found != default:
-            own[name] = value if found is None else studies.value_in_file(setting.rule, found)
+            own[name] = value if found is None else found
 
     is_menu = isinstance(setting.rule, studies.OneOf)
-    return _choice(studies.menu_of(setting), get, put) if is_menu else _view(get, put)
+    own = _choice(studies.menu_of(setting), get, put) if is_menu else _view(get, put)
+    return own | {"default": None, "update": None}  # its default is in the table
 
 
 def asked_for(table: TableData) -> str:
@@ -205,10 +202,9 @@ def known_bodies(_row: PropertyGroup, _context: Context, _typed: str) -> list[tu
 Declared: Any = _declared()
 
 
-class PE_Requirement(Declared, Switched, PropertyGroup):
+class PE_Requirement(Declared, Switched, Tabled, PropertyGroup):
     """A requirement, and its last verdict."""
 
-    table: text("Table", "The requirement as JSON", update=changed)
     problem: text("Problem", "Why a change was not made")
     asks: menu("Asks For", "What is asked for in the zone", **_choice(ASKS, asked_for, ask_for))
     bodies: text(

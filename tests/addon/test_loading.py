@@ -115,8 +115,10 @@ def test_coordinates_in_double_precision_come_back_to_the_bit(scene):
 
 def test_what_a_scene_cannot_hold_is_reported(car, monkeypatch):
     study = scenes.study()
-    search = pe.Search(tolerance=pe.Tolerance(0.01, draws=6))
-    assert load(pe.Study(study.rig, study.vehicle, search=search)) == ["optimize.tolerance"]
+    prior = pe.Prior("road", pe.Prior.road().classes[:2])
+    assert load(pe.Study(study.rig, study.vehicle, prior=prior)) == ["prior"]
+    few_draws = pe.Search(tolerance=pe.Tolerance(0.01, draws=6))
+    assert load(pe.Study(study.rig, study.vehicle, search=few_draws)) == []
 
 
 def test_a_model_of_the_study_s_own_is_refused_and_nothing_is_changed(car):

@@ -277,9 +277,7 @@ def test_an_imported_study_is_that_of_the_scene_that_holds_it(rich, tmp_path):
         *(f"study.search.mounting.mounts['painted'].area.{key}" for key in ("file", "parts")),
     ]
     different = [
-        path
-        for path in differences(study, scenes.study())
-        if not path.startswith(tuple(of_files))
+        path for path in differences(study, scenes.study()) if not path.startswith(tuple(of_files))
     ]
     assert different == []
 

@@ -55,9 +55,6 @@ from .rig import (
     pose_from_numbers,
     pose_of,
     pose_of_matrix,
-    possible_sensors,
-    rig_from_objects,
-    sensor_from_object,
     sensor_objects,
     view_layer_of,
 )
@@ -73,10 +70,13 @@ from .scene_study import (
 from .sensor_colors import assign_colors
 from .sensor_records import (
     SensorRecord,
+    possible_sensors,
     records_of,
     records_of_scene,
+    rig_from_objects,
     rig_of,
     same_sensors,
+    sensor_from_object,
     write_records,
 )
 from .study_table import (
@@ -84,6 +84,7 @@ from .study_table import (
     SCORED,
     Path,
     as_typed,
+    curve_table,
     document_of,
     has_axles,
     has_mounting_errors,
@@ -107,7 +108,7 @@ from .time import (
     story_signatures,
     write_story,
 )
-from .transform_constraints import holder_of
+from .transform_constraints import holder_of, ticked_axes
 from .variant_results import (
     check_choosable,
     copy_scene_score,

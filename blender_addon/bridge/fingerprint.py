@@ -12,7 +12,7 @@ from .conditions import conditions_signature
 from .own_sensors import own_sensors_signature
 from .prior import prior_signature
 from .rig import last_written_pose, pose_of_matrix, sensor_objects, view_layer_of
-from .study_table import signature_of
+from .study_table import signature_of, value_at
 
 SensorState = tuple[object, ...]
 """Model, fusion group, pose and its own AP curve or None; empty for a hidden sensor."""
@@ -59,16 +59,15 @@ def fingerprint(
 def _sensor_state(obj: Object, visible: bool) -> SensorState:
     if not visible:
         return ()
-    settings = obj.perception_entropy
+    own = obj.perception_entropy.table
     placement = np.array(obj.matrix_world, dtype=float)
     try:
         held = last_written_pose(obj, placement)
         where: object = _numbers(pose_of_matrix(placement) if held is None else held)
     except pe.InputError:  # a sensor that cannot be scored has a fingerprint, too
         where = placement.tolist()
-    numbers = settings.curve_a, settings.curve_b, settings.curve_c
-    curve = numbers if settings.own_curve else None
-    return settings.model, settings.fusion, where, curve
+    model, fusion, curve = (value_at(own, (key,)) for key in ("model", "fusion", "ap"))
+    return model, fusion, where, curve
 
 
 def _placed(state: SensorState, pose: pe.Pose) -> SensorState:

@@ -4,8 +4,8 @@ A comparison of the imported study with the study of the scene finds what the sc
 """
 
 import contextlib
-import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
@@ -20,8 +20,8 @@ from .prior import write_prior
 from .requirements import write_requirements
 from .rig import place_at, view_layer_of
 from .scene_study import study_from_scene, vehicle_of_scene
-from .sensor_records import NO_BOUNDS, ZEROS, ModelOption, SensorRecord
-from .study_table import Table, value_at, write_table, write_values
+from .sensor_records import SensorRecord, record_of_sensor
+from .study_table import Table, value_at, write_table
 from .time import write_stories
 from .vehicle import make_body, paint_area, same_body
 
@@ -66,7 +66,8 @@ def load_into(scene: Scene, study: pe.Study) -> list[str]:
     _write_no_go(scene, mounting.constraints.no_go)
     names = apply_records(scene, sensors)
     for sensor in sensors:
-        _write_options(scene.objects[names[sensor.name]].perception_entropy, sensor)
+        own = scene.objects[names[sensor.name]].perception_entropy
+        _write_options(own, sensor.options)
     layer = view_layer_of(scene)
     layer.update()
     renamed = {name: here for name, here in names.items() if name != here}
@@ -141,24 +142,17 @@ def _sensor_records(study: pe.Study) -> tuple[SensorRecord, ...]:
             field = f"sensor {sensor.name!r}: model"
             raise pe.InputError("study", field, "one of the catalogue's", repr(sensor.model.name))
         name = sensor.name
-        free = study.search.free[sensor.name]
         mount = mounting.on.get(name, "")
         records.append(
-            SensorRecord(
-                name=name,
-                model=sensor.model.name,
-                pose=sensor.pose,
-                fusion=sensor.fusion or "",
-                free=tuple(axis in free for axis in search.AXES),
-                **_bounds(study.search.limits.get(name, {})),
+            replace(
+                record_of_sensor(sensor),
+                free=study.search.free[name],
+                bounds=studies.AxisBounds(**study.search.limits.get(name, {})),
                 mirror_of=linked.get(name, ""),
                 mount=mount,
                 rack=racks.get(name, ""),
-                curve=sensor.curve,
                 stays=name in study.search.goals.fixed,
-                color=sensor.color,
                 order=order,
-                sheet=sensor.sheet,
                 **_options(study.selection, name, mount),
             )
         )
@@ -168,22 +162,8 @@ def _sensor_records(study: pe.Study) -> tuple[SensorRecord, ...]:
 def _options(selection: pe.Selection, name: str, mount: str) -> dict[str, Any]:
     """Return the models that a sensor is offered, and whether it may be left out."""
     choices = [c for c in selection.choices if name in c.sensors or c.mount == mount]
-    options = tuple(ModelOption(o.model.name, o.sheet) for c in choices for o in c.options)
+    options = tuple(studies.write(option) for choice in choices for option in choice.options)
     return {"options": options, "may_be_left_out": bool(choices) and choices[-1].optional}
-
-
-def _bounds(limits: Mapping[str, tuple[float, float]]) -> dict[str, Any]:
-    """Return bounds in the units of a record: metres and degrees."""
-    bounded = list(NO_BOUNDS)
-    low = list(ZEROS)
-    high = list(ZEROS)
-    for number, axis in enumerate(search.AXES):
-        if axis in limits:
-            is_length = axis in search.POSITION_AXES
-            ends = limits[axis] if is_length else tuple(map(math.degrees, limits[axis]))
-            bounded[number] = True
-            low[number], high[number] = ends
-    return {"bounded": tuple(bounded), "low": tuple(low), "high": tuple(high)}
 
 
 def _write_vehicle(scene: Scene, vehicle: pe.Vehicle) -> None:
@@ -205,14 +185,11 @@ def _show_curves(settings: PropertyGroup) -> None:
             settings.curves.add().name = kind
 
 
-def _write_options(settings: PropertyGroup, record: SensorRecord) -> None:
-    """Write the model options of a record to a sensor of the scene."""
+def _write_options(settings: PropertyGroup, options: Sequence[Table]) -> None:
+    """Write the models that a sensor is offered."""
     settings.options.clear()
-    settings.may_be_left_out = record.may_be_left_out
-    for option in record.options:
-        row = settings.options.add()
-        row.model = option.model
-        write_values(row, option.sheet)
+    for table in options:
+        write_table(settings.options.add(), table)
 
 
 def _write_mounts(scene: Scene, mounts: Mapping[str, search.AnyMount]) -> None:

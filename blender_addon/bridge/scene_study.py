@@ -9,22 +9,14 @@ from dataclasses import replace
 
 from bpy.types import Collection, Depsgraph, Object, Scene
 
-from ..engine import catalog, pe, search, studies
+from ..engine import pe, search, studies
 from .conditions import as_drawn, conditions_of, read_states
 from .mounting import constraints_of, mounting_of, mounts_of
 from .prior import prior_from_scene
 from .requirements import requirements_of
 from .rig import sensor_objects, view_layer_of
-from .sensor_records import (
-    ModelOption,
-    SensorRecord,
-    bounds_of,
-    record_of_object,
-    record_of_sensor,
-    records_of,
-    rig_of,
-)
-from .study_table import document_of
+from .sensor_records import SensorRecord, record_of_object, record_of_sensor, records_of, rig_of
+from .study_table import Table, document_of
 from .time import stories_of
 from .transform_constraints import unlocked_axes
 from .vehicle import vehicle_from_collection
@@ -118,11 +110,11 @@ def _sensor_table(
     sensor: pe.Sensor, record: SensorRecord, mounting: pe.Mounting
 ) -> studies.SensorTable:
     """Return the table of a sensor; one in a slot, or one that follows another, has no bounds."""
-    bounds = {} if mounting.unbounded(record.name) else bounds_of(record)
+    has_bounds = not mounting.unbounded(record.name)
     return studies.SensorTable(
         sensor,
         free=unlocked_axes(record.free, record.locked),
-        bounds=studies.AxisBounds(**bounds),
+        bounds=record.bounds if has_bounds else studies.AxisBounds(),
         mount=mounting.on.get(record.name),
     )
 
@@ -193,10 +185,8 @@ def _choice(record: SensorRecord) -> pe.Choice:
         raise error.within("scene", f"sensor {record.name!r}") from None
 
 
-def _option(option: ModelOption) -> pe.Option:
-    sheet = option.sheet
-    if not sheet.price:
-        raise pe.InputError("choice", f"price of {option.model}", "a price above 0", 0.0)
-    return pe.Option(
-        catalog.load(option.model), sheet.price, sheet.mass, sheet.power, data_rate=sheet.data_rate
-    )
+def _option(table: Table) -> pe.Option:
+    if not table.get("price"):
+        field = f"price of {table.get('model', '')}"
+        raise pe.InputError("choice", field, "a price above 0", 0.0)
+    return studies.read(pe.Option, studies.Node(table, "choice"))

@@ -259,23 +259,3 @@ def switch_own_curve(row: PropertyGroup, on: bool) -> None:
     if on != has_own_curve(row):
         settings = row.id_data.perception_entropy
         put(settings, ("ap", row.name), curve_table(row.name) if on else None)
-
-
-def values_of(settings: PropertyGroup, cls: Any, prefix: str = "") -> dict[str, Any]:
-    """Return the settings of a dataclass that a group of properties holds, by their fields' names.
-    `prefix` is before the properties' names."""
-    return {
-        name: value_of_property(
-            setting, getattr(settings, prefix + (setting.panel.property or name))
-        )
-        for name, setting in studies.settings_of(cls).items()
-        if setting.panel is not None
-    }
-
-
-def write_values(settings: PropertyGroup, instance: Any) -> None:
-    """Write the settings of a dataclass to a group of properties: the inverse of `values_of`."""
-    for name, setting in studies.settings_of(type(instance)).items():
-        if setting.panel is not None:
-            shown = property_value(setting, getattr(instance, name))
-            setattr(settings, setting.panel.property or name, shown)

@@ -135,15 +135,22 @@ def own_path(*path: str) -> PathOf:
     return lambda group: (group, path)
 
 
-def table_group(cls: Any, *, prefix: str = "", path_of: Any = own_path, **more: Any) -> Any:
+def table_group(
+    cls: Any,
+    *,
+    prefix: str = "",
+    path_of: Any = own_path,
+    own: dict[str, dict[str, Any]] | None = None,
+    **more: Any,
+) -> Any:
     """Return a mixin of a property group: views of a table, of all settings of a dataclass that the
     panel shows. `prefix` is before the properties' names, `path_of` makes that of `view_of` from a
-    setting's key, `more` as of `view_of`."""
+    setting's key, `own` and `more` as of `group_of`."""
     return mixin(
         cls.__name__,
         {
             f"{prefix}{each.panel.property or each.name}": view_of(
-                each, path_of(studies.key_of(each.name)), **more
+                each, path_of(studies.key_of(each.name)), **more | (own or {}).get(each.name, {})
             )
             for each in studies.settings_of(cls).values()
             if each.panel is not None

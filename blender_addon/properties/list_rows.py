@@ -78,26 +78,26 @@ class PE_CurveSettings(ApCurveFields, PropertyGroup):
     )
 
 
-OwnLidarFields: Any = group_of(
+class Tabled:
+    """A row whose properties are views of its table: that of a study file, without a name."""
+
+    table: text("Table", "The row as a study file has it, as JSON", update=changed)
+
+
+OwnLidarFields: Any = table_group(
     OwnLidar,
     own={"elevations": {"min": -90.0, "max": 90.0}, "azimuths": {"min": -360.0, "max": 360.0}},
 )
-OwnCameraFields: Any = group_of(OwnCamera)
-OwnTableFields: Any = group_of(OwnTable)
+OwnCameraFields: Any = table_group(OwnCamera)
+OwnTableFields: Any = table_group(OwnTable)
 
 
-class PE_OwnSensorSettings(OwnLidarFields, OwnCameraFields, OwnTableFields, PropertyGroup):
+class PE_OwnSensorSettings(OwnLidarFields, OwnCameraFields, OwnTableFields, Tabled, PropertyGroup):
     """A sensor of the user's own; the row has the name of its model."""
 
     kind: menu("Kind", "Kind of the sensor", own_kinds, update=changed)
     problem: text("Problem", "Why the sensor cannot be used; empty if it can")
     known_as: text("Known As", "Last known name")
-
-
-class Tabled:
-    """A row whose properties are views of its table: that of a study file, without a name."""
-
-    table: text("Table", "The row as a study file has it, as JSON", update=changed)
 
 
 class PE_SensorOption(OptionFields, Tabled, PropertyGroup):

@@ -3,9 +3,11 @@
 from ..base.codec import Declared, Node, read, write
 from ..base.setting import (
     REQUIRED,
+    Named,
     OneOf,
     Pair,
     Panel,
+    Part,
     Setting,
     Several,
     Texts,

@@ -3,10 +3,10 @@
 import bpy
 import numpy as np
 import pytest
-from blender_addon.bridge.study_table import read_row
 
 import pe_core as pe
 from blender_addon import bridge
+from blender_addon.bridge.study_table import read_row
 from tests.addon import scenes
 
 CAN = "Velodyne VLP-16 Puck"

@@ -18,7 +18,7 @@ from bpy.types import Depsgraph, Object, PropertyGroup, Scene, ViewLayer
 from ..engine import catalog, kinds, pe, search, studies
 from ..sensor_kinds import DEFAULT_MODEL
 from .rig import color_of, last_written_pose, pose_of, pose_of_matrix, sensor_objects, view_layer_of
-from .study_table import Table, parsed
+from .study_table import LARGEST_INT, Table, parsed
 from .transform_constraints import locked_axes
 
 OF_OBJECT = ("locked", "options", "may_be_left_out", "stays", "color", "order")
@@ -60,7 +60,7 @@ class SensorRecord:
     size_m: float = 0.25
     stays: bool = False
     may_be_left_out: bool = False
-    order: int = 0
+    order: Annotated[int, studies.Part(rule=studies.Whole(-LARGEST_INT))] = 0
     locked: tuple[str, ...] = ()
     options: Annotated[tuple[Table, ...], studies.Part(stored=False)] = ()
     intrinsics: Annotated[Any, studies.Part(stored=False)] = None

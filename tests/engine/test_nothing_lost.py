@@ -191,7 +191,7 @@ def test_python_says_nothing_of_semaphores_after_an_interrupted_run():
         "from pe_core.search import Processes\n"
         "from pe_tools.cli import leave\n"
         "processes = Processes(2)\n"
-        "processes.submit(os.getpid).result(60)\n"
+        "processes.submit(os.getpid).result()\n"
         "leave(130)\n"
     )
     command = [sys.executable, "-c", code]

@@ -56,10 +56,9 @@ def table_of(row: PropertyGroup) -> dict[str, Any]:
 
 
 def own_of(row: PropertyGroup, cls: type[T]) -> T:
-    """Return the figures of an own sensor's row."""
-    keys = map(studies.key_of, studies.settings_of(cls))
-    table = {key: value for key in keys if (value := value_at(row.table, (key,))) is not None}
-    return studies.read(cls, studies.Node(table, "scene", f"own sensor {row.name!r}"))
+    """Return the figures of an own sensor's row, impossible ones included."""
+    found = {name: value_at(row.table, (name,)) for name in studies.settings_of(cls)}
+    return cls(**{name: value for name, value in found.items() if value is not None})
 
 
 def _camera_table(row: PropertyGroup) -> dict[str, Any]:

@@ -12,6 +12,7 @@ import bpy
 from .. import best_so_far, engine_process, signals, viewport
 from ..engine import jobs
 from ..panel_text import draw_label, typeset
+from . import modes
 
 TOPIC = "job"
 TICK_S = 0.05
@@ -134,6 +135,7 @@ current: RunningJob | None = None
 def begin(context: bpy.types.Context, job: jobs.Job, outcome: str) -> RunningJob:
     """Have the engine run the job from now on; `outcome` is its attribute of the result."""
     global current
+    modes.end()  # Esc is the job's
     current = RunningJob(context, job, outcome)
     current.start()
     return current

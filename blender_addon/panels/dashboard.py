@@ -2,9 +2,22 @@
 
 from bpy.types import Context, PropertyGroup, Scene, UILayout
 
-from ..bridge import NONE, Result, keep_property, limit_property, limits_of, shown_state
+from ..bridge import NONE, keep_property, limit_property, limits_of, shown_state
 from ..engine import advice, search
-from ..live import BETTER, SAME, SENSE_ICONS, WORSE, change_text, shown_score, told_figures
+from ..live import (
+    AT_REST,
+    BETTER,
+    MOVING,
+    OUT_OF_DATE,
+    PENDING,
+    SAME,
+    SENSE_ICONS,
+    STORED,
+    WORSE,
+    ShownScore,
+    change_text,
+    for_drawing,
+)
 from ..operators import known_rigs, shown_verdicts
 from ..panel_text import draw_label, is_simple
 from ..sensor_cache import sensors as listed_sensors
@@ -18,63 +31,67 @@ SHARE_WITHOUT_UNIT = 0.34
 LOCKS = {True: "LOCKED", False: "UNLOCKED"}
 
 
+HEADS = {
+    STORED: ("As scored", "CHECKMARK"),
+    OUT_OF_DATE: ("Out of date", "FILE_REFRESH"),
+    AT_REST: ("Live", "REC"),
+    MOVING: ("Live: moving", "REC"),
+    PENDING: ("Live: scoring", "REC"),
+}
+"""What the dashboard is of, by the phase of what is shown."""
+
+
 def draw_dashboard(layout: UILayout, context: Context) -> None:
-    """Draw the live score, or the stored one if it is current or Live is off, and its figures. Each
-    takes the same rows, those that come late included: what is below stays where it is."""
+    """Draw what is shown of the score, and its figures. Each takes the same rows, those that come
+    late included: what is below stays where it is."""
     scene = context.scene
     settings = context.scene.perception_entropy
     if not listed_sensors(scene) and not settings.has_result:
         return
-    live = shown_score(scene)
-    live = None if live is None or live.stored else live
-    now = settings.result if live is None else live
-    result = settings.result if live is None else None
+    shown = for_drawing(scene)
+    is_stored = shown is not None and shown.stored
     column = layout.box().column(align=True)
-    column.active = live is not None or not settings.result_stale
+    column.active = shown is None or shown.phase != OUT_OF_DATE
     head, wanted = columns(column, 0.66)
-    if live is not None:
-        sample = f"Live: {live.voxels:,} voxels" if live.voxels else "Live"
-        draw_label(head, sample if live.exact else "Live: moving", "REC")
-    elif result is None:
-        draw_label(head, "Not scored yet", "BLANK1")
-    elif settings.result_stale:
-        draw_label(head, "Out of date", "FILE_REFRESH")
-    else:
-        draw_label(head, "As scored", "CHECKMARK")
-    figures = [] if now is None else told_figures(scene, live=live is not None)
-    entropies = [] if now is None else [now.entropy]
-    if result and result.kind == "optimize":
-        entropies.insert(0, result.entropy_before)
+    draw_head(head, shown)
+    figures = () if shown is None else shown.figures
+    before = None if shown is None else shown.before("entropy")
+    entropies = [] if shown is None else [shown.entropy]
+    entropies = entropies if before is None else [before, *entropies]
     met = [v.met for v in shown_verdicts(scene).values() if v.met is not None]
     rows = search.dashboard(
-        figures[-1] if figures else None, (entropies or [None])[-1], met, limits_of(settings)
+        figures[-1] if figures else None,
+        entropies[-1] if entropies else None,
+        met,
+        limits_of(settings),
     )
     judged = [row.met for row in rows if row.met is not None]
     draw_label(wanted, f"{sum(judged)} of {len(judged)} met" if judged else "Wanted")
-    errors = change_errors(figures, result)
+    errors = {} if shown is None else shown.change_errors()
     for row in rows:
         known = [row.figure.value(each) for each in figures] if row.figure.is_seen else [row.value]
-        known = entropies if row.figure.key == search.ENTROPY else known
         values = [value for value in known if value is not None]
+        values = entropies if row.figure.key == search.ENTROPY else values
         draw_row(column, scene, row, values, error=errors.get(row.figure.key, 0.0))
     if not is_simple(scene):
         name, value = columns(column, NAME_SHARE)
         draw_label(name, "Coverage")
-        draw_label(value, "\N{EN DASH}" if now is None else advice.percent(now.coverage, 1))
-    told = "" if result is None else known_rigs.told(scene)
+        coverage = "\N{EN DASH}" if shown is None else advice.percent(shown.now.coverage, 1)
+        draw_label(value, coverage)
+    told = known_rigs.told(scene) if is_stored else ""
     draw_label(column, told or "Score: lower is better")
-    if result is not None:
+    if is_stored:
         draw_outcome(layout, context)
     if settings.has_result and (state := shown_state(scene)):
         draw_sentence(layout, context, f"Shown: state {state}. Scored: as drawn", icon="INFO")
 
 
-def change_errors(figures: list[advice.KeyFigures], result: Result | None) -> dict[str, float]:
-    """Return the standard errors of the changes that are drawn, by figure: of a stored result, or
-    of the live score's figures from those of what it is compared with."""
-    if result is not None:
-        return result.change_errors
-    return figures[-1].errors_from(figures[0]) if len(figures) > 1 else {}
+def draw_head(layout: UILayout, shown: ShownScore | None) -> None:
+    """Draw what the dashboard is of, and what its changes are from."""
+    text, icon = ("Not scored yet", "BLANK1") if shown is None else HEADS[shown.phase]
+    if shown is not None and shown.phase == AT_REST and shown.now.voxels:
+        text += f": {shown.now.voxels:,} voxels"
+    draw_label(layout, text, icon)
 
 
 def draw_row(

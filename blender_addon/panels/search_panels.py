@@ -6,7 +6,7 @@ from bpy.types import Context, PropertyGroup, UILayout
 
 from ..choices import BY_GROUP, BY_PARTS, EXPECTED_AP, OBJECTS, ON_SLOTS, RANDOM
 from ..engine import advice
-from ..live import latest_figures
+from ..live import shown_score
 from ..panel_text import is_simple
 from .dashboard import draw_limits
 from .layout import (
@@ -77,7 +77,8 @@ def draw_mount(layout: UILayout, mount: PropertyGroup) -> None:
 @panel("Limits", simple=True, parent="PE_PT_search")
 def limits(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """What placements of a search keep to, tolerate and trade off, and when it ends"""
-    figures = latest_figures(context.scene)
+    shown = shown_score(context.scene)
+    figures = () if shown is None else shown.figures[-1:]
     draw_limits(layout, settings, figures[-1] if figures else None)
     for line in advice.built_lines(figures) if figures else ():
         draw_sentence(layout, context, line)

@@ -8,9 +8,13 @@ from ..diagnostics import vehicle_line
 from ..operators import offers, running_job
 from ..panel_text import draw_label, typeset
 from ..sensor_cache import sensors as listed_sensors
-from .dashboard import draw_dashboard
+from .dashboard import draw_dashboard, draw_result
 from .layout import columns, draw_declared, draw_sentence, is_empty, panel
 from .sensor_lists import draw_sensors
+
+LONGEST_LINE = "12.34 x 2.34 x 2.34 m, faces +x, 1,234,567 triangles, 100 parts"
+"""The room that the line of a vehicle has before it is known."""
+FIRST_HINT = "Front at the arrow? Else turn it round. Then add a sensor"
 
 
 def draw_actions(layout: UILayout, settings: PropertyGroup) -> None:
@@ -46,10 +50,10 @@ def draw_vehicle(layout: UILayout, context: Context) -> None:
     draw_label(name, "Vehicle")
     field.prop(settings, "vehicle", text="")
     row.operator("pe.turn_round", text="", icon="FILE_REFRESH")
-    if settings.vehicle is not None and (line := vehicle_line(context.scene)):
-        draw_sentence(layout, context, line)
+    if settings.vehicle is not None:
+        draw_sentence(layout, context, vehicle_line(context.scene), room_of=LONGEST_LINE)
     if settings.vehicle is not None and not listed_sensors(context.scene):
-        draw_label(layout, "Front at the arrow? Else turn it round. Then add a sensor", "FORWARD")
+        draw_sentence(layout, context, FIRST_HINT, icon="FORWARD")
 
 
 @panel("Perception Entropy", closed=False, simple=True, always=True)
@@ -58,12 +62,13 @@ def main(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     if is_empty(context.scene):
         draw_empty(layout)
         return
-    draw_actions(layout, settings)  # first: nothing that comes late moves them
+    draw_actions(layout, settings)  # buttons first: nothing that comes late moves them
     draw_vehicle(layout, context)
-    draw_dashboard(layout, context)
     draw_add(layout, settings)
+    draw_dashboard(layout, context)
     draw_sensors(layout, context)
     layout.row().prop(settings, "panels", expand=True)
+    draw_result(layout, context)
 
 
 def draw_add(layout: UILayout, settings: PropertyGroup) -> None:

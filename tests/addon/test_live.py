@@ -310,7 +310,8 @@ def both(scene):
     text = readout_text.readout_of(shown)
     drawn = layouts.drawn(main.main, **vars(layouts.Window(scene, scene.objects["roof"])))
     labels = drawn.texts("label")
-    now, before = f"{shown.entropy:.3f}", shown.before("entropy")
+    now = f"{shown.entropy:.3f}"
+    before = shown.before("entropy")
     assert now in labels and text.headline.startswith(now)
     assert HEADS[shown.phase][0] in " ".join(labels)
     assert shown.phase in readout_text.state_of(shown)

@@ -24,11 +24,11 @@ from ..panel_text import draw_label
 from ..sensor_kinds import mount_for
 from . import modes, running_job
 from .surface_pose import (
-    MAGNET_M,
     MAX_STAND_OFF_M,
     Stance,
     SurfaceSpot,
     parts_of,
+    pulls_to_middle,
     ray_of,
     spot_beside,
     spot_on_ray,
@@ -81,6 +81,7 @@ class HeldSensor:
         self.lines = self._faces = graphics.Primitives.empty()
         self.score = self._typed = ""
         self._spot: SurfaceSpot | None = None
+        self._is_near = False
         self._region = 0
         self._mouse = (0, 0)
         self._handlers = viewport.DrawHandlers()
@@ -104,6 +105,7 @@ class HeldSensor:
             spot = spot_on_ray(context.scene, depsgraph, self._parts, *ray_of(view))
             self._region = view.region.as_pointer()
             self._mouse = view.mouse
+        self._is_near = spot is not None and pulls_to_middle(view, spot.point, viewport.ui_scale())
         self.stance = replace(self.stance, magnet=not event.ctrl)
         self.put(spot)
 
@@ -197,7 +199,7 @@ class HeldSensor:
         self.matrix = None
         self.lines = self._faces = graphics.Primitives.empty()
         if spot is not None:
-            wanted = self._wanted(spot)
+            wanted = self._wanted()
             spot = self._moved_to(spot, wanted)
             self.matrix = self.stance.placed(spot, self.mount, self._middle)
             if self._own is not None:
@@ -219,12 +221,11 @@ class HeldSensor:
                 )
         self._write()
 
-    def _wanted(self, spot: SurfaceSpot) -> dict[int, float]:
+    def _wanted(self) -> dict[int, float]:
         """Return the typed coordinates; near the centre line, the magnet's too: not of one of a
         pair, which would meet the other there."""
         is_pulled = self.stance.magnet and not self._is_linked
-        is_near = is_pulled and abs(spot.point.y) < MAGNET_M
-        return ({1: 0.0} if is_near else {}) | self._given
+        return ({1: 0.0} if is_pulled and self._is_near else {}) | self._given
 
     def _moved_to(self, spot: SurfaceSpot, wanted: dict[int, float]) -> SurfaceSpot:
         """Return the spot with those coordinates that run along the body."""

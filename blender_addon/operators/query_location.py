@@ -11,6 +11,8 @@ from . import modes
 from .declared import OperatorResult, Unless, operator, report
 from .surface_pose import ViewUnderMouse, ray_of, view_under
 
+STANDS_M = 0.45
+"""Height of a query on the ground: the top of what is 0.5 m tall, which blind ground is about."""
 OFF_SURFACE_M = 0.05
 """How far outside a surface the query is: half a voxel, as the inside does not count."""
 HINT = "Query Location: click the ground or a surface. Esc: done"
@@ -97,7 +99,8 @@ def ask_place(context: bpy.types.Context, point: Iterable[float]) -> None:
 def location_under(
     context: bpy.types.Context, view: ViewUnderMouse
 ) -> tuple[float, float, float] | None:
-    """Return the location under the mouse: just off a surface, or on the ground, z = 0."""
+    """Return the location under the mouse: just off a surface, or the top of what stands on the
+    ground there."""
     origin, direction = ray_of(view)
     depsgraph = context.evaluated_depsgraph_get()
     hit, location, normal, *_ = context.scene.ray_cast(depsgraph, origin, direction)
@@ -105,8 +108,11 @@ def location_under(
     if abs(direction.z) >= 1e-6 and origin.z / direction.z <= 0.0:
         ground = origin - direction * (origin.z / direction.z)
         ground.z = 0.0
-    if hit and (ground is None or (location - origin).length <= (ground - origin).length):
+    is_body = hit and location.z > OFF_SURFACE_M  # a floor in the file is ground
+    if is_body and (ground is None or (location - origin).length <= (ground - origin).length):
         outward = normal if normal.dot(direction) < 0.0 else -normal
         ground = location + outward * OFF_SURFACE_M
         ground.z = max(ground.z, 0.0)
+    elif ground is not None:
+        ground.z = STANDS_M
     return None if ground is None else tuple(ground)

@@ -13,6 +13,7 @@ from ..choices import LimitBox
 from ..engine import graphics, pe, studies
 from ..live import BEFORE_SEARCH, live_state, shown_score
 from ..view_settings import MIN_LENGTH_M, ViewSettings
+from .annotations import MENDS
 from .layers import LAYERS
 from .request import MountFaces, SceneSensor, ViewRequest
 
@@ -210,7 +211,7 @@ def _ghosts(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str, str]:
         return best, BEST_SO_FAR, "Search"
     if (offers := where_map.offers.get(scene.name)) and offers.found:
         new = tuple(each.rig[name] for each in offers.found for name in each.moved)
-        return new, "moved, or added", "Would mend it"
+        return new, "moved, or added", MENDS
     return *_variant(scene, scene.perception_entropy.view.ghost_key), ""
 
 

@@ -161,7 +161,10 @@ def draw_row(layout: UILayout, context: Context, drawn: DrawnRow, sides: RowWidt
     """Draw a figure: whether *Optimize* keeps it, its name, its value, and what is wanted."""
     row = drawn.row
     line = layout.row(align=True)
-    draw_lock(line, context.scene.perception_entropy, row.figure)
+    if row.kept or row.wanted is not None or not is_simple(context.scene):
+        draw_lock(line, context.scene.perception_entropy, row.figure)
+    else:
+        line.label(text="", icon="BLANK1")
     name, rest = columns(line, sides.name / sum(sides), align=True)
     draw_label(name, shortened_to(context, drawn.name, sides.name))
     value, wanted = columns(rest, sides.value / (sides.value + sides.wanted), align=True)

@@ -182,9 +182,10 @@ def draw_list(
     below = column.column(align=True)
     below.enabled = getattr(settings, INDEX_OF[name]) < len(getattr(settings, name))
     below.operator("pe.remove_row", text="", icon="REMOVE").rows = name
-    if rows.copy is not None:
+    if rows.copy is not None and not is_simple(settings.id_data):
         below.operator("pe.copy_row", text="", icon="DUPLICATE").rows = name
-    for step, icon in ((-1, "TRIA_UP"), (1, "TRIA_DOWN")) if rows.is_ordered else ():
+    is_moved = rows.is_ordered and not is_simple(settings.id_data)
+    for step, icon in ((-1, "TRIA_UP"), (1, "TRIA_DOWN")) if is_moved else ():
         move = below.operator("pe.move_row", text="", icon=icon)
         move.rows = name
         move.step = step

@@ -27,9 +27,12 @@ SLOTS_ICON = "OUTLINER_COLLECTION"
 
 
 @panel("Search", simple=True)
-def search(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
+def search(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """How to search"""
     draw_properties(layout, settings, ("objective",))
+    if is_simple(context.scene):
+        draw_properties(layout, settings, ("evaluations",))
+        return
     layout.row(align=True).prop(settings, "method", expand=True)
     own = ("candidates",) if settings.method == RANDOM else ()
     draw_properties(layout, settings, (*own, "evaluations", "seed"))
@@ -74,7 +77,7 @@ def draw_mount(layout: UILayout, mount: PropertyGroup) -> None:
     draw_declared(layout, mount, "optimize.mount")
 
 
-@panel("Limits", simple=True, parent="PE_PT_search")
+@panel("Limits", parent="PE_PT_search")
 def limits(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """What placements of a search keep to, tolerate and trade off, and when it ends"""
     shown = shown_score(context.scene)
@@ -88,9 +91,8 @@ def limits(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     if obj is not None and not obj.perception_entropy.is_sensor:
         layout.label(text=f"{obj.name}:", translate=False)
         draw_properties(layout, obj.perception_entropy, ("is_no_go",))
-    if not is_simple(context.scene):
-        draw_tolerance(layout.column(), settings)
-        draw_goals(layout.column(), settings, context)
+    draw_tolerance(layout.column(), settings)
+    draw_goals(layout.column(), settings, context)
 
 
 def draw_tolerance(layout: UILayout, settings: PropertyGroup) -> None:

@@ -151,13 +151,16 @@ def _searched(outcome: jobs.Outcome, search: SearchedFrom) -> jobs.Outcome:
     for _ in job:
         pass
     first = job.outcome
-    known = first.figures_after, outcome.figures_after
+    if first is None:
+        return outcome
+    before = first.figures_after
+    after = outcome.figures_after
     return replace(
         outcome,
         kind=search.data["kind"],
         start=search.start,
         before=first.after,
-        figures=None if None in known else known,
+        figures=None if before is None or after is None else (before, after),
         evaluations=search.data["evaluations"],
         stopped=search.data["stopped"],
         stop_reason=search.data["stop_reason"] or "",

@@ -105,7 +105,9 @@ class HeldSensor:
             spot = spot_on_ray(context.scene, depsgraph, self._parts, *ray_of(view))
             self._region = view.region.as_pointer()
             self._mouse = view.mouse
-        self._is_near = spot is not None and pulls_to_middle(view, spot.point, viewport.ui_scale())
+        self._is_near = False
+        if view is not None and spot is not None:
+            self._is_near = pulls_to_middle(view, spot.point, viewport.ui_scale())
         self.stance = replace(self.stance, magnet=not event.ctrl)
         self.put(spot)
 

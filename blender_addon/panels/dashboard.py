@@ -136,7 +136,8 @@ def drawn_row(
     text = f"{'≥ ' * row.is_cut}{text.removesuffix(' nats' if is_score else ' met')}"
     is_changed = row.wanted is None and sense != SAME
     before = figure.text(values[0]).partition(" ")[0] if is_changed else ""
-    return DrawnRow(row, "Score" if is_score else figure.label, text, before, sense)
+    name = "Score" if is_score else figure.label
+    return DrawnRow(row, name=name, value=text, before=before, sense=sense)
 
 
 class RowWidths(NamedTuple):

@@ -79,12 +79,12 @@ def figure_rows(context: ReportContext) -> Iterator[FigureRow]:
         before = _before(context, reading, first)
         wanted = "" if reading.wanted is None else figure.number(reading.wanted)
         yield FigureRow(
-            figure.key,
-            figure.label,
-            figure.unit.replace("m2", "m²"),
-            "" if before is None else figure.number(before),
-            ("≥ " if reading.is_cut else "") + figure.number(reading.value),
-            _sense(figure, before, reading.value, errors.get(figure.key, 0.0)),
+            key=figure.key,
+            label=figure.label,
+            unit=figure.unit.replace("m2", "m²"),
+            before="" if before is None else figure.number(before),
+            after=("≥ " if reading.is_cut else "") + figure.number(reading.value),
+            sense=_sense(figure, before, reading.value, errors.get(figure.key, 0.0)),
             wanted=wanted,
             met=reading.met,
             kept=reading.kept,

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from pe_core.base import dump_json
+from pe_core.base import dump_json, record
 from pe_core.base.errors import InputError
 from pe_core.base.files import csv_text
 from pe_core.base.table_reader import finite
@@ -102,7 +102,7 @@ def check_study(study: Study, args: argparse.Namespace) -> Answer:
         "unchecked": unchecked,
         "suggestions": {n: [each.to_dict() for each in own] for n, own in suggested.items()},
         "stories": [each.to_dict() for each in driven],
-        "limits": [each.to_dict() for each in job.limits],
+        "limits": record([each.row for each in job.limits]),
     }
     text = dump_json(finite(data))
     is_table = output is not None and output.suffix == CSV

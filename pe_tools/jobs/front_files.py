@@ -5,13 +5,15 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from pe_core.base.codec import record
 from pe_core.base.files import csv_text, file_stem
 from pe_core.base.table_reader import dump_json, finite
 from pe_core.study.file_names import STUDY
 from pe_core.study.study_file import study_to_dict
 
 from .folder import FileSet, Write, our_files, prepare_folder
-from .results import placements, run_dict
+from .result_record import placements
+from .results import run_record
 from .study_export import study_writers
 from .trade_off import Design, TradeOff
 
@@ -44,7 +46,7 @@ def front_dict(chosen: TradeOff, host: Mapping[str, str] | None = None) -> dict[
         "refused": chosen.refused,
         "notes": chosen.notes,
         "inputs": {"study": study_to_dict(chosen.study)},
-        "run": run_dict(chosen.seconds, host or {}),
+        "run": record(run_record(chosen.seconds, host or {})),
     }
     return finite(data)
 
@@ -129,7 +131,7 @@ def _design_dict(design: Design, on_front: bool, file: str | None) -> dict[str, 
         "stderr": None if score is None else score.stderr,
         "searched": score is not None,
         "models": {n: None if model is None else model.name for n, model in design.models.items()},
-        "placements": placements(design.study.rig),
+        "placements": record(placements(design.study.rig)),
         "warnings": [warning.to_dict() for warning in design.warnings],
         "study": file,
         "figures": {} if design.is_led_in else dict(design.figures),

@@ -30,8 +30,14 @@ def schema_of_record(cls: type) -> Schema:
     """Return the JSON schema of the data that `codec.record` writes of a class; other classes are
     in ``$defs``. Keys may be added in a later version."""
     known: dict[str, Schema] = {}
-    own = _record_table(cls, known)
-    return own | ({"$defs": dict(sorted(known.items()))} if known else {})
+    return _record_table(cls, known) | {"$defs": dict(sorted(known.items()))}
+
+
+def schemas_of_records(hints: Mapping[str, Any]) -> Schema:
+    """Return the JSON schema of a table whose keys are names, with the data of a type each."""
+    known: dict[str, Schema] = {}
+    properties = {name: _record(hint, known) for name, hint in hints.items()}
+    return {"type": "object", "properties": properties, "$defs": dict(sorted(known.items()))}
 
 
 def _record_table(cls: Any, known: dict[str, Schema]) -> Schema:
@@ -39,9 +45,9 @@ def _record_table(cls: Any, known: dict[str, Schema]) -> Schema:
     required: list[str] = []
     for each in fields_of(cls):
         if each.part.inline:
-            inner = _record_table(each.hint, known)
-            properties |= inner["properties"]
-            required += inner["required"]
+            inner = _record_table(each.hint, known) if is_dataclass(each.hint) else {}
+            properties |= inner.get("properties", {})
+            required += inner.get("required", [])
             continue
         own = _record(each.hint, known)
         about = {"description": each.part.about} if each.part.about else {}

@@ -15,7 +15,7 @@ from ..advice import Advice
 
 End = Literal["before", "after"]
 """Of the given study, and of the result; the same for a score."""
-Table = Mapping[str, Any]
+OpenTable = Mapping[str, Any]
 """A part of a result whose keys may change with any version."""
 
 
@@ -27,11 +27,11 @@ class SensorPlacement:
     rotation: tuple[float, float, float]
 
 
-Placements = Mapping[str, SensorPlacement]
+PlacedSensors = Mapping[str, SensorPlacement]
 """By the name of the sensor."""
 
 
-def placements(rig: Rig) -> Placements:
+def placements(rig: Rig) -> PlacedSensors:
     """Return where every sensor of a rig is."""
     return {each.name: SensorPlacement(each.pose.position, each.pose.rotation_deg) for each in rig}
 
@@ -49,10 +49,31 @@ class RunRecord:
 class InputsRecord:
     """The study as it was given, and what it was read from."""
 
-    study: Table
+    study: OpenTable
     study_sha256: str
     vehicle: str | None
     vehicle_triangles: int
+
+
+@dataclass(frozen=True, slots=True)
+class FrontRecord:
+    """A Pareto front of designs: front.json. `designs` are all, `front` the names of the best."""
+
+    schema: int
+    kind: Literal["front"]
+    seed: int
+    currency: str
+    objectives: tuple[str, ...]
+    looked_at: int
+    searched: int
+    all_designs_looked_at: bool
+    stopped: bool
+    front: tuple[str, ...]
+    designs: tuple[OpenTable, ...]
+    refused: Any
+    notes: Any
+    inputs: OpenTable
+    run: RunRecord
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,11 +87,11 @@ class ResultRecord:
     coverage: Annotated[float, Part(about="Of the result, 0 to 1")]
     before: Score
     after: Score
-    placements: Mapping[End, Placements]
-    mounts: Table
-    robustness: Annotated[Table | None, AtTimes] = None
+    placements: Mapping[End, PlacedSensors]
+    mounts: OpenTable
+    robustness: Annotated[OpenTable | None, AtTimes] = None
     requirements: Annotated[tuple[VerdictRow, ...] | None, AtTimes] = None
-    conditions: Annotated[Table | None, AtTimes] = None
+    conditions: Annotated[OpenTable | None, AtTimes] = None
     method: str | None
     level_samples: tuple[int, ...]
     objective: Annotated[str | None, AtTimes] = None
@@ -83,13 +104,13 @@ class ResultRecord:
     change_stderr: Annotated[Mapping[str, float] | None, AtTimes] = None
     ap_model: str
     returns: str
-    flatness: Table | None
-    starts: tuple[Table, ...]
+    flatness: OpenTable | None
+    starts: tuple[OpenTable, ...]
     stop_reason: str | None
     seed_scatter: float | None
     evaluations: int
     stopped: bool
     warnings: tuple[Advice, ...]
-    history: tuple[Table, ...]
+    history: tuple[OpenTable, ...]
     inputs: InputsRecord
     run: RunRecord

@@ -20,11 +20,12 @@ from docs_site import outside  # noqa: E402
 FILE = ROOT / "llms.txt"
 HEAD = """# Perception Entropy
 
-> Scores and optimizes where LiDARs, cameras, radars and ultrasonic sensors sit on a vehicle, by perception entropy
-> (Ma, Liu and Li, ICRA 2021): a metric, a command `pe`, a Python library, a Blender extension. GPL-3.0-or-later.
+> Scores and optimizes where LiDARs, cameras, radars and ultrasonic sensors sit on a vehicle, by
+> perception entropy (Ma, Liu and Li, ICRA 2021): a metric, a command `pe`, a Python library, a
+> Blender extension. GPL-3.0-or-later.
 
-Begin with [AGENTS.md](AGENTS.md): how to score, search, check and export in five calls, what the figures mean, what
-not to conclude.
+Begin with [AGENTS.md](AGENTS.md): how to score, search, check and export in five calls, what the
+figures mean, what not to conclude.
 """
 SECTION = re.compile(r"^  - ([\w ]+):$")
 PAGE = re.compile(r'^      - (?:"?([^":]*(?:: [^":]*)?)"?: )?([\w/]+\.md)$')

@@ -60,7 +60,9 @@ def _record_table(cls: Any, known: dict[str, Schema]) -> Schema:
 
 
 def _without_null(schema: Schema) -> Schema:
-    some = [each for each in schema.get("anyOf", ()) if each != NULL]
+    if "anyOf" not in schema:
+        return schema
+    some = [each for each in schema["anyOf"] if each != NULL]
     return some[0] if len(some) == 1 else {"anyOf": some}
 
 

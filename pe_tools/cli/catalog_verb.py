@@ -39,7 +39,7 @@ def _curves() -> Iterator[CurveRow]:
     for name in CURVE_MODELS:
         for kind, curves in (fitted_curves(name) or own).items():
             for each, curve in curves.items():
-                yield CurveRow(name, kind, each, curve.a, curve.b, source=curve_source(name))
+                yield CurveRow(name, kind, each, a=curve.a, b=curve.b, source=curve_source(name))
 
 
 def _curve_lines() -> list[str]:

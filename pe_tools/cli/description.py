@@ -77,7 +77,10 @@ def described(
         for verb, parser in parsers
     )
     answers = schemas_of_records({verb.name: verb.answer for verb, _ in parsers})
-    found: dict[str, Any] = record(CommandRecord(program, version, verbs, EXIT_STATUSES, answers))
+    command = CommandRecord(
+        program=program, version=version, verbs=verbs, exit_statuses=EXIT_STATUSES, answers=answers
+    )
+    found: dict[str, Any] = record(command)
     return found
 
 

@@ -42,8 +42,9 @@ def export(source: StudyFiles, args: argparse.Namespace) -> Answer:
         line = rig_line(study.rig)
         path = output_file(args.output, args)
         status = save_text(path, line)
-        files = (str(path),) if path is not None and status == DONE else ()
-        return answered(args, FilesAnswer(written=files, line=line), [line]), status
+        is_written = path is not None and status == DONE
+        line_file = (str(path),) if is_written else ()
+        return answered(args, FilesAnswer(written=line_file, line=line), [line]), status
     if args.output is None and args.into is None:
         args.usage_error("expected -o PATH, a file to write, or --into PATH, one to change")
     output = Path(args.into if args.output is None else args.output)

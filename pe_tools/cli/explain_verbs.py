@@ -93,8 +93,8 @@ def explain(source: StudyFiles, args: argparse.Namespace) -> Answer:
         answer = ExplainAnswer(outlook={}, place=place.to_dict())
         if args.suggest:
             suggested = suggested_for(SuggestJob(study, spot=(at[0], at[1])))
-            rows = tuple(each.to_dict() for own in suggested.values() for each in own)
-            answer = replace(answer, suggestions=rows)
+            mended = tuple(each.to_dict() for own in suggested.values() for each in own)
+            answer = replace(answer, suggestions=mended)
             mends = [line for each in suggested.items() for line in suggestion_lines(*each)]
             told += mends or [NOT_BLIND] * (not place.in_vehicle)
         return answered(args, answer, told), DONE

@@ -47,8 +47,8 @@ class ServedVerb(Protocol):
     def options(self) -> str:
         """Names of its options."""
 
-    def add(self, verbs: Any, source: StudyFiles) -> None:
-        """Add it to a parser."""
+    def add(self, verbs: Any, source: StudyFiles) -> Parser:
+        """Add it to a parser; return its own."""
 
 
 class SessionStudy(StudyFiles):

@@ -9,8 +9,8 @@ from importlib.metadata import EntryPoint
 from typing import Any, NamedTuple
 
 from pe_core.base.errors import InputError
+from pe_core.base.lazy_threads import threads
 from pe_core.base.plugins import call_plugin, find_plugins, load_plugin, plugin_name, shipped
-from pe_core.search.payload import keep_freed_memory
 
 from ..jobs import FrontRecord, ResultRecord
 from ..versions import versions_text
@@ -98,7 +98,7 @@ class _InGroups(argparse.HelpFormatter):
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command and return its exit status (`terminal.EXIT_STATUSES`)."""
     open_missing_streams()
-    keep_freed_memory()
+    threads().keep_freed_memory()
     given = sys.argv[1:] if argv is None else argv
     return run(lambda: answer(parser().parse_args(given), "pe", given))
 

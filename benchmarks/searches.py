@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import os
 import sys
 import time
 from collections.abc import Iterator, Sequence
@@ -49,6 +50,7 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument("--problems", nargs="+", choices=PROBLEMS, default=list(PROBLEMS))
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS))
     parser.add_argument("--budgets", nargs="+", choices=BUDGETS, default=["small"])
+    parser.add_argument("--samples", type=int, help="voxels that all methods evaluate (problem's)")
     parser.add_argument("--seeds", type=int, nargs="+", default=list(range(5)))
     parser.add_argument("--again", nargs="+", choices=METHODS, default=[])
     parser.add_argument("--runs", type=Path, default=RUNS, help="folder of the runs' files")
@@ -73,7 +75,8 @@ def _run_missing(args: argparse.Namespace) -> None:
                 for method in args.methods:
                     chosen = {"problem": name, "method": method, "budget": length, "seed": seed}
                     path = _path(args.runs, chosen)
-                    run_once(path, partial(run, **chosen), " of processor")
+                    search = partial(run, **chosen, samples=args.samples)
+                    run_once(path, search, " of processor")
 
 
 def _path(folder: Path, run: Json) -> Path:
@@ -89,9 +92,12 @@ def evaluations_of(problem: SearchProblem, budget_name: str) -> int:
     return budget(len(Parametrization(study.rig, study.search_space()).blocks))
 
 
-def run(problem: str, method: str, budget: str, seed: int) -> Json:
-    """Search; return the entropy that was found on the grid, and the curve of the best."""
+def run(problem: str, method: str, budget: str, seed: int, samples: int | None = None) -> Json:
+    """Search; return the entropy that was found on the grid, and the curve of the best. Candidates
+    are evaluated on so many samples, the problem's own by default."""
     study = PROBLEMS[problem].make()
+    if samples is not None:
+        study = replace(study, search=replace(study.search, samples=samples))
     evaluations = evaluations_of(PROBLEMS[problem], budget)
     evaluator = study.evaluator(study.search.samples, shift=sampling.SEARCHED)
     search = _ours if method in OURS else _theirs
@@ -104,6 +110,8 @@ def run(problem: str, method: str, budget: str, seed: int) -> Json:
         "method": method,
         "budget": budget,
         "seed": seed,
+        "samples": study.search.samples,
+        "load": round(os.getloadavg()[0], 1),
         "entropy": study.evaluator(0).entropy(best),
         "own_sample": evaluator.entropy(best),
         "seconds": round(seconds, 3),

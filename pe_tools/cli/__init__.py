@@ -9,6 +9,6 @@ from .options import whole
 from .run_job import More, drive
 from .story_text import chosen_stories, story_names
 from .study_source import NONE, ONE, PERHAPS, SOME, StudyFiles, with_changes, with_options
-from .terminal import BAD_INPUT, DONE, USAGE, Answer, open_missing_streams, show, tell
+from .terminal import BAD_INPUT, DONE, NOT_MET, USAGE, Answer, open_missing_streams, show, tell
 from .verbs import VERBS, Verb, answer, command_parser
 from .where_verb import where

@@ -138,6 +138,11 @@ def _review(source: StudyFiles, args: argparse.Namespace) -> Answer:
     return page
 
 
+def _verify(source: StudyFiles, args: argparse.Namespace) -> Answer:
+    found: Answer = shipped("verify.engine")(args, source.versions)
+    return found
+
+
 def _job(source: StudyFiles, args: argparse.Namespace) -> Answer:
     return run_study(source.study(args), source, args)
 
@@ -251,5 +256,13 @@ VERBS = (
         ONE,
         options="to range origin rear_axle set path into replace",
         function=export,
+    ),
+    Verb(
+        "verify",
+        MORE,
+        "hold the engine as it is installed to its golden cases; 3: some fail",
+        NONE,
+        options="folder json",
+        function=_verify,
     ),
 )

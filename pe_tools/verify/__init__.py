@@ -1,0 +1,1 @@
+"""A kit that verifies itself: golden cases by hand and by oracles, and the verb ``verify``."""

@@ -57,6 +57,7 @@ ROOMS = {
     },
     "pe_tools": {
         "versions": set(),
+        "known_defects": set(),
         "formats": set(),
         "exchange": {"formats"},
         "graphics": set(),
@@ -68,6 +69,7 @@ ROOMS = {
         "sweep": {"wording", "jobs"},
         "cli": {
             "versions",
+            "known_defects",
             "wording",
             "formats",
             "graphics",
@@ -78,6 +80,7 @@ ROOMS = {
             "sweep",
         },
         "page": {"wording", "formats", "graphics", "advice", "jobs", "cli"},
+        "verify": {"versions", "known_defects", "wording", "jobs", "cli"},
         "plot": {"graphics"},
         "public": {"formats", "exchange", "advice", "jobs", "plot"},
         "__main__": {"versions", "cli"},

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
         known_defects,
         outputs,
         page,
+        verify,
         wording,
     )
     from pe_tools import cli as app
@@ -54,6 +55,7 @@ ROOMS = {
     "sight": (pe, "scoring.sight"),
     "studies": (pe, "study"),
     "text": (pe, "base"),
+    "verify": (tools, "verify"),
     "wording": (tools, "wording"),
 }
 """Where the rooms are, by the names that they have in the add-on."""

@@ -2,8 +2,8 @@
 
 Constants by hand. A LiDAR's AP is 0.152 ln m + 0.659: one beam has 0.659, sigma 0.517450683 and
 1 / sigma^2 3.734754603; two beams have 0.764358371 and 10.5217995. A camera's AP is
-0.055 ln m + 0.155: 100 pixels have 0.408284360 and 0.4761013265. H = 1 + ln(2 pi) - ln(1 / sigma^2),
-and 1 + ln(2 pi) = 2.837877066.
+0.055 ln m + 0.155: 100 pixels have 0.408284360 and 0.4761013265. The entropy is
+H = 1 + ln(2 pi) - ln(1 / sigma^2), and 1 + ln(2 pi) = 2.837877066.
 """
 
 import math

@@ -48,16 +48,13 @@ def lines(found: Verification, data: Mapping[str, Any]) -> Sequence[str]:
     for area in areas:
         own = [each.passed for each in found.results if each.case.area == area]
         rows.append([area, str(sum(own)), str(len(own))])
-    told = [f"FAILED {each.case.area}, {each.case.name}: {each.first_wrong}"
-            for each in found.failed]  # fmt: skip
     versions = ", ".join(f"{name} {text}" for name, text in data["versions"].items())
     digests = ", ".join(f"{name} {text}" for name, text in data["digests"].items())
     machine = data["machine"]
-    right = f"{data['passed']} of {len(found.results)} golden cases are right"
     return [
         *aligned(rows),
-        *told,
-        f"{right}, {found.seconds:.1f} s",
+        *found.failures,
+        found.in_short,
         f"versions  {versions}",
         f"machine   {machine['system']}, {machine['processors']} processors",
         f"digests   {digests}",

@@ -82,6 +82,19 @@ class Verification:
         return [each for each in self.results if not each.passed]
 
     @property
+    def failures(self) -> list[str]:
+        """A line for each case that is wrong."""
+        return [f"FAILED {each.case.area}, {each.case.name}: {each.first_wrong}"
+                for each in self.failed]  # fmt: skip
+
+    @property
+    def in_short(self) -> str:
+        """How many cases are right."""
+        count = len(self.results)
+        right = count - len(self.failed)
+        return f"{right} of {count} golden cases are right, {self.seconds:.1f} s"
+
+    @property
     def defects(self) -> Sequence[Defect]:
         """Defects that are known of this version."""
         return defects_of(__version__)
@@ -105,6 +118,13 @@ class Verification:
             "known_defects": [each.to_dict() for each in self.defects],
             "seconds": round(self.seconds, 2),
         }
+
+
+def verify_in_short() -> tuple[str, ...]:
+    """Hold the engine to all golden cases; return a line that says how many are right, and one for
+    each that is wrong."""
+    found = verify()
+    return found.in_short, *found.failures
 
 
 def verifying() -> Iterator[CaseResult]:

@@ -19,6 +19,8 @@ import pe_core as pe
 from tests.engine.shapes import box, refined
 
 SPACE = pe.PerceptionSpace((-60.0, 60.0), (-30.0, 30.0), (0.0, 5.0), 0.5)
+BUDGETS = ("small", "default")
+"""Evaluations of a run: those of the problem, or as many as a study that names none has."""
 SAMPLES = 8192
 """Voxels on which the methods evaluate a placement; its entropy on the grid is compared."""
 SEDAN = Path(__file__).resolve().parent.parent / "blend_assets" / "experiments" / "1_pandar64.toml"

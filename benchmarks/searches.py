@@ -29,14 +29,13 @@ from pe_core.search import Parametrization
 from pe_core.search.methods.portfolio import budget
 
 from .run_files import restore, run_once
-from .search_problems import PROBLEMS, SearchProblem
+from .search_problems import BUDGETS, PROBLEMS, SearchProblem
 from .yardstick_searches import YARDSTICKS, Landscape, search_by
 
 RUNS = Path(__file__).resolve().parent.parent / "build" / "search_problems"
 SUMMARY = Path(__file__).with_name("searches.json")
 OURS = pe.METHODS
 METHODS = (*OURS, *YARDSTICKS)
-BUDGETS = ("small", "default")
 MARKS = 16
 """Points of a curve, at most."""
 Json = dict[str, Any]

@@ -3,6 +3,7 @@
 import html
 import json
 from collections import Counter
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -165,6 +166,11 @@ def test_another_programs_result_says_nothing(text, tmp_path, capsys):
     (tmp_path / "result.json").write_text(text)
     tell_mended_defects(tmp_path)
     assert capsys.readouterr().err == ""
+
+
+def test_each_defect_leads_to_a_page():
+    docs = Path(known_defects.__file__).parent.parent / "docs"
+    assert all((docs / each.link).is_file() for each in known_defects.known_defects())
 
 
 def test_versions_are_compared_by_their_numbers():

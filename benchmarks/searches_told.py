@@ -29,7 +29,7 @@ NAMES = {
 ABOUT = """\
 Entropy on the grid [nats], lower is better: median of the seeds, and in brackets the worst one. All
 methods have the same start, the same evaluator and the same number of evaluations; the result is
-scored on all voxels. `python -m benchmarks.searches` writes this from its run files (searches.json);
+scored on all voxels. `python -m benchmarks.searches` writes this from its run files, searches.json;
 search_problems.py says what each problem is.
 
 - portfolio: the default search here. Its first level evaluates fewer voxels.
@@ -63,7 +63,7 @@ def methods_of(runs: list[Json]) -> list[str]:
 
 
 def table(runs: list[Json]) -> list[str]:
-    """Return the page: a table for each budget, what is exact, and what is to be said of the runs."""
+    """Return the page: a table for each budget, the counted optimum, and notes on the runs."""
     lines = ["# Methods of search on fifteen problems", "", *ABOUT.splitlines()]
     for budget in dict.fromkeys(run["budget"] for run in runs):
         lines += ["", *_of_budget([run for run in runs if run["budget"] == budget], budget)]
@@ -143,7 +143,7 @@ def _optimum_lines(runs: list[Json]) -> list[str]:
         "## The optimum in slots",
         "",
         f"*{name}*: all {found['counted']:,} different placements, fused on {found['voxels']:,} "
-        f"voxels by `python -m benchmarks.slot_optimum`; of the {found['finalists']} best on these, "
+        f"voxels by `python -m benchmarks.slot_optimum`; of the {found['finalists']} best there, "
         f"the best on the grid has **{found['entropy']:.3f}**.",
     ]
     if own:

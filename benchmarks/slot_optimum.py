@@ -1,10 +1,10 @@
-"""``python -m benchmarks.slot_optimum``: the best of all placements of *six in slots*, by counting.
+"""``python -m benchmarks.slot_optimum``: the best of all placements of *six in slots*, counted.
 
-Three LiDARs of one model and three cameras of another take six of sixteen slots: 560 x 286 = 160,160
-placements that differ. What a slot's sensor measures depends on no other sensor, so each is measured
-once; then all placements are fused by equations 4 to 9 in single precision on a sample of voxels,
-and the best of them are scored by the engine on the grid. The count is exact on that sample; on the
-grid it is the best of `FINALISTS`.
+Three LiDARs of one model and three cameras of another take six of sixteen slots: 560 x 286 =
+160,160 placements that differ. What a slot's sensor measures depends on no other sensor, so each is
+measured once; then all placements are fused by equations 4 to 9 in single precision on a sample of
+voxels, and the best of them are scored by the engine on the grid. The count is exact on that
+sample; on the grid it is the best of `FINALISTS`.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def main() -> int:
 
 
 def _measured(study: pe.Study) -> tuple[Floats, Floats, Floats]:
-    """Return m (16, V) of a LiDAR and of a camera in each slot, and the prior (V,) of the voxels."""
+    """Return m (16, V) of a LiDAR and of a camera in each slot, and the voxels' prior (V,)."""
     axes = [SPACE.centers(k) for k in range(3)]
     centers = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)[::EVERY]
     weights = np.zeros(SPACE.shape)

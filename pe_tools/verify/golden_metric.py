@@ -16,6 +16,7 @@ from pe_core import metric
 
 from . import golden_scenes as scenes
 from .golden_case import BY_HAND, ORACLE, GoldenCase, Values
+from .oracle import Floats
 
 H_UNSEEN = 16.651386624
 H_BEST = -10.975632491
@@ -222,7 +223,7 @@ def _ap(beams: int) -> list[float]:
     return _floats(metric.average_precision([beams], metric.POINTPILLARS))
 
 
-def _late(beams: Sequence[int], pixels: Sequence[float]) -> object:
+def _late(beams: Sequence[int], pixels: Sequence[float]) -> Floats:
     lidar = metric.precision_of(beams, metric.POINTPILLARS)
     return metric.late_fusion([lidar, metric.precision_of(pixels, metric.RTM3D)])
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -39,13 +40,14 @@ def lidar(
     offsets_deg: Sequence[float] | None = None,
 ) -> pe.Lidar:
     """Return a LiDAR of few beams."""
+    offsets = np.zeros(len(elevations_deg)) if offsets_deg is None else np.radians(offsets_deg)
     return pe.Lidar(
         "few beams",
         np.radians(elevations_deg),
         azimuths,
         max_range,
         horizontal_fov=(math.radians(horizontal_fov_deg[0]), math.radians(horizontal_fov_deg[1])),
-        azimuth_offsets=None if offsets_deg is None else np.radians(offsets_deg),
+        azimuth_offsets=offsets,
     )
 
 
@@ -55,7 +57,7 @@ def camera(hfov_deg: float = 90.0) -> pe.Camera:
 
 
 def mounted(
-    model: object, position: Corner = (0.0, 0.0, 0.0), rotation: Corner = (0.0, 0.0, 0.0)
+    model: Any, position: Corner = (0.0, 0.0, 0.0), rotation: Corner = (0.0, 0.0, 0.0)
 ) -> pe.Sensor:
     """Return a sensor at a position [m], with roll, pitch and yaw [deg]."""
     name = f"{type(model).__name__} at {position}"
@@ -95,7 +97,7 @@ def points_round(sensor: pe.Sensor, count: int = 60) -> Floats:
 
 def beam_ends(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> tuple[Floats, Floats]:
     """Return directions (B, 3) of a LiDAR's beams and where they end (B,) [m], by brute force."""
-    model = sensor.model
+    model: Any = sensor.model
     steps = np.arange(model.azimuth_count) * math.tau / model.azimuth_count
     low, high = model.horizontal_fov
     if high - low < math.tau - 1e-6:
@@ -114,6 +116,7 @@ def plain_measure(
     sensor: pe.Sensor, centers: Floats, side: float, vehicle: pe.Vehicle | None
 ) -> Floats:
     """Return m (N,) of cubes by brute force: beams through them, or pixels that they cover."""
+    model: Any = sensor.model
     origin = np.array(sensor.pose.position)
     if sensor.kind == "lidar":
         directions, ends = beam_ends(sensor, vehicle)
@@ -122,7 +125,7 @@ def plain_measure(
     areas = np.zeros(len(centers))
     for number, center in enumerate(centers):
         areas[number] = oracle.pixel_area(
-            PICTURE, sensor.model.hfov, origin, sensor.pose.rpy, center, side=side
+            PICTURE, model.hfov, origin, sensor.pose.rpy, center, side=side
         )
         if areas[number] and vehicle is not None:
             hidden = oracle.hidden(origin, center, side, np.asarray(vehicle.triangles))

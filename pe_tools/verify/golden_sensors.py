@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -281,7 +282,7 @@ def _relative(measured: object) -> list[float]:
 
 
 def _pandar64() -> list[float]:
-    model = pe.catalog.load("Pandar64")
+    model: Any = pe.catalog.load("Pandar64")
     return [model.beam_count, *np.degrees([max(model.elevations), min(model.elevations)]).tolist()]
 
 
@@ -311,8 +312,9 @@ def _rays() -> tuple[Floats, Floats]:
 
 def _plain_occluded() -> list[float]:
     sensor = scenes.lidar_on_roof()
+    model: Any = sensor.model
     _, ends = scenes.beam_ends(sensor, scenes.body())
-    return [len(ends), int((ends < sensor.model.max_range).sum())]
+    return [len(ends), int((ends < model.max_range).sum())]
 
 
 def _occluded() -> list[float]:
@@ -335,8 +337,12 @@ def _objects() -> pe.Objects:
     places = [(30.0, 4.0), (14.0, -3.0), (45.0, -12.0), (9.0, 9.0)]
     centers = [(x, y, size[2] / 2.0) for (x, y), size in zip(places, sizes, strict=True)]
     names = ("car", "pedestrian", "truck")
-    return pe.Objects(centers, sizes, [0.3, 1.0, -0.2, 2.0], [0, 1, 2, 0], class_names=names)
+    yaws = np.array([0.3, 1.0, -0.2, 2.0])
+    labels = np.array([0, 1, 2, 0])
+    return pe.Objects(np.array(centers), np.array(sizes), yaws, labels, class_names=names)
 
 
 def _post(x: float, y: float) -> pe.Objects:
-    return pe.Objects([[x, y, 0.5]], [(0.1, 0.1, 1.0)], [0.0], [0], class_names=("post",))
+    center = np.array([[x, y, 0.5]])
+    size = np.array([[0.1, 0.1, 1.0]])
+    return pe.Objects(center, size, np.zeros(1), np.zeros(1, dtype=int), class_names=("post",))

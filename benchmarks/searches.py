@@ -25,8 +25,7 @@ from typing import Any
 
 import pe_core as pe
 from pe_core.scoring import sampling
-from pe_core.search import Parametrization
-from pe_core.search.methods.portfolio import budget
+from pe_core.search import Parametrization, default_budget
 
 from .run_files import restore, run_once
 from .search_problems import BUDGETS, PROBLEMS, SearchProblem
@@ -88,7 +87,7 @@ def evaluations_of(problem: SearchProblem, budget_name: str) -> int:
     if budget_name == "small":
         return problem.evaluations
     study = problem.make()
-    return budget(len(Parametrization(study.rig, study.search_space()).blocks))
+    return default_budget(len(Parametrization(study.rig, study.search_space()).blocks))
 
 
 def run(problem: str, method: str, budget: str, seed: int, samples: int | None = None) -> Json:
@@ -133,7 +132,7 @@ def _digest_of(rows: Sequence[EvaluatedRow]) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class SearchRun:
+class RunRecord:
     """What a search did: each placement that was the best so far, placements evaluated, those that
     broke a rule instead (None: not counted), and the method that a method chose."""
 
@@ -145,7 +144,7 @@ class SearchRun:
 
 def _ours(
     study: pe.Study, last: pe.RigEvaluator, method: str, seed: int, evaluations: int
-) -> SearchRun:
+) -> RunRecord:
     """Search by a method of the engine, on its own levels."""
     searched = replace(study.search, method=method, evaluations=evaluations)
     levels = replace(study, search=searched).level_samples
@@ -171,12 +170,12 @@ def _ours(
         count = step.evaluations
         if step.improved or not rows:
             rows.append((time.process_time(), step.best))
-    return SearchRun(rows, count, None, method)
+    return RunRecord(rows, count, None, method)
 
 
 def _theirs(
     study: pe.Study, evaluator: pe.RigEvaluator, method: str, seed: int, evaluations: int
-) -> SearchRun:
+) -> RunRecord:
     """Search by a method of another library."""
     rows = list[EvaluatedRow]()
     lowest = float("inf")
@@ -191,7 +190,7 @@ def _theirs(
 
     landscape = Landscape(study, evaluator, evaluations, told)
     chosen = search_by(method, landscape, seed, evaluations)
-    return SearchRun(rows, count, landscape.broken, chosen)
+    return RunRecord(rows, count, landscape.broken, chosen)
 
 
 def _marked(rows: list[EvaluatedRow]) -> Iterator[EvaluatedRow]:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import pe_core as pe
-from pe_core import metric
+from pe_core.metric import BLIND_PRECISION, POINTPILLARS, RTM3D, precision_of
 
 from .search_problems import SPACE, six_in_slots
 
@@ -82,13 +82,13 @@ def _counted(
     beams: Floats, pixels: Floats, weights: Floats
 ) -> Iterator[tuple[float, tuple[int, ...], tuple[int, ...]]]:
     """Yield the entropy of each placement, with its slots of LiDARs and of cameras."""
-    blind = metric.BLIND_PRECISION
+    blind = BLIND_PRECISION
     shares = (weights / weights.sum()).astype(np.float32)
-    cameras = metric.precision_of(pixels, metric.RTM3D) - blind
+    cameras = precision_of(pixels, RTM3D) - blind
     triples = list(combinations(range(len(beams)), 3))
     added = {t: cameras[list(t)].sum(axis=0).astype(np.float32) for t in triples}
     for lidars in triples:
-        own = metric.precision_of(beams[list(lidars)].sum(axis=0), metric.POINTPILLARS)
+        own = precision_of(beams[list(lidars)].sum(axis=0), POINTPILLARS)
         own = own.astype(np.float32)
         free = [t for t in triples if not set(t) & set(lidars)]
         for cameras_at in free:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-Values = Sequence[float] | str
+CaseValues = Sequence[float] | str
 """Numbers, or a text that has to be the same to the letter."""
 BY_HAND = "by hand"
 ORACLE = "oracle"
@@ -31,16 +31,16 @@ class GoldenCase(NamedTuple):
     area: str
     basis: str
     about: str
-    right: Values | Callable[[], Values]
-    found: Callable[[], Values]
+    right: CaseValues | Callable[[], CaseValues]
+    found: Callable[[], CaseValues]
     tolerance: float = 1e-9
 
     @property
-    def right_values(self) -> Values:
+    def right_values(self) -> CaseValues:
         """The right values."""
         return self.right() if callable(self.right) else self.right
 
-    def is_right(self, found: Values, right: Values) -> bool:
+    def is_right(self, found: CaseValues, right: CaseValues) -> bool:
         """Whether values are the right ones, within the tolerance; NaN never is."""
         if isinstance(found, str) or isinstance(right, str):
             return found == right

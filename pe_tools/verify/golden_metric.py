@@ -15,7 +15,7 @@ import pe_core as pe
 from pe_core import metric
 
 from . import golden_scenes as scenes
-from .golden_case import BY_HAND, ORACLE, GoldenCase, Values
+from .golden_case import BY_HAND, ORACLE, CaseValues, GoldenCase
 from .oracle import Floats
 
 H_UNSEEN = 16.651386624
@@ -36,65 +36,83 @@ def metric_cases() -> Sequence[GoldenCase]:
     area = "equations"
     camera = metric.RTM3D
     return (
-        _hand(area, "AP without a measurement", "eq. 4: clipped to 0.001", [0.001], lambda: _ap(0)),
-        _hand(area, "AP of one beam", "eq. 4: ln 1 = 0", [0.659], lambda: _ap(1)),
-        _hand(area, "AP of many beams", "eq. 4: clipped to 0.999", [0.999], lambda: _ap(10_000)),
+        _hand(
+            area,
+            "AP without a measurement",
+            "eq. 4: clipped to 0.001",
+            [0.001],
+            found=lambda: _ap(0),
+        ),
+        _hand(area, "AP of one beam", "eq. 4: ln 1 = 0", [0.659], found=lambda: _ap(1)),
+        _hand(
+            area, "AP of many beams", "eq. 4: clipped to 0.999", [0.999], found=lambda: _ap(10_000)
+        ),
         _hand(
             area,
             "AP of 100 pixels",
             "eq. 4: 0.055 ln 100 + 0.155",
             [0.40828436],
-            lambda: _floats(metric.average_precision([100.0], camera)),
+            found=lambda: _floats(metric.average_precision([100.0], camera)),
         ),
-        _hand(area, "sigma", "eq. 5: 1 / 0.5 - 1", [1.0], lambda: _floats(metric.sigma_of([0.5]))),
+        _hand(
+            area,
+            "sigma",
+            "eq. 5: 1 / 0.5 - 1",
+            [1.0],
+            found=lambda: _floats(metric.sigma_of([0.5])),
+        ),
         _hand(
             area,
             "entropy of sigma 1",
             "eq. 8: 1 + ln(2 pi)",
             [GAUSSIAN],
-            lambda: _floats(metric.entropy_of([1.0])),
+            found=lambda: _floats(metric.entropy_of([1.0])),
         ),
         _hand(
             area,
             "entropy of a voxel that nobody sees",
             "eq. 8: 2 ln 999 + 1 + ln(2 pi)",
             [H_UNSEEN],
-            lambda: _floats(metric.entropy_of(metric.precision_of([0.0], metric.POINTPILLARS))),
+            found=lambda: _floats(
+                metric.entropy_of(metric.precision_of([0.0], metric.POINTPILLARS))
+            ),
         ),
         _hand(
             area,
             "entropy of a saturated voxel",
             "eq. 8: 2 ln(1 / 999) + 1 + ln(2 pi)",
             [H_BEST],
-            lambda: _floats(metric.entropy_of(metric.precision_of([1e9], metric.POINTPILLARS))),
+            found=lambda: _floats(
+                metric.entropy_of(metric.precision_of([1e9], metric.POINTPILLARS))
+            ),
         ),
         _hand(
             area,
             "early fusion",
             "eq. 6: beams of a group add up, 1 + 1 = 2",
             [2.0, 5.0],
-            lambda: _floats(metric.early_fusion([[1, 2], [1, 3]])),
+            found=lambda: _floats(metric.early_fusion([[1, 2], [1, 3]])),
         ),
         _hand(
             area,
             "late fusion of a LiDAR and a camera",
             "eq. 7: 1 / sigma^2 adds up above that of a blind sensor",
             [GAUSSIAN - math.log(ONE_BEAM + HUNDRED_PIXELS - 1.0 / 998_001.0)],
-            lambda: _floats(metric.entropy_of(_late([1], [100.0]))),
+            found=lambda: _floats(metric.entropy_of(_late([1], [100.0]))),
         ),
         _hand(
             area,
             "a blind camera changes nothing",
             "eq. 7 with the floor of blind sensors",
             [GAUSSIAN - math.log(TWO_BEAMS)],
-            lambda: _floats(metric.entropy_of(_late([2], [0.0]))),
+            found=lambda: _floats(metric.entropy_of(_late([2], [0.0]))),
         ),
         _hand(
             area,
             "perception entropy of two voxels",
             "eq. 9: (1 x 2 + 3 x 6) / 4",
             [5.0],
-            lambda: [metric.perception_entropy([2.0, 6.0], [1.0, 3.0])],
+            found=lambda: [metric.perception_entropy([2.0, 6.0], [1.0, 3.0])],
         ),
     )
 
@@ -109,21 +127,23 @@ def frame_cases() -> Sequence[GoldenCase]:
             "positive pitch is nose down",
             "a turn by 30 deg about y takes x to (cos, 0, -sin)",
             [math.sqrt(0.75), 0.0, -0.5],
-            lambda: _forward((0.0, 30.0, 0.0)),
+            found=lambda: _forward((0.0, 30.0, 0.0)),
         ),
         _hand(
             area,
             "positive yaw turns left",
             "a quarter turn takes x to y",
             [0.0, 1.0, 0.0],
-            lambda: _forward((0.0, 0.0, 90.0)),
+            found=lambda: _forward((0.0, 0.0, 90.0)),
         ),
         _hand(
             area,
             "roll, pitch and yaw in this order",
             "Rz(90) Ry(45) Rx(90): the sensor's left, y, becomes z, then (0.7, 0, 0.7), then left",
             [0.0, half, half],
-            lambda: _floats(pe.Pose.from_degrees((0, 0, 0), (90, 45, 90)).ground_from_sensor[:, 1]),
+            found=lambda: _floats(
+                pe.Pose.from_degrees((0, 0, 0), (90, 45, 90)).ground_from_sensor[:, 1]
+            ),
         ),
     )
 
@@ -137,22 +157,22 @@ def prior_cases() -> Sequence[GoldenCase]:
             "labelled boxes",
             "a car of one voxel and a truck of two: half of the mass each, by class",
             [0.5, 0.5, 1.0],
-            lambda: _masses(()),
+            found=lambda: _masses(()),
         ),
         _hand(
             area,
             "focus",
             "trucks count three times: 1/4 and 3/4",
             [0.25, 0.75, 1.0],
-            lambda: _masses((pe.Focus(3.0, classes=("truck",)),)),
+            found=lambda: _masses((pe.Focus(3.0, classes=("truck",)),)),
         ),
         _hand(
             area,
             "the vehicle's own volume carries no weight",
             "a LiDAR whose beams end inside the box: all the mass is outside, and unseen",
             [H_UNSEEN, 0.0, 0.0],
-            _score_beside_the_body,
-            SLACK,
+            found=_score_beside_the_body,
+            tolerance=SLACK,
         ),
     )
 
@@ -167,52 +187,52 @@ def score_cases() -> Sequence[GoldenCase]:
             area,
             ORACLE,
             whole,
-            lambda: scenes.plain_score(list(scenes.rig())),
-            lambda: _entropy_and_coverage(scenes.rig()),
-            ROUNDED,
+            right=lambda: scenes.plain_score(list(scenes.rig())),
+            found=lambda: _entropy_and_coverage(scenes.rig()),
+            tolerance=ROUNDED,
         ),
         GoldenCase(
             "a blind sensor by the letter",
             area,
             ORACLE,
             f"{whole}: each group counts",
-            lambda: scenes.plain_score(list(scenes.rig()), literal=True),
-            lambda: _entropy_and_coverage(scenes.rig(), pe.PerceptionModel(blind="literal")),
-            ROUNDED,
+            right=lambda: scenes.plain_score(list(scenes.rig()), literal=True),
+            found=lambda: _entropy_and_coverage(scenes.rig(), pe.PerceptionModel(blind="literal")),
+            tolerance=ROUNDED,
         ),
         GoldenCase(
             "a tilted LiDAR on all voxels",
             area,
             ORACLE,
             "a LiDAR rolled by 8, pitched by 14 and turned by 33 deg",
-            lambda: scenes.plain_score([_tilted()]),
-            lambda: _entropy_and_coverage(pe.Rig([_tilted()])),
-            ROUNDED,
+            right=lambda: scenes.plain_score([_tilted()]),
+            found=lambda: _entropy_and_coverage(pe.Rig([_tilted()])),
+            tolerance=ROUNDED,
         ),
         GoldenCase(
             "what a sensor adds",
             area,
             ORACLE,
             "the rig's entropy without its second LiDAR, less that with it",
-            _plain_loss,
-            _loss,
-            2.0 * ROUNDED,
+            right=_plain_loss,
+            found=_loss,
+            tolerance=2.0 * ROUNDED,
         ),
         GoldenCase(
             "entropy of a sample of voxels",
             area,
             ORACLE,
             "16,384 sampled voxels agree with all voxels within four standard errors",
-            lambda: [1.0],
-            _sample_agrees,
+            right=lambda: [1.0],
+            found=_sample_agrees,
         ),
     )
 
 
 def _hand(
-    area: str, name: str, about: str, right: Values, found: object, tolerance: float = SLACK
+    area: str, name: str, about: str, right: CaseValues, found: object, tolerance: float = SLACK
 ) -> GoldenCase:
-    return GoldenCase(name, area, BY_HAND, about, right, found, tolerance)  # type: ignore[arg-type]
+    return GoldenCase(name, area, BY_HAND, about, right=right, found=found, tolerance=tolerance)  # type: ignore[arg-type]
 
 
 def _floats(values: object) -> list[float]:

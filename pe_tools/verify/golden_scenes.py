@@ -17,10 +17,10 @@ BODY = ((-2.0, -1.0, 0.0), (2.0, 1.0, 1.0))
 """Corners of the vehicle's box: its faces are faces of voxels."""
 FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 PICTURE = (200, 100)
-Corner = tuple[float, float, float]
+Metres3 = tuple[float, float, float]
 
 
-def box_triangles(low: Corner, high: Corner) -> Floats:
+def box_triangles(low: Metres3, high: Metres3) -> Floats:
     """Return the triangles (12, 3, 3) of an axis-aligned box [m]."""
     ends = np.array([low, high], dtype=float)
     corners = np.array([[ends[i, 0], ends[j, 1], ends[k, 2]] for i, j, k in np.ndindex(2, 2, 2)])
@@ -57,14 +57,14 @@ def camera(hfov_deg: float = 90.0) -> pe.Camera:
 
 
 def mounted(
-    model: Any, position: Corner = (0.0, 0.0, 0.0), rotation: Corner = (0.0, 0.0, 0.0)
+    model: Any, position: Metres3 = (0.0, 0.0, 0.0), rotation: Metres3 = (0.0, 0.0, 0.0)
 ) -> pe.Sensor:
     """Return a sensor at a position [m], with roll, pitch and yaw [deg]."""
     name = f"{type(model).__name__} at {position}"
     return pe.Sensor(name, model, pe.Pose.from_degrees(position, rotation))
 
 
-def lidar_on_roof(rotation: Corner = (0.0, 0.0, 0.0)) -> pe.Sensor:
+def lidar_on_roof(rotation: Metres3 = (0.0, 0.0, 0.0)) -> pe.Sensor:
     """Return a LiDAR of 12 x 90 beams just above the box, off the planes of the grid."""
     return mounted(lidar(tuple(range(-40, 20, 5)), 90, 30.0), (0.43, 0.21, 1.33), rotation)
 

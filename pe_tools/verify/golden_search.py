@@ -40,44 +40,44 @@ def verdict_cases() -> Sequence[GoldenCase]:
             "a child ahead is seen",
             "nothing is between the camera at the front and the zone",
             [1, 1],
-            lambda: _verdict(Requirement("ahead", AHEAD, child)),
+            found=lambda: _verdict(Requirement("ahead", AHEAD, child)),
         ),
         _hand(
             area,
             "a child behind is not seen",
             "the camera looks ahead: no sample passes",
             [0, 0],
-            lambda: _verdict(Requirement("behind", BEHIND, child)),
+            found=lambda: _verdict(Requirement("behind", BEHIND, child)),
         ),
         _hand(
             area,
             "not met with a sensor lost",
             "the only sensor is lost: no sample passes without it",
             [0, 0],
-            lambda: _verdict(Requirement("lost", AHEAD, child, under=lost)),
+            found=lambda: _verdict(Requirement("lost", AHEAD, child, under=lost)),
         ),
         _hand(
             area,
             "not met by two sensors",
             "there is one",
             [0, 0],
-            lambda: _verdict(Requirement("two", AHEAD, child, Criterion(sensors=2))),
+            found=lambda: _verdict(Requirement("two", AHEAD, child, Criterion(sensors=2))),
         ),
         _hand(
             area,
             "blind ground behind is all of the zone",
             "2 m by 2 m, 4 m2, more than 3.9",
             [0, 4.0],
-            lambda: _blind(Requirement("ground", BEHIND, (), low)),
-            1e-6,
+            found=lambda: _blind(Requirement("ground", BEHIND, (), low)),
+            tolerance=1e-6,
         ),
         _hand(
             area,
             "no blind ground ahead",
             "the camera is 1.2 m high and looks down by 25 deg: all of the zone is in its picture",
             [1, 0.0],
-            lambda: _blind(Requirement("ground", AHEAD, (), low)),
-            1e-6,
+            found=lambda: _blind(Requirement("ground", AHEAD, (), low)),
+            tolerance=1e-6,
         ),
     )
 
@@ -92,50 +92,50 @@ def search_cases() -> Sequence[GoldenCase]:
             area,
             ORACLE,
             "two LiDARs in five slots: all 20 placements scored one by one",
-            _counted_optimum,
-            lambda: [_last_step(_in_slots(), "portfolio").value.objective],
-            0.0,
+            right=_counted_optimum,
+            found=lambda: [_last_step(_in_slots(), "portfolio").value.objective],
+            tolerance=0.0,
         ),
         GoldenCase(
             "a search finds what it says",
             area,
             ORACLE,
             "the value of the result is that of its rig, scored by another evaluator",
-            lambda: [1.0],
-            _value_is_of_rig,
+            right=lambda: [1.0],
+            found=_value_is_of_rig,
         ),
         GoldenCase(
             "no placement in a no-go area",
             area,
             BY_HAND,
             "x < 0.5 is excluded: no best placement is there",
-            [0.0],
-            _inside_no_go,
+            right=[0.0],
+            found=_inside_no_go,
         ),
         GoldenCase(
             "the same placements by the portfolio",
             area,
             STORED,
             bits,
-            PORTFOLIO_BITS,
-            lambda: _bits("portfolio"),
+            right=PORTFOLIO_BITS,
+            found=lambda: _bits("portfolio"),
         ),
         GoldenCase(
             "the same placements by Algorithm 1",
             area,
             STORED,
             bits,
-            RANDOM_BITS,
-            lambda: _bits("random"),
+            right=RANDOM_BITS,
+            found=lambda: _bits("random"),
         ),
         GoldenCase(
             "a study, written and read",
             area,
             BY_HAND,
             "the same score to the last bit",
-            [0.0],
-            _score_after_round_trip,
-            0.0,
+            right=[0.0],
+            found=_score_after_round_trip,
+            tolerance=0.0,
         ),
     )
 
@@ -143,7 +143,7 @@ def search_cases() -> Sequence[GoldenCase]:
 def _hand(
     area: str, name: str, about: str, right: Sequence[float], found: object, tolerance: float = 0.0
 ) -> GoldenCase:
-    return GoldenCase(name, area, BY_HAND, about, right, found, tolerance)  # type: ignore[arg-type]
+    return GoldenCase(name, area, BY_HAND, about, right=right, found=found, tolerance=tolerance)  # type: ignore[arg-type]
 
 
 def _checked(requirement: Requirement) -> pe.requirements.Verdict:

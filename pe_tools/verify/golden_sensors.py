@@ -51,35 +51,37 @@ def lidar_cases() -> Sequence[GoldenCase]:
             "directions of beams",
             "two azimuths at 0 and 30 deg up: (cos e cos a, cos e sin a, sin e)",
             [1, 0, 0, -1, 0, 0, ROOT3, 0, 0.5, -ROOT3, 0, 0.5],
-            lambda: _floats(scenes.lidar((0.0, 30.0), 2).directions),
+            found=lambda: _floats(scenes.lidar((0.0, 30.0), 2).directions),
         ),
         _hand(
             area,
             "a beam passes the cubes on its way",
             "one beam along x: cubes at 5.5 m and 9.5 m, not that 1 m aside",
             [1, 1, 0],
-            lambda: _floats(pe.measure(ahead, [[5.5, 0, 0], [9.5, 0, 0], [5.5, 1.01, 0]], 1.0)),
+            found=lambda: _floats(
+                pe.measure(ahead, [[5.5, 0, 0], [9.5, 0, 0], [5.5, 1.01, 0]], 1.0)
+            ),
         ),
         _hand(
             area,
             "a cube owns its lower faces",
             "a beam along the face between two cubes belongs to the upper one alone",
             [1, 0],
-            lambda: _floats(pe.measure(ahead, [[5.5, 0.5, 0], [5.5, -0.5, 0]], 1.0)),
+            found=lambda: _floats(pe.measure(ahead, [[5.5, 0.5, 0], [5.5, -0.5, 0]], 1.0)),
         ),
         _hand(
             area,
             "range",
             "5 m: the cube that begins at 4.9 m counts, that at 5.1 m does not",
             [1, 0],
-            lambda: _floats(pe.measure(short, [[5.4, 0, 0], [5.6, 0, 0]], 1.0)),
+            found=lambda: _floats(pe.measure(short, [[5.4, 0, 0], [5.6, 0, 0]], 1.0)),
         ),
         _hand(
             area,
             "the paper's Pandar64",
             "Table I: 64 channels, 1,800 azimuths, 15 to -25 deg",
             [115_200, 15.0, -25.0],
-            _pandar64,
+            found=_pandar64,
         ),
         _counts("beams of an upright LiDAR", scenes.lidar_on_roof(), None),
         _counts("beams of a tilted LiDAR", scenes.lidar_on_roof((8.0, 14.0, 33.0)), None),
@@ -100,8 +102,8 @@ def camera_cases() -> Sequence[GoldenCase]:
             "pixels of a cube ahead",
             "focal length 100 px: a face of 1 m at 10 m is 10 x 10 px",
             [100.0],
-            lambda: _floats(pe.measure(level, [[10.5, 0, 0]], 1.0)),
-            PIXEL_SLACK,
+            found=lambda: _floats(pe.measure(level, [[10.5, 0, 0]], 1.0)),
+            tolerance=PIXEL_SLACK,
         ),
         _hand(
             area,
@@ -109,15 +111,15 @@ def camera_cases() -> Sequence[GoldenCase]:
             "its near face is in the picture from 95 to 100 px, 10 px high; its side from there to "
             "9.5 / 11 of 100 px, where it is 100 / 11 px high",
             [50.0 + (95.0 - 950.0 / 11.0) * (10.0 + 100.0 / 11.0) / 2.0],
-            lambda: _floats(pe.measure(level, [[10.5, 10.0, 0.0]], 1.0)),
-            PIXEL_SLACK,
+            found=lambda: _floats(pe.measure(level, [[10.5, 10.0, 0.0]], 1.0)),
+            tolerance=PIXEL_SLACK,
         ),
         _hand(
             area,
             "pixels of a cube behind",
             "none",
             [0.0],
-            lambda: _floats(pe.measure(level, [[-10.5, 0, 0]], 1.0)),
+            found=lambda: _floats(pe.measure(level, [[-10.5, 0, 0]], 1.0)),
         ),
         _areas("pixel areas of cubes all round", turned, None),
         _areas("pixel areas past the vehicle", scenes.camera_ahead(), scenes.body()),
@@ -126,7 +128,7 @@ def camera_cases() -> Sequence[GoldenCase]:
             "a distorted lens",
             "k1 = 0.5: a tangent r = 0.5 is drawn at r (1 + k1 r^2) = 0.5625 focal lengths",
             [0.5625, 0.0],
-            _distorted,
+            found=_distorted,
         ),
     )
 
@@ -144,49 +146,49 @@ def occlusion_cases() -> Sequence[GoldenCase]:
             "where beams end",
             "ahead on the wall at 4 m; to the left, behind and to the right at the range of 50 m",
             [4.0, 50.0, 50.0, 50.0],
-            lambda: _floats(pe.beam_field(level, wall).ends),
+            found=lambda: _floats(pe.beam_field(level, wall).ends),
         ),
         _hand(
             area,
             "a LiDAR sees nothing beyond a wall",
             "the cube at 6 m is hidden, that at 3 m is not",
             [0, 1],
-            lambda: _floats(pe.measure(level, beyond, 0.5, wall)),
+            found=lambda: _floats(pe.measure(level, beyond, 0.5, wall)),
         ),
         _hand(
             area,
             "a camera sees nothing beyond a wall",
             "the cube at 6 m is hidden; the face at 2.75 m of that at 3 m is (50 / 2.75)^2 px",
             [0.0, (50.0 / 2.75) ** 2],
-            lambda: _floats(pe.measure(camera, beyond, 0.5, wall)),
-            PIXEL_SLACK,
+            found=lambda: _floats(pe.measure(camera, beyond, 0.5, wall)),
+            tolerance=PIXEL_SLACK,
         ),
         _hand(
             area,
             "glass hides nothing from a camera",
             "the same wall of glass",
             [1.0],
-            lambda: [float(pe.measure(camera, beyond, 0.5, _glass_wall())[0] > 0.0)],
+            found=lambda: [float(pe.measure(camera, beyond, 0.5, _glass_wall())[0] > 0.0)],
         ),
         GoldenCase(
             "first hits of rays",
             area,
             ORACLE,
             "300 rays in all directions on a box: each ray against each triangle",
-            lambda: _floats(np.minimum(first_hits(*_rays(), _triangles())[0], 99.0)),
-            lambda: _floats(
+            right=lambda: _floats(np.minimum(first_hits(*_rays(), _triangles())[0], 99.0)),
+            found=lambda: _floats(
                 np.minimum(scenes.body().first_hit(tuple(_rays()[0]), _rays()[1]).distance, 99.0)
             ),
-            1e-9,
+            tolerance=1e-9,
         ),
         GoldenCase(
             "beams that end on the vehicle",
             area,
             ORACLE,
             "of a whole score: beams of the LiDAR on the roof, and how many the box stops",
-            _plain_occluded,
-            _occluded,
-            0.0,
+            right=_plain_occluded,
+            found=_occluded,
+            tolerance=0.0,
         ),
     )
 
@@ -202,30 +204,30 @@ def echo_cases() -> Sequence[GoldenCase]:
             "probability of detection",
             "Swerling 1: Pfa^(1 / (1 + SNR)) = 1e-6^(1 / 6) = 0.1",
             [0.1],
-            lambda: _floats(radar.detection_probability([5.0], 1e-6)),
+            found=lambda: _floats(radar.detection_probability([5.0], 1e-6)),
         ),
         _hand(
             "radar",
             "the radar equation",
             "twice the distance: a 16th of the SNR; a 16th of the cross section likewise",
             [1.0 / 16.0, 1.0],
-            _radar_equation,
+            found=_radar_equation,
         ),
         GoldenCase(
             "expected detections of objects",
             "radar",
             ORACLE,
             "cars, pedestrians and trucks within its field: ray by ray in decibels",
-            lambda: _relative(expected_detections(RADAR, front.pose, _objects())),
-            lambda: _relative(pe.measure_objects(front, _objects())),
-            RADAR_SLACK,
+            right=lambda: _relative(expected_detections(RADAR, front.pose, _objects())),
+            found=lambda: _relative(pe.measure_objects(front, _objects())),
+            tolerance=RADAR_SLACK,
         ),
         _hand(
             "ultrasonic",
             "echoes of posts",
             "1 m ahead; beyond 2 m; behind; 34 deg aside of a cone of 30",
             [1, 0, 0, 0],
-            lambda: [
+            found=lambda: [
                 float(pe.measure_objects(heard, _post(x, y))[0])
                 for x, y in ((3.4, 0.0), (4.56, 0.0), (1.4, 0.0), (3.4, 0.72))
             ],
@@ -241,7 +243,7 @@ def _hand(
     found: Callable[[], Sequence[float]],
     tolerance: float = 1e-9,
 ) -> GoldenCase:
-    return GoldenCase(name, area, BY_HAND, about, right, found, tolerance)
+    return GoldenCase(name, area, BY_HAND, about, right=right, found=found, tolerance=tolerance)
 
 
 def _floats(values: object) -> list[float]:
@@ -256,9 +258,9 @@ def _counts(name: str, sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> GoldenC
         "LiDAR",
         ORACLE,
         "counts in 180 cubes: each beam clipped against each cube",
-        lambda: _floats(scenes.plain_measure(sensor, centers, SIDE, vehicle)),
-        lambda: _floats(pe.measure(sensor, centers, SIDE, vehicle)),
-        0.0,
+        right=lambda: _floats(scenes.plain_measure(sensor, centers, SIDE, vehicle)),
+        found=lambda: _floats(pe.measure(sensor, centers, SIDE, vehicle)),
+        tolerance=0.0,
     )
 
 
@@ -270,9 +272,9 @@ def _areas(name: str, sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> GoldenCa
         "camera",
         ORACLE,
         "180 cubes: the hull of eight projected corners, clipped to the picture",
-        lambda: _relative(scenes.plain_measure(sensor, centers, SIDE, vehicle)),
-        lambda: _relative(pe.measure(sensor, centers, SIDE, vehicle)),
-        PIXEL_SLACK,
+        right=lambda: _relative(scenes.plain_measure(sensor, centers, SIDE, vehicle)),
+        found=lambda: _relative(pe.measure(sensor, centers, SIDE, vehicle)),
+        tolerance=PIXEL_SLACK,
     )
 
 

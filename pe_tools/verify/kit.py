@@ -8,6 +8,7 @@ from typing import Any
 
 from pe_core.base import dump_json
 from pe_core.base.plugins import shipped
+from pe_core.base.table_reader import finite
 
 from .. import cli as app
 from .. import jobs
@@ -38,7 +39,8 @@ def report(found: Verification, versions: Mapping[str, str] | None) -> dict[str,
     """Return what verify.json holds, with further versions."""
     data = found.to_dict()
     data["versions"] |= versions or {}
-    return data
+    whole: dict[str, Any] = finite(data)
+    return whole
 
 
 def lines(found: Verification, data: Mapping[str, Any]) -> Sequence[str]:

@@ -12,9 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int_]
-Point = tuple[float, float]
-Angles = Sequence[float]
+Pixel = tuple[float, float]
 IN_FRONT = 1e-6
 """In sides; a corner nearer to a camera's plane is behind it."""
 
@@ -28,7 +26,7 @@ def rotation(roll: float, pitch: float, yaw: float) -> Floats:
     return rz @ ry @ rx
 
 
-def beam_directions(elevations: ArrayLike, azimuths: Floats, rpy: Angles) -> Floats:
+def beam_directions(elevations: ArrayLike, azimuths: Floats, rpy: Sequence[float]) -> Floats:
     """Return directions (C * A, 3), ground frame, of elevations (C,) and azimuths (C, A) [rad]."""
     e = np.asarray(elevations)[:, None]
     local = np.stack(
@@ -37,7 +35,9 @@ def beam_directions(elevations: ArrayLike, azimuths: Floats, rpy: Angles) -> Flo
     return local.reshape(-1, 3) @ rotation(*rpy).T
 
 
-def first_hits(origin: Floats, directions: Floats, triangles: Floats) -> tuple[Floats, Ints]:
+def first_hits(
+    origin: Floats, directions: Floats, triangles: Floats
+) -> tuple[Floats, NDArray[np.int_]]:
     """Return distances (B,) to the nearest triangle, inf for a miss, and its index (B,), -1."""
     best = np.full(len(directions), np.inf)
     which = np.full(len(directions), -1)
@@ -84,7 +84,7 @@ def pixel_area(
     camera_size: tuple[int, int],
     hfov: float,
     origin: ArrayLike,
-    rpy: Angles,
+    rpy: Sequence[float],
     center: Floats,
     side: float,
 ) -> float:
@@ -101,7 +101,7 @@ def pixel_area(
     return outline_area(points, width, height)
 
 
-def outline_area(points: Sequence[Point], width: float, height: float) -> float:
+def outline_area(points: Sequence[Pixel], width: float, height: float) -> float:
     """Return the area of the convex hull of points, clipped to the picture [px]."""
     return _area(_clip(_hull(points), width, height))
 
@@ -115,11 +115,11 @@ def hidden(origin: Floats, center: Floats, side: float, triangles: Floats) -> bo
     return bool(first_hits(origin, ray[None] / distance, triangles)[0][0] < distance)
 
 
-def _hull(points: Sequence[Point]) -> list[Point]:
+def _hull(points: Sequence[Pixel]) -> list[Pixel]:
     points = sorted(set(points))
     chains = []
     for ordered in (points, points[::-1]):
-        chain: list[Point] = []
+        chain: list[Pixel] = []
         for p in ordered:
             while len(chain) > 1 and _turn(chain[-2], chain[-1], p) <= 0:
                 chain.pop()
@@ -128,12 +128,12 @@ def _hull(points: Sequence[Point]) -> list[Point]:
     return chains[0] + chains[1]
 
 
-def _turn(a: Point, b: Point, c: Point) -> float:
+def _turn(a: Pixel, b: Pixel, c: Pixel) -> float:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
-def _clip(polygon: list[Point], width: float, height: float) -> list[Point]:
-    sides: list[tuple[Callable[[Point], float], float, int]] = [
+def _clip(polygon: list[Pixel], width: float, height: float) -> list[Pixel]:
+    sides: list[tuple[Callable[[Pixel], float], float, int]] = [
         (lambda p: p[0], 0.0, 1),
         (lambda p: p[0], width, -1),
         (lambda p: p[1], 0.0, 1),
@@ -154,7 +154,7 @@ def _clip(polygon: list[Point], width: float, height: float) -> list[Point]:
     return polygon
 
 
-def _area(polygon: list[Point]) -> float:
+def _area(polygon: list[Pixel]) -> float:
     total = sum(
         p[0] * q[1] - q[0] * p[1] for p, q in zip(polygon, polygon[1:] + polygon[:1], strict=True)
     )

@@ -16,7 +16,7 @@ from pe_core.version import __version__
 from ..known_defects import Defect, defects_of
 from ..versions import numpy_version
 from .golden import golden_cases
-from .golden_case import BASES, GoldenCase, Values
+from .golden_case import BASES, CaseValues, GoldenCase
 
 SHOWN_VALUES = 12
 """Longest list of values in a report; of a longer one there is the digest and the first that is
@@ -31,8 +31,8 @@ class CaseResult:
 
     case: GoldenCase
     passed: bool
-    found: Values
-    right: Values
+    found: CaseValues
+    right: CaseValues
     seconds: float
     error: str = ""
 
@@ -141,18 +141,18 @@ def verify() -> Verification:
 
 def _result_of(case: GoldenCase) -> CaseResult:
     begun = time.monotonic()
-    right: Values = ()
+    right: CaseValues = ()
     try:
         right = case.right_values
         found = case.found()
     except Exception as error:  # a case that cannot be computed has failed, whatever the reason
         text = f"{type(error).__name__}: {error}"
-        return CaseResult(case, False, (), right, time.monotonic() - begun, text)
+        return CaseResult(case, False, (), right, seconds=time.monotonic() - begun, error=text)
     passed = case.is_right(found, right)
-    return CaseResult(case, passed, found, right, time.monotonic() - begun)
+    return CaseResult(case, passed, found, right, seconds=time.monotonic() - begun)
 
 
-def digest_of(values: Values) -> str:
+def digest_of(values: CaseValues) -> str:
     """Return a digest of values, numbers to the last bit."""
     text = values if isinstance(values, str) else repr([float(value) for value in values])
     return hashlib.sha256(text.encode()).hexdigest()[:16]
@@ -179,7 +179,7 @@ def machine() -> dict[str, Any]:
     }
 
 
-def _shown(values: Values) -> Any:
+def _shown(values: CaseValues) -> Any:
     if isinstance(values, str):
         return values
     rounded = [float(f"{value:.{DIGITS}g}") for value in values[:SHOWN_VALUES]]

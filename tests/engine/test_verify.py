@@ -118,12 +118,12 @@ def test_a_wrong_case_has_its_line_and_status_3(monkeypatch, capsys, tmp_path):
         raise ValueError("no kernel")
 
     cases = (
-        GoldenCase("right", "a", BY_HAND, "", [1.0, 2.0], lambda: [1.0, 2.0]),
-        GoldenCase("wrong", "a", BY_HAND, "", [1.0, 2.0], lambda: [1.0, 2.5]),
-        GoldenCase("not a number", "a", BY_HAND, "", [1.0], lambda: [float("nan")]),
-        GoldenCase("fewer", "b", BY_HAND, "", [1.0, 2.0], lambda: [1.0]),
-        GoldenCase("unable", "b", BY_HAND, "", [1.0], unable),
-        GoldenCase("text", "b", BY_HAND, "", "abc", lambda: "abd"),
+        GoldenCase("right", "a", BY_HAND, "", right=[1.0, 2.0], found=lambda: [1.0, 2.0]),
+        GoldenCase("wrong", "a", BY_HAND, "", right=[1.0, 2.0], found=lambda: [1.0, 2.5]),
+        GoldenCase("not a number", "a", BY_HAND, "", right=[1.0], found=lambda: [float("nan")]),
+        GoldenCase("fewer", "b", BY_HAND, "", right=[1.0, 2.0], found=lambda: [1.0]),
+        GoldenCase("unable", "b", BY_HAND, "", right=[1.0], found=unable),
+        GoldenCase("text", "b", BY_HAND, "", right="abc", found=lambda: "abd"),
     )
     monkeypatch.setattr(verification, "golden_cases", lambda: cases)
     assert main(["verify", "--json", "-o", str(tmp_path)]) == 3

@@ -1,6 +1,6 @@
 """The command ``pe``, and the parts that all command lines of the project share."""
 
-from .answers import FilesAnswer
+from .answers import FilesAnswer, VerifyAnswer
 from .check_verb import check, check_study
 from .command import Parser, as_typed, run
 from .explain_verbs import refuse_different, scored

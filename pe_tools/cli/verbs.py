@@ -27,6 +27,7 @@ from .answers import (
     RigsAnswer,
     SensorAnswer,
     SweepAnswer,
+    VerifyAnswer,
     WhereAnswer,
 )
 from .catalog_verb import show_sensors
@@ -312,7 +313,8 @@ VERBS = (
         MORE,
         "hold the engine as it is installed to its golden cases; 3: some fail",
         NONE,
-        options="folder json",
+        options="folder",
         function=_verify,
+        answer=VerifyAnswer,
     ),
 )

@@ -14,9 +14,8 @@ import pe_core
 from pe_core.version import __version__
 
 from ..known_defects import Defect, defects_of
-from ..versions import numpy_version
 from .golden import golden_cases
-from .golden_case import BASES, CaseValues, GoldenCase
+from .golden_case import CaseValues, GoldenCase
 
 SHOWN_VALUES = 12
 """Longest list of values in a report; of a longer one there is the digest and the first that is
@@ -99,25 +98,10 @@ class Verification:
         """Defects that are known of this version."""
         return defects_of(__version__)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return what verify.json holds."""
-        found = [each.found for each in self.results]
-        return {
-            "kind": "verification",
-            "passed": len(self.results) - len(self.failed),
-            "failed": len(self.failed),
-            "versions": {
-                "perception-entropy": __version__,
-                "numpy": numpy_version(),
-                "python": platform.python_version(),
-            },
-            "machine": machine(),
-            "digests": {"code": code_digest(), "results": digest_of(repr(found))},
-            "bases": BASES,
-            "cases": [each.to_dict() for each in self.results],
-            "known_defects": [each.to_dict() for each in self.defects],
-            "seconds": round(self.seconds, 2),
-        }
+    @property
+    def results_digest(self) -> str:
+        """A digest of all values to the last bit."""
+        return digest_of(repr([each.found for each in self.results]))
 
 
 def verify_in_short() -> tuple[str, ...]:

@@ -5,6 +5,7 @@ import json
 from collections import Counter
 from pathlib import Path
 
+import jsonschema
 import numpy as np
 import pytest
 
@@ -24,6 +25,7 @@ from pe_tools.verify.golden import golden_cases
 from pe_tools.verify.golden_case import BASES, BY_HAND, GoldenCase
 
 OURS = "0.0.1"
+DOCS = Path(known_defects.__file__).parent.parent / "docs"
 MADE_UP = """
 [[defect]]
 id = "made-up"
@@ -89,6 +91,8 @@ def report(tmp_path_factory):
 def test_all_cases_are_right_and_told(report):
     status, folder = report
     data = json.loads((folder / "verify.json").read_text())
+    schema = json.loads((DOCS / "schemas" / "answers-1.schema.json").read_text())
+    jsonschema.validate({"verify": data}, schema)
     assert (status, data["failed"], data["passed"]) == (0, 0, len(golden_cases()))
     assert data["versions"]["perception-entropy"] and data["machine"]["system"]
     assert len(data["digests"]["code"]) == len(data["digests"]["results"]) == 16
@@ -169,8 +173,7 @@ def test_another_programs_result_says_nothing(text, tmp_path, capsys):
 
 
 def test_each_defect_leads_to_a_page():
-    docs = Path(known_defects.__file__).parent.parent / "docs"
-    assert all((docs / each.link).is_file() for each in known_defects.known_defects())
+    assert all((DOCS / each.link).is_file() for each in known_defects.known_defects())
 
 
 def test_versions_are_compared_by_their_numbers():

@@ -197,7 +197,7 @@ class Reply:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VerifyAnswer:
     """The engine held to its golden cases, as in verify.json. `digests`: of all files of the engine
-    (`code`), and of all values to the last bit (`results`); `bases`: where right values are from."""
+    (`code`), of all values to the last bit (`results`); `bases`: where right values are from."""
 
     passed: int
     failed: int

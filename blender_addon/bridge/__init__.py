@@ -83,7 +83,8 @@ from .sensor_records import (
 from .study_table import (
     REFERENCE,
     SCORED,
-    Path,
+    Keys,
+    TableData,
     as_typed,
     curve_table,
     document_of,

@@ -21,7 +21,7 @@ from .requirements import write_requirements
 from .rig import place_at, view_layer_of
 from .scene_study import study_from_scene, vehicle_of_scene
 from .sensor_records import SensorRecord, record_of_sensor
-from .study_table import Table, value_at, write_table
+from .study_table import TableData, value_at, write_table
 from .time import write_stories
 from .vehicle import make_body, paint_area, same_body
 
@@ -78,7 +78,7 @@ def load_into(scene: Scene, study: pe.Study) -> list[str]:
     return lines + differences(study, study_from_scene(scene, layer.depsgraph), renamed)
 
 
-def scene_table(study: pe.Study) -> Table:
+def scene_table(study: pe.Study) -> TableData:
     """Return the table of a study's file without what Blender holds: sensors, mesh, prior, and what
     is a list in the panel."""
     table = studies.study_to_dict(study)
@@ -185,7 +185,7 @@ def _show_curves(settings: PropertyGroup) -> None:
             settings.curves.add().name = kind
 
 
-def _write_options(settings: PropertyGroup, options: Sequence[Table]) -> None:
+def _write_options(settings: PropertyGroup, options: Sequence[TableData]) -> None:
     """Write the models that a sensor is offered."""
     settings.options.clear()
     for table in options:

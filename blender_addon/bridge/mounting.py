@@ -15,7 +15,7 @@ from ..choices import BY_PARTS, ON_SLOTS, ON_SURFACE, LimitBox
 from ..engine import pe, search, studies
 from .rig import pose_of
 from .sensor_records import SensorRecord
-from .study_table import Table, read_row, value_at
+from .study_table import TableData, read_row, value_at
 from .transform_constraints import free_axes
 from .vehicle import drawn_meshes, placed_triangles, triangles_of
 
@@ -238,7 +238,7 @@ def bounds_box(
     """Return the box of a sensor's own bounds; None for one without any. On a fixed axis the box
     has no extent. On a free axis without bounds it has the default bounds; for a sensor on a
     surface it spans the faces `around` (F, 3, 3) and the sensor."""
-    limits: Table = value_at(obj.perception_entropy.table, ("bounds",), {})
+    limits: TableData = value_at(obj.perception_entropy.table, ("bounds",), {})
     if not set("xyz") & set(limits):
         return None
     usual = search.default_bounds(sensor, vehicle)

@@ -16,7 +16,7 @@ from .prior import prior_from_scene
 from .requirements import requirements_of
 from .rig import sensor_objects, view_layer_of
 from .sensor_records import SensorRecord, record_of_object, record_of_sensor, records_of, rig_of
-from .study_table import Table, document_of
+from .study_table import TableData, document_of
 from .time import stories_of
 from .transform_constraints import unlocked_axes
 from .vehicle import vehicle_from_collection
@@ -185,7 +185,7 @@ def _choice(record: SensorRecord) -> pe.Choice:
         raise error.within("scene", f"sensor {record.name!r}") from None
 
 
-def _option(table: Table) -> pe.Option:
+def _option(table: TableData) -> pe.Option:
     if not table.get("price"):
         field = f"price of {table.get('model', '')}"
         raise pe.InputError("choice", field, "a price above 0", 0.0)

@@ -18,7 +18,7 @@ from bpy.types import Depsgraph, Object, PropertyGroup, Scene, ViewLayer
 from ..engine import catalog, kinds, pe, search, studies
 from ..sensor_kinds import DEFAULT_MODEL
 from .rig import color_of, last_written_pose, pose_of, pose_of_matrix, sensor_objects, view_layer_of
-from .study_table import LARGEST_INT, Table, parsed
+from .study_table import LARGEST_INT, TableData, parsed
 from .transform_constraints import locked_axes
 
 OF_OBJECT = ("locked", "options", "may_be_left_out", "stays", "color", "order")
@@ -62,16 +62,16 @@ class SensorRecord:
     may_be_left_out: bool = False
     order: Annotated[int, studies.Part(rule=studies.Whole(-LARGEST_INT))] = 0
     locked: tuple[str, ...] = ()
-    options: Annotated[tuple[Table, ...], studies.Part(stored=False)] = ()
+    options: Annotated[tuple[TableData, ...], studies.Part(stored=False)] = ()
     intrinsics: Annotated[Any, studies.Part(stored=False)] = None
 
     @property
-    def table(self) -> Table:
+    def table(self) -> TableData:
         """The record as plain data."""
-        table: Table = studies.write(self)
+        table: TableData = studies.write(self)
         return table
 
-    def keys(self, among: Sequence[str]) -> Table:
+    def keys(self, among: Sequence[str]) -> TableData:
         """Return the values of some keys, those that have their default left out."""
         return {key: value for key, value in self.table.items() if key in among}
 
@@ -123,7 +123,7 @@ def _record_of_text(text: str) -> SensorRecord:
     return studies.read(SensorRecord, studies.Node(usual | table, "sensor"))
 
 
-def object_table(record: SensorRecord) -> Table:
+def object_table(record: SensorRecord) -> TableData:
     """Return the table that the record's object holds."""
     return {key: value for key, value in record.table.items() if key not in OF_BLENDER}
 

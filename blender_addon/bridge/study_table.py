@@ -18,13 +18,13 @@ from ..choices import EXPECTED_AP, OBJECTS
 from ..engine import kinds, pe, search, studies
 
 T = TypeVar("T")
-Table = dict[str, Any]
-Path = tuple[str, ...]
+TableData = dict[str, Any]
+Keys = tuple[str, ...]
 LARGEST_INT = 2**31 - 1  # A property holds no larger whole number
 KEPT_AT_FIRST = ("blind_ground", "blind_sector")
 """Figures that a search in a new scene does not make worse."""
-TOLERANCE: Path = ("optimize", "tolerance")
-REFERENCE: Path = ("reference",)
+TOLERANCE: Keys = ("optimize", "tolerance")
+REFERENCE: Keys = ("reference",)
 SCORED = ("space", "metric", "ap", "fusion")
 """Parts of a document that a score needs besides the prior."""
 BEGINS = {
@@ -44,7 +44,7 @@ def as_typed(value: float) -> float:
 
 
 @lru_cache(maxsize=512)
-def parsed(table: str) -> Table | None:
+def parsed(table: str) -> TableData | None:
     """Return the table of a text, not to be changed; None where the text is no table."""
     try:
         found = json.loads(table or "{}")
@@ -53,7 +53,7 @@ def parsed(table: str) -> Table | None:
     return found if isinstance(found, dict) else None
 
 
-def value_at(table: str, path: Path, default: Any = None) -> Any:
+def value_at(table: str, path: Keys, default: Any = None) -> Any:
     """Return the value at a path of keys of a text's table; the default where there is none."""
     value: Any = parsed(table)
     for key in path:
@@ -61,7 +61,7 @@ def value_at(table: str, path: Path, default: Any = None) -> Any:
     return default if value is None else value
 
 
-def put(group: PropertyGroup, path: Path, value: Any) -> None:
+def put(group: PropertyGroup, path: Keys, value: Any) -> None:
     """Write a value into a group's table; None, or an empty table, removes the key."""
     table = deepcopy(parsed(group.table)) or {}
     begin = None if value is None else _begin_of(path)
@@ -71,7 +71,7 @@ def put(group: PropertyGroup, path: Path, value: Any) -> None:
     write_table(group, table)
 
 
-def _put(table: Table, path: Path, value: Any) -> None:
+def _put(table: TableData, path: Keys, value: Any) -> None:
     key, *below = path
     if below:
         inner = table[key] if isinstance(table.get(key), dict) else {}
@@ -83,14 +83,14 @@ def _put(table: Table, path: Path, value: Any) -> None:
         table[key] = value
 
 
-def _begin_of(path: Path) -> Table | None:
+def _begin_of(path: Keys) -> TableData | None:
     """Return with what the table of a key begins that has other keys that are required."""
     if path[:-1] == REFERENCE:
         return dict(BEGINS[REFERENCE])
     return curve_table(path[1]) if path[0] == "ap" and len(path) == 3 else None
 
 
-def curve_table(kind: str) -> Table | None:
+def curve_table(kind: str) -> TableData | None:
     """Return the table of the AP curve of a kind of sensor; None where there is no such kind."""
     known = kinds.KINDS.get(kind)
     return None if known is None else studies.write(known.curve)
@@ -165,7 +165,7 @@ def value_of_property(setting: studies.Setting, value: Any) -> Any:
 def new_table() -> str:
     """Return the text of a new scene: what its panel shows and a study file has by default in
     another way."""
-    table: Table = {"limits": dict.fromkeys(KEPT_AT_FIRST, True)}
+    table: TableData = {"limits": dict.fromkeys(KEPT_AT_FIRST, True)}
     for key, setting, *_ in studies.setting_keys(of_scene=True):
         path = tuple(key.split("."))
         own = None if setting.panel is None else setting.panel.default
@@ -174,7 +174,7 @@ def new_table() -> str:
     return json.dumps(table)
 
 
-def study_table(table: str, *, is_choice: bool = False) -> Table:
+def study_table(table: str, *, is_choice: bool = False) -> TableData:
     """Return the table of a scene's text as its study file has it, without what another setting
     switches off. `is_choice`: whether models are chosen, which uses a schedule. `InputError` where
     the text is none of a table."""

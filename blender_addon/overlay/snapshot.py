@@ -126,7 +126,9 @@ class SnapshotReader:
             key = bridge.prior_key(scene), space, model, targets
             known = self._inputs.get(scene.name)
             if known is None or known.key != key:
-                known = ScoringInputs(bridge.prior_from_scene(scene), space, model, key, targets)
+                known = ScoringInputs(
+                    bridge.prior_from_scene(scene), space, model, key=key, targets=targets
+                )
         except pe.InputError as error:
             known = ScoringInputs(None, space, None, str(error))
         self._inputs[scene.name] = known

@@ -19,7 +19,7 @@ from ..engine import studies
 from .callbacks import changed, redraw
 from .fields import view
 
-PathOf = Callable[[PropertyGroup], tuple[PropertyGroup, bridge.Path]]
+PathOf = Callable[[PropertyGroup], tuple[PropertyGroup, bridge.Keys]]
 
 LARGEST_INT = 2**31 - 1  # The largest whole number that a property can hold
 DRAWN = "reference."

@@ -18,6 +18,7 @@ from .fields import menu, pointer, rows, switch, text, view, whole
 
 DEFAULT_REGION = "front"
 MAX_NAME_LENGTH = 60
+NO_FRAME = -1
 
 OBJECT_CLASSES = tuple(
     (name, name.capitalize(), f"Weigh {name}s") for name in pe.Prior.road().class_names
@@ -57,7 +58,7 @@ class PE_FocusSettings(FocusFields, PropertyGroup):
 def _curve_path(key: str) -> PathOf:
     """Return what finds a number of the curve of a row's kind in the scene's table."""
 
-    def path_of(row: PropertyGroup) -> tuple[PropertyGroup, bridge.Path]:
+    def path_of(row: PropertyGroup) -> tuple[PropertyGroup, bridge.Keys]:
         return row.id_data.perception_entropy, ("ap", row.name, key)
 
     return path_of
@@ -189,7 +190,6 @@ class Switched:
 
 StateFields: Any = table_group(geometry.State)
 WeatherFields: Any = table_group(kinds.Weather)
-NO_FRAME = -1
 
 
 class PE_State(StateFields, Switched, Tabled, PropertyGroup):

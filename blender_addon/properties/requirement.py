@@ -17,8 +17,7 @@ from .declared import mixin, property_of
 from .fields import menu, text, view
 from .list_rows import Switched, Tabled
 
-TableData = dict[str, Any]
-Change = Callable[[TableData, Any], None]
+Change = Callable[[bridge.TableData, Any], None]
 BODIES_ASKED = "bodies"
 GROUND_ASKED = "ground"
 ASKS = (
@@ -32,7 +31,7 @@ SHAPES = (
     ("path", "Path", "A line along which a body moves"),
     ("spots", "Spots", "Single places"),
 )
-USUAL: dict[str, TableData] = {
+USUAL: dict[str, bridge.TableData] = {
     "area": {"x": ["front + 1", "front + 5"], "y": ["right", "left"]},
     "polygon": {"polygon": [["front + 1", "right"], ["front + 5", 0.0], ["front + 1", "left"]]},
     "ring": {"ring": [0.2, 1.0]},
@@ -55,7 +54,7 @@ SECTIONS = {
 
 
 def _view(
-    get: Callable[[TableData], Any], put: Change, items: Sequence[tuple[Any, ...]] = ()
+    get: Callable[[bridge.TableData], Any], put: Change, items: Sequence[tuple[Any, ...]] = ()
 ) -> dict[str, Any]:
     """Return the callbacks of a property: read from a row's full table, and changed in it."""
 
@@ -91,11 +90,11 @@ def _declared_view(section: str, setting: studies.Setting) -> dict[str, Any]:
     name = setting.name
     default = bridge.in_file(setting)
 
-    def get(table: TableData) -> Any:
+    def get(table: bridge.TableData) -> Any:
         value = table.get(section, {}).get(name, default)
         return bridge.property_value(setting, value)
 
-    def put(table: TableData, value: Any) -> None:
+    def put(table: bridge.TableData, value: Any) -> None:
         found = bridge.value_of_property(setting, value)
         own = table.setdefault(section, {})
         own.pop(name, None)
@@ -107,13 +106,13 @@ def _declared_view(section: str, setting: studies.Setting) -> dict[str, Any]:
     return own | {"default": None, "update": None}  # its default is in the table
 
 
-def asked_for(table: TableData) -> str:
+def asked_for(table: bridge.TableData) -> str:
     """Return whether test bodies or blind ground are asked for."""
     criterion = table.get("criterion", {})
     return GROUND_ASKED if {"blind_m2", "blind_out"} & criterion.keys() else BODIES_ASKED
 
 
-def ask_for(table: TableData, what: str) -> None:
+def ask_for(table: bridge.TableData, what: str) -> None:
     """Ask for test bodies, or for blind ground; keys of the other go."""
     if what == asked_for(table):
         return
@@ -128,34 +127,34 @@ def ask_for(table: TableData, what: str) -> None:
         table["body"] = [USUAL_BODY]
 
 
-def shape_of(table: TableData) -> str:
+def shape_of(table: bridge.TableData) -> str:
     """Return the shape of the zone."""
     return next((shape for shape in USUAL if table.get("zone", {}).get(shape)), "area")
 
 
-def reshape(table: TableData, shape: str) -> None:
+def reshape(table: bridge.TableData, shape: str) -> None:
     """Give the zone another shape, as it usually begins."""
     if shape != shape_of(table):
         _set_shape(table, deepcopy(USUAL[shape]))
 
 
-def _set_shape(table: TableData, keys: TableData) -> None:
+def _set_shape(table: bridge.TableData, keys: bridge.TableData) -> None:
     zone = table.setdefault("zone", {})
     for key in SHAPE_KEYS:
         zone.pop(key, None)
     zone |= keys
 
 
-def _zone_line(table: TableData) -> str:
+def _zone_line(table: bridge.TableData) -> str:
     zone = table.get("zone", {})
     return bridge.line_of({key: zone[key] for key in SHAPE_KEYS if zone.get(key)})
 
 
-def _set_zone(table: TableData, line: str) -> None:
+def _set_zone(table: bridge.TableData, line: str) -> None:
     _set_shape(table, bridge.read_line(line, "x"))
 
 
-def _bodies_line(table: TableData) -> str:
+def _bodies_line(table: bridge.TableData) -> str:
     value = table.get("body", [])
     bodies = value if isinstance(value, list) else [value]
     tables = [each for each in bodies if not isinstance(each, str)]
@@ -168,7 +167,7 @@ def _bodies_line(table: TableData) -> str:
     )
 
 
-def _set_bodies(table: TableData, line: str) -> None:
+def _set_bodies(table: bridge.TableData, line: str) -> None:
     """Set names of bodies, the keys of an own body, or several of both."""
     if "=" not in line:
         table["body"] = [each.strip() for each in line.split(",") if each.strip()]
@@ -180,11 +179,11 @@ def _set_bodies(table: TableData, line: str) -> None:
         raise pe.InputError("scene", "bodies", "names, or keys of a body", str(error)) from None
 
 
-def _headings_line(table: TableData) -> str:
+def _headings_line(table: bridge.TableData) -> str:
     return ", ".join(f"{angle:g}" for angle in table.get("headings", ()))
 
 
-def _set_headings(table: TableData, line: str) -> None:
+def _set_headings(table: bridge.TableData, line: str) -> None:
     """Set the headings [deg]; an empty line stands for those of the bodies."""
     table.pop("headings", None)
     if line.strip():

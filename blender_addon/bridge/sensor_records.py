@@ -212,9 +212,8 @@ def rig_from_objects(objects: Sequence[Object], depsgraph: Depsgraph) -> pe.Rig:
 def sensor_from_object(obj: Object, depsgraph: Depsgraph) -> pe.Sensor:
     """Return one object's model, placement, fusion group and AP curve as a sensor. `InputError`
     when it is no possible sensor; the line names the object."""
-    sensor = sensor_of(_placed_record(obj, depsgraph), "scene")
     returns = depsgraph.scene.perception_entropy.returns
-    return replace(sensor, model=kinds.returning(sensor.model, returns))
+    return sensor_of(_placed_record(obj, depsgraph), "scene", returns)
 
 
 def possible_sensors(objects: Sequence[Object], depsgraph: Depsgraph) -> list[pe.Sensor]:
@@ -247,14 +246,14 @@ def rig_of(
         raise error.at(source) from None
 
 
-def sensor_of(record: SensorRecord, source: str = "variant") -> pe.Sensor:
-    """Return a record as the engine's sensor. `InputError` when the catalogue does not have its
-    model, or the name or the fusion group is impossible."""
+def sensor_of(record: SensorRecord, source: str = "variant", returns: str = "all") -> pe.Sensor:
+    """Return a record as the engine's sensor, with these returns. `InputError` when the catalogue
+    does not have its model, or the name or the fusion group is impossible."""
     try:
         model = record.intrinsics or catalog.load(record.model)
         return pe.Sensor(
             record.name,
-            model,
+            kinds.returning(model, returns),
             record.pose,
             record.fusion or None,
             curve=record.curve,

@@ -26,7 +26,7 @@ ENGINE = ROOT / "pe_core"
 TOOLS = ROOT / "pe_tools"
 MANIFEST = ADDON / "blender_manifest.toml"
 PACKED = (ENGINE.name, TOOLS.name)
-BUNDLED = ("jinja2", "markupsafe", "ruamel.yaml", "trimesh")
+BUNDLED = ("ruamel.yaml", "trimesh")
 """Libraries of the engine and the tools that Blender does not have, as wheels in the extension."""
 OPTIONAL = "_speedups"
 """Start of the names of compiled modules that are left out: the same is there in Python."""

@@ -57,6 +57,7 @@ ROOMS = {
     },
     "pe_tools": {
         "versions": set(),
+        "templating": set(),
         "formats": set(),
         "exchange": {"formats"},
         "graphics": set(),
@@ -69,6 +70,7 @@ ROOMS = {
         "cli": {
             "versions",
             "wording",
+            "templating",
             "formats",
             "graphics",
             "exchange",
@@ -77,7 +79,7 @@ ROOMS = {
             "outputs",
             "sweep",
         },
-        "page": {"wording", "formats", "graphics", "advice", "jobs", "cli"},
+        "page": {"wording", "templating", "formats", "graphics", "advice", "jobs", "cli"},
         "plot": {"graphics"},
         "public": {"formats", "exchange", "advice", "jobs", "plot"},
         "__main__": {"versions", "cli"},
@@ -95,8 +97,6 @@ LIBRARIES = {
     "trimesh": {"pe_tools/formats"},
     "pyarrow": {"pe_tools/exchange"},
     "matplotlib": {"pe_tools/plot.py"},
-    "jinja2": {"pe_tools/page", "pe_tools/cli"},
-    "markupsafe": {"pe_tools/page"},
 }
 """Libraries besides NumPy, and the rooms in which they are imported."""
 FACES_ONLY = ("benchmarks", "blend_assets", "tools")

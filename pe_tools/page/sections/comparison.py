@@ -5,14 +5,13 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
-from markupsafe import Markup
-
 import pe_core as pe
 from pe_core import catalog
 from pe_core.base.values import error_text
 from pe_core.search import FIGURES
 
 from ... import advice
+from ...templating import Markup
 from ..markup import escaped, macros
 from ..pictures.ground_plan import difference_map
 from ..pictures.vehicle_picture import labelled_picture

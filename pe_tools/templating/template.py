@@ -14,6 +14,8 @@ from .markup import Markup, escape
 
 TAG = re.compile(r"\{(?:%(-?)(.*?)(-?)%|\{(-?)(.*?)(-?)\}|#(-?)(.*?)(-?)#)\}", re.DOTALL)
 JSON_IN_HTML = {ord(c): f"\\u{ord(c):04x}" for c in "<>&'"}
+ALWAYS = Scope({"range": range})
+"""What every template may name."""
 Write = Callable[[Scope, list[str]], None]
 Filter = Callable[..., Any]
 
@@ -84,13 +86,13 @@ class Templates:
     def render(self, name: str, **values: Any) -> str:
         """Return a template filled with values; `TemplateError` for one that is wrong."""
         out: list[str] = []
-        self._template(name)(Scope(values), out)
+        self._template(name)(Scope(values, ALWAYS), out)
         return self._text(out)
 
     def module(self, name: str) -> Mapping[str, Any]:
         """Return what a template defines: its macros, as functions."""
         if name not in self._modules:
-            scope = Scope()
+            scope = Scope({}, ALWAYS)
             self._template(name)(scope, [])
             self._modules[name] = scope
         return self._modules[name].values

@@ -25,7 +25,7 @@ SAME = [
     "plain { text } with % and # signs\n",
     "{{ text }} {{ html }} {{ html ~ text }} {{ text ~ number }} {{ nothing }}",
     "{{ 1 + 2 * 3 - 4 }} {{ 7 // 2 }} {{ 7 % 4 }} {{ 1.5e1 / 3 }} {{ -number }} {{ 5 - -2 }}",
-    "{{ 1 ~ 2 * 3 ~ 'x' }}",
+    "{{ 1 ~ 2 * 3 ~ 'x' }}{% for k in range(3) %}{{ k }}{% endfor %}",
     "{{ 1 < 2 <= 2 != 3 }} {{ 2 in [1, 2] }} {{ 2 not in (1, 3) }} {{ not 0 and 1 or 2 }}",
     "{{ 'yes' if rows else 'no' }} {{ 'a' if 0 else 'b' if 0 else 'c' }}",
     "{{ table.x }} {{ table['x'] }} {{ table.items()|list|length }} {{ pose.position[1:] }}",

@@ -23,9 +23,9 @@ from .answers import (
     FilesAnswer,
     KeysAnswer,
     PresetsAnswer,
-    Reply,
     RigsAnswer,
     SensorAnswer,
+    ServeReply,
     SweepAnswer,
     WhereAnswer,
 )
@@ -300,6 +300,6 @@ VERBS = (
         NONE,
         options="",
         function=_serve,
-        answer=Reply,
+        answer=ServeReply,
     ),
 )

@@ -71,7 +71,7 @@ class Scope:
 
 Expression = Callable[[Scope], Any]
 Arguments = Callable[[Scope], tuple[list[Any], dict[str, Any]]]
-Filters = Mapping[str, Callable[..., Any]]
+ValueFilter = Callable[..., Any]
 
 
 def attribute(value: Any, name: str) -> Any:
@@ -105,7 +105,7 @@ def concatenated(parts: Sequence[Any]) -> str:
 class ExpressionParser:
     """Parses the text of one tag."""
 
-    def __init__(self, text: str, filters: Filters) -> None:
+    def __init__(self, text: str, filters: Mapping[str, ValueFilter]) -> None:
         self._tokens = [*_tokens(text), END]
         self._filters = filters
 

@@ -9,18 +9,25 @@ from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from .expressions import CHECKS, Expression, ExpressionParser, Scope, TemplateError, element
+from .expressions import (
+    CHECKS,
+    Expression,
+    ExpressionParser,
+    Scope,
+    TemplateError,
+    ValueFilter,
+    element,
+)
 from .markup import Markup, escape
 
 TAG = re.compile(r"\{(?:%(-?)(.*?)(-?)%|\{(-?)(.*?)(-?)\}|#(-?)(.*?)(-?)#)\}", re.DOTALL)
 JSON_IN_HTML = {ord(c): f"\\u{ord(c):04x}" for c in "<>&'"}
 ALWAYS = Scope({"range": range})
 """What every template may name."""
-Write = Callable[[Scope, list[str]], None]
-Filter = Callable[..., Any]
+BlockWriter = Callable[[Scope, list[str]], None]
 
 
-class Piece(NamedTuple):
+class TemplatePiece(NamedTuple):
     """A part of a template: text, or what stands in a tag, with its sort: "text", "value", or the
     tag's first word."""
 
@@ -71,7 +78,7 @@ class Templates:
     def __init__(
         self,
         folder: Path,
-        filters: Mapping[str, Filter] | None = None,
+        filters: Mapping[str, ValueFilter] | None = None,
         finalize: Callable[[object], object] = lambda value: value,
         *,
         is_html: bool = True,
@@ -80,7 +87,7 @@ class Templates:
         self._finalize = finalize
         self._is_html = is_html
         self._filters = {**built_in(self._named), **(filters or {})}
-        self._known: dict[str, Write] = {}
+        self._known: dict[str, BlockWriter] = {}
         self._modules: dict[str, Scope] = {}
 
     def render(self, name: str, **values: Any) -> str:
@@ -97,10 +104,10 @@ class Templates:
             self._modules[name] = scope
         return self._modules[name].values
 
-    def _named(self, name: str) -> Filter:
+    def _named(self, name: str) -> ValueFilter:
         return self._filters[name]
 
-    def _template(self, name: str) -> Write:
+    def _template(self, name: str) -> BlockWriter:
         if name not in self._known:
             text = (self._folder / name).read_text("utf-8").removesuffix("\n")
             pieces = list(_pieces(text))
@@ -117,9 +124,9 @@ class Templates:
     def _parser(self, text: str) -> ExpressionParser:
         return ExpressionParser(text, self._filters)
 
-    def _block(self, pieces: list[Piece], ends: Sequence[str]) -> Write:
+    def _block(self, pieces: list[TemplatePiece], ends: Sequence[str]) -> BlockWriter:
         """Take pieces up to one of the tags `ends`, which stays."""
-        parts: list[Write] = []
+        parts: list[BlockWriter] = []
         while pieces and pieces[0].sort not in ends:
             piece = pieces.pop(0)
             if piece.sort == "text":
@@ -143,8 +150,8 @@ class Templates:
         found = self._finalize(value(scope))
         out.append(str(escape(found) if self._is_html else found))
 
-    def _statement(self, piece: Piece, pieces: list[Piece]) -> Write:
-        kinds: dict[str, Callable[[ExpressionParser, list[Piece]], Write]] = {
+    def _statement(self, piece: TemplatePiece, pieces: list[TemplatePiece]) -> BlockWriter:
+        kinds: dict[str, Callable[[ExpressionParser, list[TemplatePiece]], BlockWriter]] = {
             "if": self._if,
             "for": self._for,
             "set": self._set,
@@ -157,18 +164,18 @@ class Templates:
             raise TemplateError(f"unexpected {piece.sort}")
         return kinds[piece.sort](self._parser(piece.text), pieces)
 
-    def _body(self, pieces: list[Piece], end: str) -> Write:
+    def _body(self, pieces: list[TemplatePiece], end: str) -> BlockWriter:
         """Take a block with its end."""
         block = self._block(pieces, (end,))
         pieces.pop(0)
         return block
 
-    def _if(self, parser: ExpressionParser, pieces: list[Piece]) -> Write:
+    def _if(self, parser: ExpressionParser, pieces: list[TemplatePiece]) -> BlockWriter:
         condition = parser.expression()
         parser.end()
         block = self._block(pieces, ("elif", "else", "endif"))
         last = pieces.pop(0)
-        other: Write = _write_nothing
+        other: BlockWriter = _write_nothing
         if last.sort == "elif":
             other = self._if(self._parser(last.text), pieces)
         elif last.sort == "else":
@@ -179,14 +186,14 @@ class Templates:
 
         return write
 
-    def _for(self, parser: ExpressionParser, pieces: list[Piece]) -> Write:
+    def _for(self, parser: ExpressionParser, pieces: list[TemplatePiece]) -> BlockWriter:
         names = parser.names()
         parser.expect("in")
         items = parser.condition()
         wanted = parser.condition() if parser.skip("if") else None
         parser.end()
         block = self._block(pieces, ("else", "endfor"))
-        other: Write = _write_nothing
+        other: BlockWriter = _write_nothing
         if pieces.pop(0).sort == "else":
             other = self._body(pieces, "endfor")
 
@@ -203,7 +210,7 @@ class Templates:
 
         return write
 
-    def _set(self, parser: ExpressionParser, pieces: list[Piece]) -> Write:
+    def _set(self, parser: ExpressionParser, pieces: list[TemplatePiece]) -> BlockWriter:
         names = parser.names()
         if parser.skip("="):
             value = parser.values()
@@ -221,12 +228,12 @@ class Templates:
 
         return keep
 
-    def _written(self, block: Write, scope: Scope) -> str:
+    def _written(self, block: BlockWriter, scope: Scope) -> str:
         out: list[str] = []
         block(scope, out)
         return self._text(out)
 
-    def _macro(self, parser: ExpressionParser, pieces: list[Piece]) -> Write:
+    def _macro(self, parser: ExpressionParser, pieces: list[TemplatePiece]) -> BlockWriter:
         name = parser.name()
         parser.expect("(")
         defaults: dict[str, Expression | None] = {}
@@ -248,7 +255,7 @@ class Templates:
 
         return define
 
-    def _call(self, parser: ExpressionParser, pieces: list[Piece]) -> Write:
+    def _call(self, parser: ExpressionParser, pieces: list[TemplatePiece]) -> BlockWriter:
         name = parser.name()
         parser.expect("(")
         taken = parser.arguments()
@@ -267,7 +274,7 @@ class Templates:
 
         return write
 
-    def _include(self, parser: ExpressionParser, _: list[Piece]) -> Write:
+    def _include(self, parser: ExpressionParser, _: list[TemplatePiece]) -> BlockWriter:
         name = parser.expression()
 
         def write(scope: Scope, out: list[str]) -> None:
@@ -275,7 +282,7 @@ class Templates:
 
         return write
 
-    def _from(self, parser: ExpressionParser, _: list[Piece]) -> Write:
+    def _from(self, parser: ExpressionParser, _: list[TemplatePiece]) -> BlockWriter:
         template = parser.expression()
         parser.expect("import")
         names = parser.names()
@@ -287,7 +294,7 @@ class Templates:
         return store
 
 
-def built_in(named: Callable[[str], Filter]) -> dict[str, Filter]:
+def built_in(named: Callable[[str], ValueFilter]) -> dict[str, ValueFilter]:
     """Return the filters of Jinja that ours use; `named` finds those that are applied to each of
     several values."""
 
@@ -349,10 +356,10 @@ def _write_text(text: str, _scope: Scope, out: list[str]) -> None:
 
 
 def _write_nothing(_scope: Scope, _out: list[str]) -> None:
-    """Write nothing."""
+    """BlockWriter nothing."""
 
 
-def _pieces(source: str) -> Iterator[Piece]:
+def _pieces(source: str) -> Iterator[TemplatePiece]:
     """Yield the pieces of a template, without the blanks and line breaks that are no text."""
     place = 0
     strips = False
@@ -367,12 +374,12 @@ def _pieces(source: str) -> Iterator[Piece]:
         elif sort != "{" and place <= line and not source[line : tag.start()].strip():
             text = text.removesuffix(source[line : tag.start()])
         if text:
-            yield Piece("text", text)
+            yield TemplatePiece("text", text)
         if sort == "{":
-            yield Piece("value", inside)
+            yield TemplatePiece("value", inside)
         elif sort == "%":
             word, *rest = inside.split(None, 1)
-            yield Piece(word, rest[0] if rest else "")
+            yield TemplatePiece(word, rest[0] if rest else "")
         place = tag.end()
         strips = bool(close_dash)
         if sort != "{" and not strips and source[place : place + 1] == "\n":
@@ -380,4 +387,4 @@ def _pieces(source: str) -> Iterator[Piece]:
     text = source[place:]
     text = text.lstrip() if strips else text
     if text:
-        yield Piece("text", text)
+        yield TemplatePiece("text", text)

@@ -52,6 +52,22 @@ SAME = [
     "  {# a comment #}\n  {% if 1 %}\n  kept\n    {% endif %}\nafter {# c #} x\n",
     "a  {%- if 1 -%}  b  {%- endif -%}  c\n{{ 1 }}\n  {{ 2 }}\n",
 ]
+WRONG = [
+    "{{ missing }}",
+    "{{ rows[0].missing }}",
+    "{{ 1 + }}",
+    "{{ 1 2 }}",
+    "{{ a b }}",
+    "{{ (1 }}",
+    "{{ text|nofilter }}",
+    "{{ 1 if 2 }}",
+    "{% if 1 %}x",
+    "{% for x in [1] %}",
+    "{% endif %}",
+    "{% unknown %}",
+    "{{ ? }}",
+    "{% set 1 = 2 %}",
+]
 
 
 @pytest.fixture
@@ -82,24 +98,6 @@ def test_a_template_is_as_jinja_renders_it(text, is_html, both):
         pytest.skip("of HTML")
     ours, theirs = both(text, is_html)
     assert ours == theirs
-
-
-WRONG = [
-    "{{ missing }}",
-    "{{ rows[0].missing }}",
-    "{{ 1 + }}",
-    "{{ 1 2 }}",
-    "{{ a b }}",
-    "{{ (1 }}",
-    "{{ text|nofilter }}",
-    "{{ 1 if 2 }}",
-    "{% if 1 %}x",
-    "{% for x in [1] %}",
-    "{% endif %}",
-    "{% unknown %}",
-    "{{ ? }}",
-    "{% set 1 = 2 %}",
-]
 
 
 @pytest.mark.parametrize("text", WRONG)

@@ -13,7 +13,7 @@ from ..engine import advice, jobs, pe
 from .fingerprint import Fingerprint
 from .result import FrontRow, ShownFront, score_from_dict, scored_data, store_outcome
 from .scene_diagnostics import check_placeable, scene_advice
-from .sensor_records import SensorRecord, records_of, records_of_scene, rig_of
+from .sensor_records import SCORED, SensorRecord, records_of, records_of_scene, rig_of
 from .time import story_signatures
 from .variants import Variant, find_or_add_variant, mark_active, study_of_variant
 
@@ -23,7 +23,7 @@ MAX_NAME_LENGTH = 60
 
 def same_score(records: Sequence[SensorRecord], others: Sequence[SensorRecord]) -> bool:
     """Whether two lists of sensors have the same score and figures, whatever their free axes."""
-    return [record.scored for record in records] == [record.scored for record in others]
+    return [each.keys(SCORED) for each in records] == [each.keys(SCORED) for each in others]
 
 
 def store_variant_scores(scene: Scene, outcome: jobs.Outcome, surroundings: str) -> None:

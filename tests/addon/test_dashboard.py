@@ -7,8 +7,7 @@ import bpy
 import pytest
 
 from blender_addon import bridge, engine_calls
-from blender_addon.bridge.limits import write_limits
-from blender_addon.engine import pe, search
+from blender_addon.engine import pe, search, studies
 from blender_addon.operators import known_rigs
 from blender_addon.panels import CLASSES, main
 from tests.addon import layouts, scenes
@@ -77,7 +76,7 @@ def test_what_is_wanted_is_met_or_not_and_is_the_study_s(car):
 def test_limits_that_are_written_are_those_that_are_read(car):
     shown_only = search.Limit(-1.5, kept=False)
     limits = search.Limits(blind_sector=0, reach=True, ap_far=0.25, height=2.5, entropy=shown_only)
-    write_limits(car.perception_entropy, limits)
+    bridge.put(car.perception_entropy, ("limits",), studies.write(limits))
     assert scenes.study().limits == limits
 
 

@@ -201,7 +201,11 @@ def draw_limits(layout: UILayout, settings: PropertyGroup, now: advice.KeyFigure
 
 
 def draw_wanted(layout: UILayout, scene: Scene, row: search.Reading) -> None:
-    """Draw the field of what is wanted; without that, a button that begins with what there is."""
+    """Draw the field of what is wanted; without that, a button that begins with what there is; of
+    distances in *Simple* none."""
+    is_ring = bool(search.AP_RINGS.get(row.figure.key))
+    if is_simple(scene) and is_ring and row.wanted is None:
+        return
     draw_limit(layout, scene.perception_entropy, row.figure, row.value)
 
 

@@ -60,10 +60,9 @@ ADD_COMPARED = 4
 MAX_OCCLUDED = 0.10
 MIN_HEIGHT_M = 0.4
 OCCLUSION_RAYS = 4096
-"""Of one more sensor: the share of its rays that the vehicle may occlude, if there is such a place,
-and its smallest height: lower it is hit by stones and splashed. The share is one of so many rays at
-most. Where no place is so good, the least occluded one is taken, and the share is told."""
-WORST = (1.0, 0.0)
+"""Of one more sensor, if there is such a place: the share of its rays that the vehicle may occlude,
+and its smallest height, as lower it is hit by stones and splashed. The share is one of so many rays
+at most. Where no place is so good, that which lacks least is taken, and says what it lacks."""
 SAMPLES = 2048
 """Voxels on which entropies are compared: their difference is that of one sample."""
 SPOT_M = 0.25  # Half the side of the square that a blind spot is
@@ -124,6 +123,9 @@ class Suggestion:
         gains.append(f"entropy {abs(by):.3f} nats {way}" if is_clear else "entropy unchanged")
         if self.occluded > MAX_OCCLUDED:
             gains.append(f"{self.occluded:.0%} of its rays occluded")
+        height = self.rig[self.moved[0]].pose.position[2]
+        if self.added and height < MIN_HEIGHT_M:
+            gains.append(f"only {height:.2f} m above the ground")
         broken = f"; breaks {', '.join(self.breaks)}" if self.breaks else ""
         return f"{done}: {', '.join(gains)}{broken}"
 
@@ -311,18 +313,23 @@ class _Mender:
                 rig = places.with_sensor(place.pose)
                 if place.reason or checker.shortfalls(rig)[0]:
                     continue
-                excess = max(self._occluded(rig.sensors[-1]) - MAX_OCCLUDED, 0.0)
-                if place.pose.position[2] < MIN_HEIGHT_M or excess > best.get(name, WORST)[0]:
+                drawback = self._drawback(rig.sensors[-1])
+                if name in best and drawback > best[name][0]:
                     continue
                 if self._is_met_mounted(requirement, rig):
-                    entropy = 0.0 if excess else self._searching.entropy(rig)
-                    found = excess, entropy, rig
+                    entropy = 0.0 if drawback else self._searching.entropy(rig)
+                    found = drawback, entropy, rig
                     best[name] = min(best.get(name, found), found, key=lambda own: own[:2])
-                    if not excess and (count := count + 1) == ADD_COMPARED:
+                    if not drawback and (count := count + 1) == ADD_COMPARED:
                         break
         for name, (_, _, rig) in best.items():
             added = self._suggestion(rig, [rig.sensors[-1].name], added=True)
             self.added[name] = replace(added, occluded=self._occluded(rig.sensors[-1]))
+
+    def _drawback(self, sensor: Sensor) -> float:
+        """Return by how much one would not mount an added sensor so; 0: one would."""
+        low = max(MIN_HEIGHT_M - sensor.pose.position[2], 0.0)
+        return max(self._occluded(sensor) - MAX_OCCLUDED, 0.0) + low
 
     def _occluded(self, sensor: Sensor) -> float:
         vehicle = self._study.vehicle

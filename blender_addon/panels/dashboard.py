@@ -32,10 +32,10 @@ MET_ICONS = {True: "COLORSET_03_VEC", False: "ERROR"}
 NAME_SHARE = 0.39
 BESIDE_ROW_PX = 68
 WANTED_PX = 58
-CHANGED_PX = 68
+CHANGED_PX = 44
 LABEL_PX = 14
-"""What is beside a row: borders, tabs and the lock; the room for what is wanted, and for what a
-figure was before; what a label takes beside its text; all at a scale of 1."""
+"""What is beside a row: borders, tabs and the lock; the room for what is wanted, and beside the
+text of what a figure was before; what a label takes beside its text; all at a scale of 1."""
 LOCKS = {True: "LOCKED", False: "UNLOCKED"}
 
 
@@ -153,7 +153,8 @@ class RowWidths(NamedTuple):
         room, size = room_px(context, BESIDE_ROW_PX)
         scale = size / context.preferences.ui_styles[0].widget.points
         value = max(text_px(each.value, size) for each in rows) + LABEL_PX * scale
-        wanted = (CHANGED_PX if any(each.before for each in rows) else WANTED_PX) * scale
+        changes = [text_px(f"({each.before})", size) for each in rows if each.before]
+        wanted = max([WANTED_PX * scale, *(each + CHANGED_PX * scale for each in changes)])
         name = max(text_px(each.name, size) for each in rows) + LABEL_PX * scale
         return cls(min(name, max(room - value - wanted, LABEL_PX * scale)), value, wanted)
 
@@ -201,7 +202,11 @@ def draw_limits(layout: UILayout, settings: PropertyGroup, now: advice.KeyFigure
 
 
 def draw_wanted(layout: UILayout, scene: Scene, row: search.Reading) -> None:
-    """Draw the field of what is wanted; without that, a button that begins with what there is."""
+    """Draw the field of what is wanted; without that, a button that begins with what there is; of
+    distances in *Simple* none."""
+    is_ring = bool(search.AP_RINGS.get(row.figure.key))
+    if is_simple(scene) and is_ring and row.wanted is None:
+        return
     draw_limit(layout, scene.perception_entropy, row.figure, row.value)
 
 

@@ -1,4 +1,4 @@
-"""The problems of the search benchmark begin where they may, and rivals are asked as they should."""
+"""The problems of the search benchmark begin where they may; rivals are asked as they should be."""
 
 import math
 from types import SimpleNamespace
@@ -19,7 +19,7 @@ def test_each_problem_begins_with_a_placement_that_breaks_no_rule(name):
 
 
 def test_a_landscape_counts_what_is_evaluated_and_penalises_what_breaks_a_rule():
-    """Six sensors in sixteen slots: variables are numbers of slots; two in one slot break a rule."""
+    """Six sensors in sixteen slots: a variable is the number of a slot; two in one break a rule."""
     study = PROBLEMS["six in slots"].make()
     told = []
     flat = SimpleNamespace(entropy=lambda rig: 2.0)

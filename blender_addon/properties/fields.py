@@ -16,9 +16,6 @@ from bpy.props import (
 )
 from bpy.types import PropertyGroup
 
-Read = Callable[[PropertyGroup], Any]
-Write = Callable[[PropertyGroup, Any], None]
-
 
 def switch(label: str, about: str, default: bool = False, **more: Any) -> Any:
     """Return a property that is on or off."""
@@ -66,8 +63,8 @@ def pointer(label: str, about: str, to: Any, **more: Any) -> Any:
 
 
 def view(
-    read: Read,
-    write: Write,
+    read: Callable[[PropertyGroup], Any],
+    write: Callable[[PropertyGroup, Any], None],
     items: Sequence[tuple[Any, ...]] = (),
     *,
     several: bool = False,

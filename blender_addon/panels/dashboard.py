@@ -161,9 +161,10 @@ class RowWidths(NamedTuple):
         least = WANTED_PX * scale
         wanted = max([least, *(each + CHANGED_PX * scale for each in changes)])
         has_room = room - value - wanted >= LEAST_NAME_PX * scale
-        wanted = wanted if has_room else least
-        name = max(text_px(each.name, size) for each in rows) + LABEL_PX * scale
-        name = min(name, max(room - value - wanted, LABEL_PX * scale))
+        gap = LABEL_PX * scale
+        wanted = wanted if has_room else min(least, max(room - value - gap, gap))
+        name = max(text_px(each.name, size) for each in rows) + gap
+        name = min(name, max(room - value - wanted, gap))
         return cls(name, value, wanted=wanted, has_room=has_room)
 
 

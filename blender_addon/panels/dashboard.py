@@ -34,8 +34,10 @@ BESIDE_ROW_PX = 68
 WANTED_PX = 58
 CHANGED_PX = 44
 LABEL_PX = 14
+LEAST_NAME_PX = 30
 """What is beside a row: borders, tabs and the lock; the room for what is wanted, and beside the
-text of what a figure was before; what a label takes beside its text; all at a scale of 1."""
+text of what a figure was before; what a label takes beside its text, and the least room for names;
+all at a scale of 1."""
 LOCKS = {True: "LOCKED", False: "UNLOCKED"}
 
 
@@ -141,11 +143,13 @@ def drawn_row(
 
 
 class RowWidths(NamedTuple):
-    """Room for the columns of the dashboard [px]. Figures are never cut: names give way."""
+    """Room for the columns of the dashboard [px]; and whether what figures were before has room,
+    too. Figures are never cut: names give way."""
 
     name: float
     value: float
     wanted: float
+    has_room: bool
 
     @classmethod
     def of(cls, context: Context, rows: Sequence[DrawnRow]) -> "RowWidths":
@@ -154,9 +158,14 @@ class RowWidths(NamedTuple):
         scale = size / context.preferences.ui_styles[0].widget.points
         value = max(text_px(each.value, size) for each in rows) + LABEL_PX * scale
         changes = [text_px(f"({each.before})", size) for each in rows if each.before]
-        wanted = max([WANTED_PX * scale, *(each + CHANGED_PX * scale for each in changes)])
-        name = max(text_px(each.name, size) for each in rows) + LABEL_PX * scale
-        return cls(min(name, max(room - value - wanted, LABEL_PX * scale)), value, wanted)
+        least = WANTED_PX * scale
+        wanted = max([least, *(each + CHANGED_PX * scale for each in changes)])
+        has_room = room - value - wanted >= LEAST_NAME_PX * scale
+        gap = LABEL_PX * scale
+        wanted = wanted if has_room else min(least, max(room - value - gap, gap))
+        name = max(text_px(each.name, size) for each in rows) + gap
+        name = min(name, max(room - value - wanted, gap))
+        return cls(name, value, wanted=wanted, has_room=has_room)
 
 
 def draw_row(layout: UILayout, context: Context, drawn: DrawnRow, sides: RowWidths) -> None:
@@ -167,13 +176,15 @@ def draw_row(layout: UILayout, context: Context, drawn: DrawnRow, sides: RowWidt
         draw_lock(line, context.scene.perception_entropy, row.figure)
     else:
         line.label(text="", icon="BLANK1")
-    name, rest = columns(line, sides.name / sum(sides), align=True)
+    total = sides.name + sides.value + sides.wanted
+    name, rest = columns(line, sides.name / total, align=True)
     draw_label(name, shortened_to(context, drawn.name, sides.name))
     value, wanted = columns(rest, sides.value / (sides.value + sides.wanted), align=True)
     draw_label(value, drawn.value)
     wanted = wanted.row(align=True)
     if drawn.before:
-        draw_label(wanted, f"({drawn.before})", SENSE_ICONS[drawn.sense])
+        before = f"({drawn.before})" if sides.has_room else ""
+        draw_label(wanted, before, SENSE_ICONS[drawn.sense])
     elif row.figure.rule is None:
         wanted.label(text="" if row.wanted is None else f"of {row.wanted:.0f}", translate=False)
     else:

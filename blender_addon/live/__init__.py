@@ -9,7 +9,7 @@ import bpy
 
 from ..engine import advice
 from . import background_figures, readout, session
-from .readout_text import BETTER, SAME, SENSE_ICONS, WORSE, change_text
+from .readout_text import BETTER, SAME, SENSE_ICONS, WORSE, change_text, is_not_shown
 from .state import FinishedScore, ShownScore, live_state, shown_score
 
 

@@ -3,8 +3,17 @@
 from bpy.types import Context, PropertyGroup, Scene, UILayout
 
 from ..bridge import NONE, Result, keep_property, limit_property, limits_of, shown_state
-from ..engine import advice, search
-from ..live import BETTER, SAME, SENSE_ICONS, WORSE, change_text, shown_score, told_figures
+from ..engine import advice, scoring, search
+from ..live import (
+    BETTER,
+    SAME,
+    SENSE_ICONS,
+    WORSE,
+    change_text,
+    is_not_shown,
+    shown_score,
+    told_figures,
+)
 from ..operators import known_rigs, shown_verdicts
 from ..panel_text import draw_label, is_simple
 from ..sensor_cache import sensors as listed_sensors
@@ -52,17 +61,22 @@ def draw_dashboard(layout: UILayout, context: Context) -> None:
     judged = [row.met for row in rows if row.met is not None]
     draw_label(wanted, f"{sum(judged)} of {len(judged)} met" if judged else "Wanted")
     errors = change_errors(figures, result)
+    alike: list[str] = []
     for row in rows:
         known = [row.figure.value(each) for each in figures] if row.figure.is_seen else [row.value]
         known = entropies if row.figure.key == search.ENTROPY else known
         values = [value for value in known if value is not None]
-        draw_row(column, scene, row, values, error=errors.get(row.figure.key, 0.0))
+        error = errors.get(row.figure.key, 0.0)
+        draw_row(column, scene, row, values, error=error)
+        if is_not_shown(row.figure, values, error):
+            alike.append(label_in(scene, row.figure))
     if not is_simple(scene):
         name, value = columns(column, NAME_SHARE)
         draw_label(name, "Coverage")
         draw_label(value, "\N{EN DASH}" if now is None else advice.percent(now.coverage, 1))
     told = "" if result is None else known_rigs.told(scene)
-    draw_label(column, told or "Score: lower is better")
+    unsure = f"{', '.join(alike)}: {scoring.NO_DIFFERENCE}" if alike else ""
+    draw_label(column, told or unsure or "Score: lower is better")
     if result is not None:
         draw_outcome(layout, context)
     if settings.has_result and (state := shown_state(scene)):
@@ -88,7 +102,7 @@ def draw_row(
     draw_lock(line, settings, figure)
     name, rest = columns(line, NAME_SHARE, align=True)
     is_score = figure.key == search.ENTROPY and is_simple(scene)
-    draw_label(name, "Score" if is_score else figure.label)
+    draw_label(name, label_in(scene, figure))
     text, sense = change_text(figure, values, error)
     text = f"{'≥ ' * row.is_cut}{text.removesuffix(' nats' if is_score else ' met')}"
     is_changed = row.wanted is None and sense != SAME
@@ -106,6 +120,11 @@ def draw_row(
         draw_wanted(wanted, scene, row)
     if row.met is not None:
         wanted.label(text="", icon=MET_ICONS[row.met])
+
+
+def label_in(scene: Scene, figure: search.Figure) -> str:
+    """Return what a figure is called: the entropy is *Score* in *Simple*."""
+    return "Score" if figure.key == search.ENTROPY and is_simple(scene) else figure.label
 
 
 def draw_lock(layout: UILayout, settings: PropertyGroup, figure: search.Figure) -> None:

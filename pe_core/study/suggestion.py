@@ -27,7 +27,7 @@ from ..scene.data_sheet import DataSheet
 from ..scene.rig import Rig, Sensor, SensorModel
 from ..scoring.requirements import Criterion, Requirement, RequirementChecker, Zone, checkable
 from ..scoring.sampling import SEARCHED
-from ..scoring.score import SURE, RigEvaluator, ScoreStopped, standard_error
+from ..scoring.score import NO_DIFFERENCE, RigEvaluator, ScoreStopped, is_noise, standard_error
 from ..scoring.sight import Sight, shown_end
 from ..scoring.sight.blind_ground import BLIND_TO_M
 from ..search import MountingPlaces, Parametrization
@@ -109,8 +109,8 @@ class Suggestion:
             gains.append(f"blind ground {shown_end(was):.1f} to {shown_end(now):.1f} m2")
         by = self.after.entropy - self.before.entropy
         way = "lower" if by < 0.0 else "higher"
-        is_clear = abs(by) > SURE * self.stderr
-        gains.append(f"entropy {abs(by):.3f} nats {way}" if is_clear else "entropy unchanged")
+        told = NO_DIFFERENCE if is_noise(by, self.stderr) else f"{abs(by):.3f} nats {way}"
+        gains.append(f"entropy {told}")
         broken = f"; breaks {', '.join(self.breaks)}" if self.breaks else ""
         return f"{done}: {', '.join(gains)}{broken}"
 

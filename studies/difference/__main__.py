@@ -9,11 +9,12 @@ from pathlib import Path
 
 from pe_core import InputError
 from pe_core.base import decode_text, dump_json, dumps, read_bytes, write_bytes
+from pe_core.search import FIGURES
 from pe_tools import prepare_folder
 from pe_tools.cli import DONE, Answer
 
 from ..command import main, page_parser
-from ..pages import check_page, render, write_study
+from ..pages import check_page, joined, render, write_study
 from ..results_file import RESULTS, Json, made_by, plain, print_progress, read_json
 from .kinds import SCORES, camera_kind_of, own_kinds, published_kind
 from .worth import DifferenceEffort, Kind, worth_of
@@ -85,13 +86,24 @@ def write_table(path: Path, found: Json) -> None:
 def page_of(found: Json) -> str:
     """Return the page as Markdown."""
     values = {"found": found, "names": score_names()}
+    values |= {"entered": listed(found, True), "left_out": listed(found, False)}
     return render(Path(__file__).with_name("page.md.j2"), values, number=number_text)
+
+
+def listed(found: Json, in_table: bool) -> list[str]:
+    """Return the kinds with those of their scores that are in the table, or are not."""
+    names = score_names()
+    by_kind = {
+        kind["label"]: [
+            names[s] for s, row in kind["scores"].items() if row["in_table"] == in_table
+        ]
+        for kind in found["kinds"].values()
+    }
+    return [f"{label} ({joined(scores)})" for label, scores in by_kind.items() if scores]
 
 
 def score_names() -> Mapping[str, str]:
     """Return what the scores are called on the page."""
-    from pe_core.search import FIGURES
-
     return {key: FIGURES[key].name for key in SCORES}
 
 

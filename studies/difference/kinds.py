@@ -92,7 +92,9 @@ def published_kind() -> Kind:
     by_name = {score.name: score for score in CANDIDATES}
     groups = []
     for paper in papers():
-        comparison = RankComparison(paper, CLEAN, MAIN_CLASS, DEGREES, ALL)
+        comparison = RankComparison(
+            paper, condition=CLEAN, cls=MAIN_CLASS, reading=DEGREES, selection=ALL
+        )
         rows = {
             figure: np.array(comparison.score_values(by_name[name], values))
             for figure, name in SCORES.items()

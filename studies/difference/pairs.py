@@ -154,10 +154,10 @@ def pairs_of(groups: Sequence[Group], score: str) -> Pairs:
         start += group.size
     order = np.argsort(d, kind="stable")
     return Pairs(
-        np.array(first, dtype=np.int64)[order],
-        np.array(second, dtype=np.int64)[order],
-        np.array(d)[order],
-        np.array(right)[order],
-        np.repeat(np.arange(len(groups)), [group.size for group in groups]),
+        first=np.array(first, dtype=np.int64)[order],
+        second=np.array(second, dtype=np.int64)[order],
+        d=np.array(d)[order],
+        right=np.array(right)[order],
+        group=np.repeat(np.arange(len(groups)), [group.size for group in groups]),
         ties=ties,
     )

@@ -85,7 +85,7 @@ def write_table(path: Path, found: Json) -> None:
 
 def page_of(found: Json) -> str:
     """Return the page as Markdown."""
-    values = {"found": found, "names": score_names()}
+    values: Json = {"found": found, "names": score_names()}
     values |= {"entered": listed(found, True), "left_out": listed(found, False)}
     return render(Path(__file__).with_name("page.md.j2"), values, number=number_text)
 

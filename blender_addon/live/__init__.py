@@ -1,10 +1,11 @@
 """The live score: it follows every move of a sensor.
 
 `state` holds what is known of each scene, `session` requests scores and says what they are compared
-with, `background_figures` requests their key figures, `readout_text` puts all of it into text,
-and `readout` draws that in a corner of the 3D view.
+with, `background_figures` requests their key figures, `shown` is the one state of all that is drawn
+of them, `readout_text` puts it into text, and `readout` draws that in a corner of the 3D view.
 """
 
+<<<<<<< HEAD
 import bpy
 
 from ..engine import advice
@@ -30,6 +31,22 @@ def told_figures(scene: bpy.types.Scene, *, live: bool) -> list[advice.KeyFigure
     of_kind = ("before", "after") if result.kind == "optimize" else ("after",)
     told = [result.figures[which] for which in of_kind if which in result.figures]
     return [advice.KeyFigures.from_dict(data) for data in told]
+=======
+from . import readout, session
+from .readout_text import BETTER, SAME, SENSE_ICONS, WORSE, change_text
+from .shown import (
+    AT_REST,
+    BEFORE_SEARCH,
+    MOVING,
+    OUT_OF_DATE,
+    PENDING,
+    STORED,
+    ShownScore,
+    for_drawing,
+    shown_score,
+)
+from .state import FinishedScore, live_state
+>>>>>>> main
 
 
 def register() -> None:

@@ -135,21 +135,13 @@ def is_not_shown(row: search.Figure, values: Sequence[float], error: float) -> b
     return len(set(texts[:1] + texts[-1:])) > 1 and scoring.is_noise(values[-1] - values[0], error)
 
 
-<<<<<<< HEAD
-def change_of(by: float | None, digits: int, error: float = 0.0) -> ReadoutLine:
+def change_of(by: float, digits: int, error: float = 0.0) -> ReadoutLine:
     """Return "(+1.2)" as a gain or a loss; nothing where the change is 0 in these digits.
 
     Within its standard error no difference is shown.
     """
-    text = "" if by is None else f"{by:+.{digits}f}"
-    if by is None or not text.strip("+-0."):
-=======
-def change_of(by: float, digits: int, error: float = 0.0) -> ReadoutLine:
-    """Return "(+1.2)" as a gain or a loss; nothing where the change is 0 in these digits, or within
-    its standard error."""
     text = f"{by:+.{digits}f}"
-    if not text.strip("+-0.") or is_noise(by, error):
->>>>>>> main
+    if not text.strip("+-0."):
         return ()
     if scoring.is_noise(by, error):
         return (TextPiece(f"({scoring.NO_DIFFERENCE})"),)

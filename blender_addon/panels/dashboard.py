@@ -5,21 +5,8 @@ from typing import NamedTuple
 
 from bpy.types import Context, PropertyGroup, Scene, UILayout
 
-<<<<<<< HEAD
-from ..bridge import NONE, Result, keep_property, limit_property, limits_of, shown_state
-from ..engine import advice, scoring, search
-from ..live import (
-    BETTER,
-    SAME,
-    SENSE_ICONS,
-    WORSE,
-    change_text,
-    is_not_shown,
-    shown_score,
-    told_figures,
-=======
 from ..bridge import NONE, keep_property, limit_property, limits_of, shown_state
-from ..engine import advice, search
+from ..engine import advice, scoring, search
 from ..live import (
     AT_REST,
     BETTER,
@@ -33,8 +20,8 @@ from ..live import (
     ShownScore,
     change_text,
     for_drawing,
+    is_not_shown,
     shown_score,
->>>>>>> main
 )
 from ..operators import known_rigs, shown_verdicts
 from ..panel_text import draw_label, is_simple
@@ -89,26 +76,6 @@ def draw_dashboard(layout: UILayout, context: Context) -> None:
     )
     judged = [row.met for row in rows if row.met is not None]
     draw_label(wanted, f"{sum(judged)} of {len(judged)} met" if judged else "Wanted")
-<<<<<<< HEAD
-    errors = change_errors(figures, result)
-    alike: list[str] = []
-    for row in rows:
-        known = [row.figure.value(each) for each in figures] if row.figure.is_seen else [row.value]
-        known = entropies if row.figure.key == search.ENTROPY else known
-        values = [value for value in known if value is not None]
-        error = errors.get(row.figure.key, 0.0)
-        draw_row(column, scene, row, values, error=error)
-        if is_not_shown(row.figure, values, error):
-            alike.append(label_in(scene, row.figure))
-    if not is_simple(scene):
-        name, value = columns(column, NAME_SHARE)
-        draw_label(name, "Coverage")
-        draw_label(value, "\N{EN DASH}" if now is None else advice.percent(now.coverage, 1))
-    told = "" if result is None else known_rigs.told(scene)
-    unsure = f"{', '.join(alike)}: {scoring.NO_DIFFERENCE}" if alike else ""
-    draw_label(column, told or unsure or "Score: lower is better")
-    if result is not None:
-=======
     errors = {} if shown is None else shown.change_errors()
     drawn = [drawn_row(scene, row, figures, entropies, errors) for row in rows]
     sides = RowWidths.of(context, drawn)
@@ -120,7 +87,9 @@ def draw_dashboard(layout: UILayout, context: Context) -> None:
         coverage = "\N{EN DASH}" if shown is None else advice.percent(shown.now.coverage, 1)
         draw_label(value, coverage)
     told = known_rigs.told(scene) if is_stored else ""
-    draw_label(column, told or "Score: lower is better")
+    alike = ", ".join(each.name for each in drawn if each.is_noise)
+    unsure = f"{alike}: {scoring.NO_DIFFERENCE}" if alike else ""
+    draw_label(column, told or unsure or "Score: lower is better")
 
 
 def draw_result(layout: UILayout, context: Context) -> None:
@@ -130,7 +99,6 @@ def draw_result(layout: UILayout, context: Context) -> None:
     settings = scene.perception_entropy
     shown = shown_score(scene)
     if shown is not None and shown.stored:
->>>>>>> main
         draw_outcome(layout, context)
     if settings.has_result and (state := shown_state(scene)):
         draw_sentence(layout, context, f"Shown: state {state}. Scored: as drawn", icon="INFO")
@@ -145,13 +113,15 @@ def draw_head(layout: UILayout, shown: ShownScore | None) -> None:
 
 
 class DrawnRow(NamedTuple):
-    """A row as it is drawn: its name, its value, and what that was before, if it has changed."""
+    """A row as it is drawn: its name, its value, and what that was before, if it has changed.
+    `is_noise`: It has changed within the error of that."""
 
     row: search.Reading
     name: str
     value: str
     before: str
     sense: int
+    is_noise: bool
 
 
 def drawn_row(
@@ -167,17 +137,14 @@ def drawn_row(
     values = [value for value in known if value is not None]
     values = entropies if figure.key == search.ENTROPY else values
     is_score = figure.key == search.ENTROPY and is_simple(scene)
-<<<<<<< HEAD
-    draw_label(name, label_in(scene, figure))
+    error = errors.get(figure.key, 0.0)
     text, sense = change_text(figure, values, error)
-=======
-    text, sense = change_text(figure, values, errors.get(figure.key, 0.0))
->>>>>>> main
     text = f"{'≥ ' * row.is_cut}{text.removesuffix(' nats' if is_score else ' met')}"
     is_changed = row.wanted is None and sense != SAME
     before = figure.text(values[0]).partition(" ")[0] if is_changed else ""
     name = "Score" if is_score else figure.label
-    return DrawnRow(row, name=name, value=text, before=before, sense=sense)
+    is_noise = is_not_shown(figure, values, error)
+    return DrawnRow(row, name=name, value=text, before=before, sense=sense, is_noise=is_noise)
 
 
 class RowWidths(NamedTuple):
@@ -219,11 +186,6 @@ def draw_row(layout: UILayout, context: Context, drawn: DrawnRow, sides: RowWidt
         draw_wanted(wanted, context.scene, row)
     if row.met is not None:
         wanted.label(text="", icon=MET_ICONS[row.met])
-
-
-def label_in(scene: Scene, figure: search.Figure) -> str:
-    """Return what a figure is called: the entropy is *Score* in *Simple*."""
-    return "Score" if figure.key == search.ENTROPY and is_simple(scene) else figure.label
 
 
 def draw_lock(layout: UILayout, settings: PropertyGroup, figure: search.Figure) -> None:

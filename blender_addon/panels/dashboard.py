@@ -6,7 +6,7 @@ from typing import NamedTuple
 from bpy.types import Context, PropertyGroup, Scene, UILayout
 
 from ..bridge import NONE, keep_property, limit_property, limits_of, shown_state
-from ..engine import advice, search
+from ..engine import advice, scoring, search
 from ..live import (
     AT_REST,
     BETTER,
@@ -20,6 +20,7 @@ from ..live import (
     ShownScore,
     change_text,
     for_drawing,
+    is_not_shown,
     shown_score,
 )
 from ..operators import known_rigs, shown_verdicts
@@ -88,7 +89,9 @@ def draw_dashboard(layout: UILayout, context: Context) -> None:
         coverage = "\N{EN DASH}" if shown is None else advice.percent(shown.now.coverage, 1)
         draw_label(value, coverage)
     told = known_rigs.told(scene) if is_stored else ""
-    draw_label(column, told or "Score: lower is better")
+    alike = ", ".join(each.name for each in drawn if each.is_noise)
+    unsure = f"{alike}: {scoring.NO_DIFFERENCE}" if alike else ""
+    draw_label(column, told or unsure or "Score: lower is better")
 
 
 def draw_result(layout: UILayout, context: Context) -> None:
@@ -112,13 +115,15 @@ def draw_head(layout: UILayout, shown: ShownScore | None) -> None:
 
 
 class DrawnRow(NamedTuple):
-    """A row as it is drawn: its name, its value, and what that was before, if it has changed."""
+    """A row as it is drawn: its name, its value, and what that was before, if it has changed.
+    `is_noise`: It has changed within the error of that."""
 
     row: search.Reading
     name: str
     value: str
     before: str
     sense: int
+    is_noise: bool
 
 
 def drawn_row(
@@ -134,12 +139,14 @@ def drawn_row(
     values = [value for value in known if value is not None]
     values = entropies if figure.key == search.ENTROPY else values
     is_score = figure.key == search.ENTROPY and is_simple(scene)
-    text, sense = change_text(figure, values, errors.get(figure.key, 0.0))
+    error = errors.get(figure.key, 0.0)
+    text, sense = change_text(figure, values, error)
     text = f"{'≥ ' * row.is_cut}{text.removesuffix(' nats' if is_score else ' met')}"
     is_changed = row.wanted is None and sense != SAME
     before = figure.text(values[0]).partition(" ")[0] if is_changed else ""
     name = "Score" if is_score else figure.label
-    return DrawnRow(row, name=name, value=text, before=before, sense=sense)
+    is_noise = is_not_shown(figure, values, error)
+    return DrawnRow(row, name=name, value=text, before=before, sense=sense, is_noise=is_noise)
 
 
 class RowWidths(NamedTuple):

@@ -29,7 +29,7 @@ from ..scene.rig import Rig, Sensor, SensorModel
 from ..scene.vehicle import Vehicle
 from ..scoring.requirements import Criterion, Requirement, RequirementChecker, Zone, checkable
 from ..scoring.sampling import SEARCHED
-from ..scoring.score import SURE, RigEvaluator, ScoreStopped, standard_error
+from ..scoring.score import NO_DIFFERENCE, RigEvaluator, ScoreStopped, is_noise, standard_error
 from ..scoring.sight import Sight, shown_end
 from ..scoring.sight.blind_ground import BLIND_TO_M
 from ..search import MountingPlaces, Parametrization
@@ -119,8 +119,8 @@ class Suggestion:
             gains.append(f"blind ground {shown_end(was):.1f} to {shown_end(now):.1f} m2")
         by = self.after.entropy - self.before.entropy
         way = "lower" if by < 0.0 else "higher"
-        is_clear = abs(by) > SURE * self.stderr
-        gains.append(f"entropy {abs(by):.3f} nats {way}" if is_clear else "entropy unchanged")
+        told = NO_DIFFERENCE if is_noise(by, self.stderr) else f"{abs(by):.3f} nats {way}"
+        gains.append(f"entropy {told}")
         if self.occluded > MAX_OCCLUDED:
             gains.append(f"{self.occluded:.0%} of its rays occluded")
         height = self.rig[self.moved[0]].pose.position[2]

@@ -6,7 +6,7 @@ from .foreign_values import MAX_BEAMS, Written, require_at_most
 from .frames import pose_from_quaternion
 from .importing import ImportedRig, import_rig
 from .lens_pictures import Picture, straight
-from .portable import PortableSensor, with_pictures
+from .portable import PortableSensor, SceneFacts, with_pictures
 from .portable_kinds import picture_of, portable_sensors
 from .rig_formats import (
     FILES,

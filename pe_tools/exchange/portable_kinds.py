@@ -24,7 +24,7 @@ from pe_core.sensors.ultrasonic import Ultrasonic
 
 from .foreign_values import MAX_BEAMS
 from .lens_pictures import ALIKE_PX, Picture, Size
-from .portable import EVEN_RAD, FieldOfView, PortableRig, PortableSensor, Scan
+from .portable import EVEN_RAD, Emitters, FieldOfView, PortableRig, PortableSensor, Scan
 
 CAMERA = Camera.kind
 LIDAR = Lidar.kind
@@ -145,6 +145,16 @@ def lidar_of(name: str, scan: Scan) -> Lidar:
     ranges = scan.max_range, scan.min_range
     if scan.directions is not None:
         return Lidar.from_directions(name, scan.directions, *ranges)
+    if scan.compute_emitters is not None:
+        emitters = scan.compute_emitters()
+        return Lidar(
+            name,
+            emitters.elevations,
+            emitters.ticks,
+            scan.max_range,
+            azimuth_offsets=emitters.azimuths,
+            min_range=scan.min_range,
+        )
     elevations = np.linspace(scan.low, scan.high, scan.channels)
     low, high = scan.fov
     if high - low < NO_EXTENT_RAD:  # it does not rotate: all of its channels have one azimuth
@@ -223,7 +233,19 @@ def _scan(model: Lidar) -> Scan:
         compute_beams=lambda: model.directions,
         offset_rad=float(np.abs(model.azimuth_offsets - _common_offset(model)).max()),
         ends=_ends(model),
+        compute_emitters=lambda: emitters_of(model),
     )
+
+
+def emitters_of(model: Lidar) -> Emitters:
+    """Return a LiDAR as emitters. One that scans less than a whole turn has an emitter for each of
+    its beams, which fire once."""
+    steps = model.azimuth_steps
+    if len(steps) == model.azimuth_count:
+        return Emitters(model.azimuth_offsets, model.elevations, model.azimuth_count)
+    azimuths = (model.azimuth_offsets[:, None] + steps * model.azimuth_step).ravel()
+    around = np.array([math.remainder(a, 2.0 * math.pi) for a in azimuths.tolist()])
+    return Emitters(around, np.repeat(model.elevations, len(steps)), ticks=1)
 
 
 def _camera_model(sensor: PortableSensor, usual: Size | None) -> OwnModel | None:
@@ -236,11 +258,16 @@ def _camera_model(sensor: PortableSensor, usual: Size | None) -> OwnModel | None
 def _model_by_table(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
     if not sensor.parameters:
         return None
+    return model_of_table(sensor.model or sensor.name, sensor.parameters), ""
+
+
+def model_of_table(name: str, parameters: str) -> SensorModel:
+    """Return the model of a table in a study, given as JSON; `parameters_of` is its inverse."""
     try:
-        table = json.loads(sensor.parameters)
+        table = json.loads(parameters)
     except ValueError as error:
-        raise InputError(sensor.name, "parameters", "a table of a model (JSON)", error) from None
-    return catalog.from_table(sensor.model or sensor.name, table), ""
+        raise InputError(name, "parameters", "a table of a model (JSON)", error) from None
+    return catalog.from_table(name, table)
 
 
 def _model_by_field(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
@@ -275,10 +302,10 @@ def _model_by_field(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
 
 def _with_field(model: Radar | Ultrasonic) -> dict[str, Any]:
     seen = FieldOfView(*model.window, model.max_range, model.min_range)
-    return {"parameters": _parameters(model), "field": seen}
+    return {"parameters": parameters_of(model), "field": seen}
 
 
-def _parameters(model: SensorModel) -> str:
+def parameters_of(model: SensorModel) -> str:
     """Return the table of a model as JSON, on one line."""
     return json.dumps(catalog.to_table(model), ensure_ascii=False, separators=(",", ":"))
 
@@ -296,5 +323,5 @@ PORTABLE_KINDS: dict[str, PortableKind] = {
     ULTRASONIC: PortableKind(_with_field, _model_by_field, "Bosch Ultrasonic 3.1"),
 }  # Rows by kind; other kinds are expressed by `OTHER`
 OTHER = PortableKind(
-    lambda model: {"parameters": _parameters(model)}, _model_by_table
+    lambda model: {"parameters": parameters_of(model)}, _model_by_table
 )  # The row of a kind without one

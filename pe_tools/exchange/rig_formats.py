@@ -20,11 +20,13 @@ from . import (
     ros,
     urdf,
     urdf_writer,
+    usd,
+    usd_writer,
 )
 from . import lens_pictures as lenses
 from .foreign_values import Export
 from .frames import GROUND, REAR_AXLE, REAR_AXLE_GROUND
-from .portable import ForeignRig, MergeTarget, PortableRig, PortableSensor
+from .portable import ForeignRig, MergeTarget, PortableRig, PortableSensor, SceneFacts
 
 MODEL = "model"  # The model name; properties of a catalogued model are then not lost
 BEAMS = "beams"  # A LiDAR's channels, azimuths and range
@@ -49,7 +51,10 @@ class RigFormat:
     intrinsics to what the format can express. `settled`: function that adjusts a sensor once its
     model is known. `usual_size` (int, int): image size of the format's data set [px], for a format
     that states no size. `beside`: whether files with camera intrinsics are beside the main file.
-    `merges`: whether an export into a file keeps what the file has besides the rig."""
+    `merges`: whether an export into a file keeps what the file has besides the rig. `write_scene`:
+    function that writes the rig over its vehicle, with what its score found; None for a format that
+    has room for sensors alone. `binary`: other suffixes that it is written with, by a library:
+    `packed` is the name of the plugin."""
 
     name: str
     title: str
@@ -64,6 +69,9 @@ class RigFormat:
     usual_size: lenses.Size | None = None
     beside: bool = False
     merges: bool = True
+    write_scene: Callable[[PortableRig, SceneFacts], Export] | None = None
+    binary: tuple[str, ...] = ()
+    packed: str = ""
 
     @property
     def is_folder(self) -> bool:
@@ -182,6 +190,21 @@ _ROWS = (
         holds=frozenset({MODEL}),
         keeps=lenses.of_driveworks,
     ),
+    RigFormat(
+        name="usd",
+        title="OpenUSD",
+        origin=GROUND,
+        files=(usd.FILE,),
+        suffixes=(".usda", ".usd", ".usdc", ".usdz"),
+        read=usd.read,
+        write=usd_writer.write,
+        write_scene=usd_writer.write_scene,
+        holds=_TABLE | _BEAMS,
+        keeps=lenses.opencv,
+        merges=False,
+        binary=(".usdc", ".usdz"),
+        packed="usd_packed",
+    ),
 )
 RIG_FORMATS = MappingProxyType({row.name: row for row in _ROWS})  # Formats by name
 
@@ -198,7 +221,7 @@ def format_of_file(output: Path, files: Mapping[str, str], chosen: str | None = 
     one file, by the format's name. `chosen`: name of the format that was asked for; it may be one
     that has a folder of files."""
     suffix = output.suffix.lower()
-    fitting = [name for name, file in files.items() if Path(file).suffix == suffix]
+    fitting = [name for name, file in files.items() if suffix in _written_suffixes(name, file)]
     if chosen is not None:
         if suffix and fitting and chosen not in fitting:
             found = f"{suffix}, the suffix of {' or '.join(fitting)}"
@@ -213,6 +236,12 @@ def format_of_file(output: Path, files: Mapping[str, str], chosen: str | None = 
         expected = f"the name of a format ({known}), or a suffix that only one has"
         raise InputError(output, "format", expected, suffix or "no suffix")
     return fitting[0]
+
+
+def _written_suffixes(name: str, file: str) -> tuple[str, ...]:
+    """Return the suffixes of files that a format writes."""
+    row = RIG_FORMATS.get(name)
+    return (Path(file).suffix, *(row.binary if row is not None else ()))
 
 
 FILES = MappingProxyType({row.name: row.files[0] for row in _ROWS if not row.is_folder})

@@ -204,9 +204,7 @@ def export_rig(
     return paths, [*damaged_lines, *lines]
 
 
-def _packed(
-    row: RigFormat, files: Mapping[str, bytes], output: Path
-) -> Mapping[str, bytes]:
+def _packed(row: RigFormat, files: Mapping[str, bytes], output: Path) -> Mapping[str, bytes]:
     """Return written files in the format of the output's suffix, which a library writes."""
     suffix = output.suffix.lower()
     hint = install_hint("library", row.packed)

@@ -32,8 +32,8 @@ class Scan:
     metres. `even` tells whether the channels are evenly spaced; their azimuth offsets are up to
     `offset_rad`. `directions` (B, 3) are the beams of an imported file that lists them; for a LiDAR
     of a rig, `compute_beams` computes them. `ends` are the first and the last azimuth [rad], which
-    formats state that divide a scan so (SDF); None where the file has `fov` alone. `compute_emitters`
-    returns the scan as emitters; None for a file that has none."""
+    formats state that divide a scan so (SDF); None where the file has `fov` alone.
+    `compute_emitters` returns the scan as emitters; None for a file that has none."""
 
     channels: int
     low: float

@@ -21,6 +21,7 @@ from . import (
     urdf,
     urdf_writer,
     usd,
+    usd_schema,
     usd_writer,
 )
 from . import lens_pictures as lenses
@@ -194,7 +195,7 @@ _ROWS = (
         name="usd",
         title="OpenUSD",
         origin=GROUND,
-        files=(usd.FILE,),
+        files=(usd_schema.FILE,),
         suffixes=(".usda", ".usd", ".usdc", ".usdz"),
         read=usd.read,
         write=usd_writer.write,

@@ -90,6 +90,12 @@ def value_of(prim: Prim, name: str) -> Any:
     return value
 
 
+def text_of(placed: PlacedPrim, name: str) -> str:
+    """Return the text of an attribute; empty for another value or none."""
+    value = value_of(placed.prim, name)
+    return value if isinstance(value, str) else ""
+
+
 def _time(text: str) -> float:
     try:
         return float(text)
@@ -339,8 +345,8 @@ def _operation(source: Path, place: str, kind: str, value: Any) -> Floats:
     elif kind.startswith("rotate") and set(kind[6:]) <= set(AXES) and len(kind) in (7, 9):
         axes = kind[6:]
         angles = _numbers(source, place, value, len(axes))
-        for axis, angle in zip(axes, angles.tolist(), strict=True):  # the first is applied first
-            matrix = _product(_turn(axis, math.radians(angle)), matrix)
+        for letter, angle in zip(axes, angles.tolist(), strict=True):  # the first is applied first
+            matrix = _product(_turn(letter, math.radians(angle)), matrix)
     else:
         raise InputError(source, place, "an operation of USD", shown(kind))
     return matrix

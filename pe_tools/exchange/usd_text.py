@@ -389,7 +389,9 @@ def quoted(text: str) -> str:
 
 def number_text(value: float) -> str:
     """Return a number as text that reads back to the same bits; whole ones have no point."""
-    return str(int(value)) if float(value).is_integer() and abs(value) < 1e15 else plain_number(value)
+    return (
+        str(int(value)) if float(value).is_integer() and abs(value) < 1e15 else plain_number(value)
+    )
 
 
 def tuple_text(values: Sequence[float]) -> str:
@@ -404,11 +406,11 @@ def array_text(values: Sequence[float]) -> str:
 
 def dictionary_lines(data: Mapping[str, Any], indent: str) -> Iterator[str]:
     """Yield the lines of a dictionary of plain data: texts, numbers, flags, lists and tables. A
-    list of tables becomes a table by their names (``name`` or ``key``); what is None is left
+    list of tables becomes a table by their names (``name`` or ``figure``); what is None is left
     out."""
     for key, value in data.items():
         if isinstance(value, list) and value and all(isinstance(row, Mapping) for row in value):
-            value = {str(row.get("name", row.get("key", k))): row for k, row in enumerate(value)}
+            value = {str(row.get("name", row.get("figure", k))): row for k, row in enumerate(value)}
         if isinstance(value, Mapping):
             yield f"{indent}dictionary {quoted(key)} = {{"
             yield from dictionary_lines(value, indent + "    ")

@@ -5,7 +5,7 @@ frame for each sensor with the prim of NVIDIA's or USD's schema in it, and the r
 """
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from .foreign_values import MAX_BEAMS, Export, require_at_most
 from .frames import legal_frame
 from .portable import Emitters, MergeTarget, PortableRig, PortableSensor, SceneFacts, named_apart
 from .portable_kinds import CAMERA, LIDAR, RADAR, ULTRASONIC, model_of_table
-from .usd import (
+from .usd_schema import (
     ACOUSTIC,
     CORE,
     FILE,
@@ -72,7 +72,9 @@ def write_scene(sensors: PortableRig, facts: SceneFacts) -> Export:
                 if s.scan is not None and s.scan.compute_emitters is not None}  # fmt: skip
     total = sum(len(each.elevations) for each in emitters.values())
     require_at_most("usd", "sensors", total, MAX_BEAMS, noun="emitters, each of which is written")
-    names = dict(zip((s.name for s in sensors), _prim_names([s.name for s in sensors]), strict=True))
+    names = dict(
+        zip((s.name for s in sensors), _prim_names([s.name for s in sensors]), strict=True)
+    )
     lines = [f"{name}: called {prim} as a prim" for name, prim in names.items() if prim != name]
     body: list[str] = []
     files: dict[str, bytes] = {}
@@ -171,9 +173,7 @@ def _own_ranges(sensor: PortableSensor) -> Iterator[tuple[str, float]]:
             yield key, value
 
 
-def _values(
-    sensor: PortableSensor, emitters: Emitters | None
-) -> tuple[list[str], list[str]]:
+def _values(sensor: PortableSensor, emitters: Emitters | None) -> tuple[list[str], list[str]]:
     """Return the API schemas of a sensor's prim, and its attributes."""
     if sensor.kind == CAMERA:
         return _camera(sensor)
@@ -320,5 +320,3 @@ def _mesh(name: str, points: Floats, faces: Ints, is_glass: bool) -> Iterator[st
 def _points(points: Any) -> list[str]:
     """Return points of single precision as short texts that read back to the same bits."""
     return [f"({x!s}, {y!s}, {z!s})" for x, y, z in points]
-
-

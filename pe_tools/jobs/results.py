@@ -4,6 +4,7 @@ The files of a run are one set. `FileSet` writes them together, with result.json
 import json
 import platform
 from collections.abc import Collection, Iterable, Mapping
+from dataclasses import asdict
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -122,6 +123,20 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
         "run": run_dict(outcome.seconds, host or {}),
     }
     return finite(data)  # type: ignore[no-any-return]
+
+
+def score_facts(outcome: Outcome) -> dict[str, Any]:
+    """Return what a score found as plain data, for files of other programs that have the rig: the
+    study's fingerprint, the figures of the dashboard, and the verdicts."""
+    facts = {
+        "study": fingerprint(outcome.study),
+        "voxels": outcome.after.voxels,
+        "stderr": outcome.after.stderr,
+        "coverage": outcome.after.coverage,
+        "figures": [each.to_dict() for each in outcome.dashboard],
+        "verdicts": [asdict(each.summary) for each in outcome.verdicts],
+    }
+    return finite(facts)  # type: ignore[no-any-return]
 
 
 def _value(figure: SearchedFigure, value: Value) -> dict[str, float | None]:

@@ -10,7 +10,6 @@ project, `OURS`.
 
 import math
 import re
-from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -77,30 +76,28 @@ def _is_editors(placed: PlacedPrim) -> bool:
 
 
 def _names(found: Sequence[PlacedPrim]) -> list[str]:
-    """Return a name for each sensor: ours, the prim's own, or, where that is no name of one sensor
-    or is not unique, with the names of the prims above it."""
-    names = []
-    own = Counter(each.name for each in found)
+    """Return a name for each sensor: ours, or the prim's own. Where several prims have the name,
+    those above them that not all share are put in front; a name that tells no sensor from another
+    is replaced by theirs, or by that of the prim above."""
+    groups: dict[str, list[set[str]]] = {}
     for each in found:
-        stated = value_of(each.prim, f"{OURS}name")
-        if isinstance(stated, str) and stated:
-            names.append(stated)
-            continue
-        parts = each.path.strip("/").split("/")
-        name = parts.pop()
-        if parts and GENERIC.fullmatch(name) and own[parts[-1]] == 0:
-            name = parts.pop()
-        elif own[name] > 1 and parts:
-            name = f"{parts.pop()}_{name}"
-        names.append(name)
-    for k, each in enumerate(found):  # two kits of one kind: the kit's name tells them apart
-        parts = each.path.strip("/").split("/")
-        while names.count(names[k]) > 1 and len(parts) > 1:
-            above = parts[len(parts) - 2]
-            parts.pop()
-            if not names[k].startswith(f"{above}_") and names[k] != above:
-                names[k] = f"{above}_{names[k]}"
+        groups.setdefault(each.name, []).append(set(_above(each)))
+    names = []
+    for each in found:
+        stated = text_of(each, f"{OURS}name")
+        above = _above(each)
+        group = groups[each.name]
+        apart = [name for name in above if not all(name in others for others in group)]
+        if not apart and len(group) == 1 and len(above) > 1 and GENERIC.fullmatch(each.name):
+            apart = above[-1:]
+        own = [] if apart and GENERIC.fullmatch(each.name) else [each.name]
+        names.append(stated or "_".join([*apart, *own]))
     return names
+
+
+def _above(placed: PlacedPrim) -> list[str]:
+    """Return the names of the prims above a prim, the outermost first."""
+    return placed.path.strip("/").split("/")[:-1]
 
 
 def _picture_sizes(stage: Stage) -> dict[str, tuple[int, int]]:

@@ -1,9 +1,9 @@
 """Names and defaults of NVIDIA's sensor schemas for OpenUSD, and of this project's attributes."""
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
+from pe_core.base.values import degrees_in_file
 from pe_core.sensors.camera import BrownConrady, KannalaBrandt, Lens
 from pe_core.sensors.radar import Radar
 
@@ -48,14 +48,14 @@ def scans_of(model: Radar) -> list[RadarScan]:
     rows: list[RadarScan] = []
     for number, mode in enumerate(model.modes, 1):
         across, up = (
-            math.degrees(max(abs(float(ends[0])), abs(float(ends[-1]))))
+            degrees_in_file(max(abs(float(ends[0])), abs(float(ends[-1]))))
             for ends in (mode.azimuths, mode.elevations)
         )
         fine = {}
         for key, name in RESOLUTIONS.items():
             value = getattr(mode, name)
             if value is not None:
-                fine[key] = value if key.endswith("M") else math.degrees(value)
+                fine[key] = value if key.endswith("M") else degrees_in_file(value)
         rows.append((f"s{number:03d}", float(mode.max_range or 0.0), across, up, fine))
     return rows
 
@@ -63,4 +63,4 @@ def scans_of(model: Radar) -> list[RadarScan]:
 def spans_of(model: Any) -> tuple[float, float]:
     """Return the spans of azimuth and elevation [deg] of an ultrasonic sensor."""
     (left, right), (low, high) = model.window
-    return math.degrees(right - left), math.degrees(high - low)
+    return degrees_in_file(right - left), degrees_in_file(high - low)

@@ -344,8 +344,9 @@ def _operation(source: Path, place: str, kind: str, value: Any) -> Floats:
         matrix[row, column] = _numbers(source, place, value, 1)[0]
     elif kind.startswith("rotate") and set(kind[6:]) <= set(AXES) and len(kind) in (7, 9):
         axes = kind[6:]
-        angles = _numbers(source, place, value, len(axes))
-        for letter, angle in zip(axes, angles.tolist(), strict=True):  # the first is applied first
+        angles = _numbers(source, place, value, len(axes)).tolist()
+        for letter in axes:  # the first is applied first; angles are those about x, y and z
+            angle = angles[AXES.index(letter)] if len(angles) > 1 else angles[0]
             matrix = _product(_turn(letter, math.radians(angle)), matrix)
     else:
         raise InputError(source, place, "an operation of USD", shown(kind))

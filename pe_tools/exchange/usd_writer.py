@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from pe_core.base.arrays import Floats, Ints
+from pe_core.base.values import degrees_in_file
 from pe_core.scene.vehicle import Vehicle
 from pe_core.sensors.camera import BrownConrady, KannalaBrandt
 from pe_core.version import __version__
@@ -249,7 +250,7 @@ def _lidar(sensor: PortableSensor, emitters: Emitters) -> Iterator[str]:
 
 
 def _degrees(angles: Floats) -> list[float]:
-    return [math.degrees(value) for value in angles.tolist()]
+    return [degrees_in_file(value) for value in angles.tolist()]
 
 
 def _radar(sensor: PortableSensor) -> tuple[list[str], list[str]]:

@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 from pe_core.base.errors import InputError
 from pe_core.base.values import choice
+from pe_core.scene.vehicle_description import Reference
 
 from . import (
     argoverse2,
@@ -26,7 +27,7 @@ from . import (
 )
 from . import lens_pictures as lenses
 from .foreign_values import Export
-from .frames import GROUND, REAR_AXLE, REAR_AXLE_GROUND
+from .frames import GROUND, REAR_AXLE, REAR_AXLE_GROUND, origin_in_ground
 from .portable import ForeignRig, MergeTarget, PortableRig, PortableSensor, SceneFacts
 
 MODEL = "model"  # The model name; properties of a catalogued model are then not lost
@@ -237,6 +238,13 @@ def format_of_file(output: Path, files: Mapping[str, str], chosen: str | None = 
         expected = f"the name of a format ({known}), or a suffix that only one has"
         raise InputError(output, "format", expected, suffix or "no suffix")
     return fitting[0]
+
+
+def origin_of(name: str, reference: Reference | None) -> tuple[float, ...]:
+    """Return the origin of a format's frame in the ground frame, (3,) [m]. `InputError` where it is
+    the rear axle and that is not known."""
+    row = rig_format(name)
+    return origin_in_ground(row.origin, reference, row.title)
 
 
 def _written_suffixes(name: str, file: str) -> tuple[str, ...]:

@@ -22,14 +22,14 @@ from .portable import ForeignRig, PortableSensor
 from .portable_kinds import CAMERA, LIDAR, RADAR, ULTRASONIC
 from .usd_models import MODEL_READERS, PHYSX_LIDAR, PrimValues, by_table
 from .usd_schema import MARKET_NAME, OURS
-from .usd_stage import PlacedPrim, Stage, numbers_of, read_stage, rotation_of, text_of, value_of
+from .usd_stage import PlacedPrim, UsdStage, numbers_of, read_stage, rotation_of, text_of, value_of
 from .usd_text import PrimPath
 
 KINDS = {"Camera": CAMERA, "OmniLidar": LIDAR, "OmniRadar": RADAR, "OmniAcoustic": ULTRASONIC}
 OTHER_KINDS = {"IsaacImuSensor": "imu", "IsaacContactSensor": "contact"}
 """Types of prims that are sensors of kinds without a model here."""
-LEGACY = {"lidar": LIDAR, "radar": RADAR}
-"""Kinds by the token of `cameraSensorType`, of Isaac Sim before 5."""
+LEGACY = (LIDAR, RADAR)
+"""Kinds that Isaac Sim before 5 has as a Camera: the token of `cameraSensorType` is the kind."""
 EDITOR = "OmniverseKit_"  # Beginning of the names of an editor's own cameras
 GENERIC = re.compile("(camera|lidar|radar|acoustic|sensor|omni[a-z]*)(_\\d+)?", re.IGNORECASE)
 """Names of prims that do not tell one sensor from another."""
@@ -67,7 +67,7 @@ def _kind(placed: PlacedPrim) -> str:
         return LIDAR
     if kind == CAMERA:
         token = value_of(placed.prim, "cameraSensorType")
-        return LEGACY.get(token, kind) if isinstance(token, str) else kind
+        return token if token in LEGACY else kind
     return kind or text_of(placed, f"{OURS}kind")
 
 
@@ -100,14 +100,14 @@ def _above(placed: PlacedPrim) -> list[str]:
     return placed.path.strip("/").split("/")[:-1]
 
 
-def _picture_sizes(stage: Stage) -> dict[str, tuple[int, int]]:
+def _picture_sizes(stage: UsdStage) -> dict[str, tuple[int, int]]:
     """Return the sizes [px] of pictures by the path of their camera, of all render products."""
     sizes: dict[str, tuple[int, int]] = {}
     for placed in stage.prims.values():
         if placed.prim.type != "RenderProduct":
             continue
         size = numbers_of("USD", placed, "resolution", 2)
-        targets = value_of(placed.prim, "camera")
+        targets = value_of(placed.prim, CAMERA)  # the relationship has the kind's name
         for target in targets if isinstance(targets, list) else [targets]:
             if size is not None and isinstance(target, PrimPath):
                 path = _absolute(placed.path, target.text)

@@ -4,16 +4,13 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
-from pe_core import catalog
 from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError, shown
 from pe_core.sensors.camera import BrownConrady, Pinhole
-from pe_core.sensors.lidar import Lidar
-from pe_core.sensors.radar import Radar, RadarMode
 
 from .foreign_values import FARTHEST, FOCAL, MAX_BEAMS, MIN_RANGE, PIXELS, RANGE, require_at_most
 from .lens_pictures import Picture
@@ -22,10 +19,13 @@ from .portable_kinds import (
     CAMERA,
     LIDAR,
     RADAR,
+    RESOLUTIONS,
     ULTRASONIC,
-    emitters_of,
-    model_of_table,
-    parameters_of,
+    RadarScan,
+    catalogued_emitters,
+    parameters_of_scans,
+    scans_of,
+    spans_of,
 )
 from .usd_schema import (
     ACOUSTIC,
@@ -39,15 +39,11 @@ from .usd_schema import (
     LENSES,
     NEAR_M,
     OURS,
-    RESOLUTIONS,
     SCAN_RATE_HZ,
     SCANS,
     SQUARE_WITHIN,
     STATES,
     USUAL_SIZE,
-    RadarScan,
-    scans_of,
-    spans_of,
 )
 from .usd_stage import PlacedPrim, numbers_of, text_of, value_of
 
@@ -174,9 +170,9 @@ def _lidar(values: PrimValues, sensor: PortableSensor, _: tuple[int, int] | None
 def _with_own_emitters(sensor: PortableSensor, lines: list[str]) -> PortableSensor:
     """Return a LiDAR without the name of a catalogued model whose emitters are not the file's."""
     scan = sensor.scan
-    if scan is None or scan.compute_emitters is None or sensor.model not in catalog.names(LIDAR):
+    known = catalogued_emitters(sensor.model or "")
+    if scan is None or scan.compute_emitters is None or known is None:
         return sensor
-    known = emitters_of(cast("Lidar", catalog.load(sensor.model)))
     own = scan.compute_emitters()
     pairs = ((known.azimuths, own.azimuths), (known.elevations, own.elevations))
     is_known = known.ticks == own.ticks and all(
@@ -310,29 +306,15 @@ def _radar(values: PrimValues, sensor: PortableSensor, _: tuple[int, int] | None
     lines = []
     table = values.text(f"{OURS}parameters")
     if table:
-        known = cast("Radar", model_of_table(sensor.name, table))
-        if _alike(scans, scans_of(known)):
+        if _alike(scans, scans_of(table, sensor.name)):
             return replace(sensor, parameters=table), []
-        lines.append(f"{sensor.name}: its scans are not those of {known.name}, but the file's")
+        lines.append(f"{sensor.name}: its scans are not those of its table, but the file's")
         sensor = replace(sensor, model=None)
     if not scans:
         return sensor, lines
-    modes = [
-        RadarMode(
-            name,
-            np.radians([-across, across]),
-            np.array([reach, reach]),
-            np.radians([-up, up]),
-            scales=np.ones(2),
-            range_resolution=resolution.get("rangeResM"),
-            azimuth_resolution=_radians(resolution.get("boreAzResDeg")),
-            elevation_resolution=_radians(resolution.get("boreElResDeg")),
-        )
-        for name, reach, across, up, resolution in scans
-    ]
-    model = Radar(sensor.model or sensor.name, modes)
     lines.append(f"{sensor.name}: the file has no RCS; its ranges are taken as those for 10 dBsm")
-    return replace(sensor, parameters=parameters_of(model)), lines
+    parameters = parameters_of_scans(sensor.model or sensor.name, scans)
+    return replace(sensor, parameters=parameters), lines
 
 
 def _alike(a: Sequence[RadarScan], b: Sequence[RadarScan]) -> bool:
@@ -365,9 +347,9 @@ def _acoustic(values: PrimValues, sensor: PortableSensor, _: tuple[int, int] | N
     spans = [values.number(f"{ACOUSTIC}{key}SpanDeg", FOCAL) for key in ("az", "el")]
     table = values.text(f"{OURS}parameters")
     if table:
-        known = model_of_table(sensor.name, table)
+        known = spans_of(table, sensor.name)
         if all(s is None or math.isclose(s, own, rel_tol=1e-6)
-               for s, own in zip(spans, spans_of(known), strict=True)):  # fmt: skip
+               for s, own in zip(spans, known, strict=True)):  # fmt: skip
             return replace(sensor, parameters=table), []
     far = values.number(f"{OURS}maxRange", RANGE)
     if far is None or None in spans:

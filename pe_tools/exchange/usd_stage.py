@@ -52,7 +52,7 @@ class PlacedPrim:
 
 
 @dataclass(slots=True)
-class Stage:
+class UsdStage:
     """The prims of a stage that are defined and active, in its order, by path. `lines` are
     messages on what is not read."""
 
@@ -61,7 +61,7 @@ class Stage:
     lines: list[str]
 
 
-def read_stage(path: Path) -> Stage:
+def read_stage(path: Path) -> UsdStage:
     """Read a stage from a layer and all that it refers to. `InputError` for a damaged layer, one
     that is too large, or more than `MAX_PRIMS` prims."""
     composing = _Composing()
@@ -77,7 +77,7 @@ def read_stage(path: Path) -> Stage:
         place = placed.world.copy()
         place[:3, 3] *= unit
         prims[placed.path] = replace(placed, world=place)
-    return Stage(prims, root.metadata, composing.lines)
+    return UsdStage(prims, root.metadata, composing.lines)
 
 
 def value_of(prim: Prim, name: str) -> Any:

@@ -38,6 +38,11 @@ TOKEN = re.compile(
     """,
     re.VERBOSE | re.DOTALL,
 )
+_NO_BRACKETS = str.maketrans("[](),\r\n\t", "        ")
+_IS_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII).fullmatch
+ARCS = {"references", "payload", "inherits", "specializes"}
+LIST_ORDER = {"prepend": 0, "": 1, "add": 2, "append": 3}
+WORDS = {"true": True, "false": False, "None": None, "inf": math.inf, "nan": math.nan}
 ESCAPES = {"n": "\n", "t": "\t", "r": "\r"}
 ESCAPED = re.compile(r"\\(x[0-9a-fA-F]{2}|.)", re.DOTALL)
 
@@ -80,10 +85,6 @@ class RawArray:
         return np.array(words, dtype=float)
 
 
-_NO_BRACKETS = str.maketrans("[](),\r\n\t", "        ")
-_IS_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII).fullmatch
-
-
 @dataclass(slots=True)
 class Prim:
     """What a layer says of a prim. `type` may be empty. `values` are those of its attributes and
@@ -102,21 +103,17 @@ class Prim:
     selections: dict[str, str] = field(default_factory=dict)
 
 
-ARCS = {"references", "payload", "inherits", "specializes"}
-LIST_ORDER = {"prepend": 0, "": 1, "add": 2, "append": 3}
-
-
 def parse_layer(source: Path, text: str) -> Prim:
     """Return the pseudo-root of a layer. `InputError` with the line where its text is damaged."""
     if not text.lstrip("\ufeff").startswith(MAGIC):
         raise InputError(source, "file", f"a USD layer as text, which begins with {MAGIC}", "none")
     try:
-        return _Parser(source, text).layer()
+        return LayerParser(source, text).layer()
     except RecursionError:
         raise InputError(source, "prims", f"at most {MAX_NESTING} in a row", "more") from None
 
 
-class _Parser:
+class LayerParser:
     """A parser by recursive descent; `at` is the place in the text."""
 
     def __init__(self, source: Path, text: str) -> None:
@@ -363,9 +360,6 @@ class _Parser:
             found[key] = self._value(depth + 1)
         self._take("}")
         return found
-
-
-WORDS = {"true": True, "false": False, "None": None, "inf": math.inf, "nan": math.nan}
 
 
 def _unquoted(token: str) -> str:

@@ -19,7 +19,7 @@ from pe_core.version import __version__
 from .foreign_values import MAX_BEAMS, Export, require_at_most
 from .frames import legal_frame
 from .portable import Emitters, MergeTarget, PortableRig, PortableSensor, SceneFacts, named_apart
-from .portable_kinds import CAMERA, LIDAR, RADAR, ULTRASONIC, model_of_table
+from .portable_kinds import CAMERA, LIDAR, RADAR, ULTRASONIC, scans_of, spans_of
 from .usd_schema import (
     ACOUSTIC,
     CORE,
@@ -32,8 +32,6 @@ from .usd_schema import (
     SCANS,
     STATES,
     VEHICLE_FILE,
-    scans_of,
-    spans_of,
 )
 from .usd_text import array_text, dictionary_lines, number_text, quoted, tuple_text
 
@@ -58,7 +56,8 @@ ABOUT = (
     "Sensor frames: x forward, y left, z up. OmniLidar, OmniRadar and OmniAcoustic look along x as "
     "in Isaac Sim; ovrtx needs them turned by rotateXYZ = (90, 0, -90)."
 )
-Lines = Iterable[str]
+TYPES = {CAMERA: "Camera", LIDAR: "OmniLidar", RADAR: "OmniRadar", ULTRASONIC: "OmniAcoustic"}
+"""Type of the prim of a sensor by its kind; the kind is the prim's name."""
 
 
 def write(sensors: PortableRig, _into: MergeTarget | None) -> Export:
@@ -101,7 +100,7 @@ def write_scene(sensors: PortableRig, facts: SceneFacts) -> Export:
     return {FILE: _joined(text), **files}, lines
 
 
-def _joined(lines: Lines) -> bytes:
+def _joined(lines: Iterable[str]) -> bytes:
     return ("\n".join(lines) + "\n").encode()
 
 
@@ -111,7 +110,9 @@ def _prim_names(names: Sequence[str]) -> list[str]:
     return named_apart([legal_frame(name) for name in names])
 
 
-def _prim(type_name: str, name: str, content: Lines, metadata: Sequence[str] = ()) -> Iterator[str]:
+def _prim(
+    type_name: str, name: str, content: Iterable[str], metadata: Sequence[str] = ()
+) -> Iterator[str]:
     """Yield the lines of a prim; those of its content are indented."""
     if metadata:
         yield f'def {type_name} "{name}" ('
@@ -131,19 +132,15 @@ def _frame(sensor: PortableSensor, name: str, emitters: Emitters | None) -> Iter
     schema, values = _values(sensor, emitters)
     own = [f"custom string {OURS}{key} = {quoted(text)}" for key, text in _own_texts(sensor)]
     own += [f"custom double {OURS}{key} = {number_text(v)}" for key, v in _own_ranges(sensor)]
-    type_name = TYPES.get(sensor.kind or "", ("Xform", "sensor"))
+    type_name = TYPES.get(sensor.kind or "", "Xform")
     about = [f"prepend apiSchemas = [{', '.join(map(quoted, schema))}]"] if schema else []
-    content += _prim(*type_name, [*values, *own], about)
+    content += _prim(type_name, _prim_name(sensor), [*values, *own], about)
     yield from _prim("Xform", name, content)
 
 
-TYPES = {
-    CAMERA: ("Camera", "camera"),
-    LIDAR: ("OmniLidar", "lidar"),
-    RADAR: ("OmniRadar", "radar"),
-    ULTRASONIC: ("OmniAcoustic", "acoustic"),
-}
-"""Type and name of the prim of a sensor by its kind."""
+def _prim_name(sensor: PortableSensor) -> str:
+    """Return the name of a sensor's prim in its frame."""
+    return legal_frame(sensor.kind or "sensor")
 
 
 def _placed(position: Sequence[float], angles: Sequence[float]) -> Iterator[str]:
@@ -254,8 +251,7 @@ def _degrees(angles: Floats) -> list[float]:
 
 
 def _radar(sensor: PortableSensor) -> tuple[list[str], list[str]]:
-    model: Any = model_of_table(sensor.name, sensor.parameters) if sensor.parameters else None
-    scans = [] if model is None else scans_of(model)
+    scans = scans_of(sensor.parameters, sensor.name) if sensor.parameters else []
     lines = []
     for name, reach, across, up, resolution in scans:
         values = {"maxRangeM": reach, "maxAzAngDeg": across, "maxElAngDeg": up, **resolution}
@@ -266,7 +262,7 @@ def _radar(sensor: PortableSensor) -> tuple[list[str], list[str]]:
 
 def _acoustic(sensor: PortableSensor) -> Iterator[str]:
     if sensor.parameters:
-        spans = spans_of(model_of_table(sensor.name, sensor.parameters))
+        spans = spans_of(sensor.parameters, sensor.name)
         for key, span in zip(("az", "el"), spans, strict=True):
             yield f"float {ACOUSTIC}{key}SpanDeg = {number_text(span)}"
 
@@ -276,7 +272,7 @@ def _product(sensor: PortableSensor, name: str) -> Iterator[str]:
     output = OUTPUTS.get(sensor.kind or "")
     if output is None:
         return
-    _, prim = TYPES[sensor.kind or ""]
+    prim = _prim_name(sensor)
     path = f"/{ROOT}/{RENDER}/{name}"
     content = [f"rel camera = </{ROOT}/{SENSORS}/{name}/{prim}>"]
     content.append(f"rel orderedVars = [<{path}/{output}>]")

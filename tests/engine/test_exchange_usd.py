@@ -39,6 +39,7 @@ LIDAR = """
         {more}
     }}
 """
+X, Y, Z = np.eye(3)
 VALIDATOR = Path(sys.executable).with_name("simready-validate")
 
 
@@ -62,9 +63,6 @@ def is_at(sensor, position, axes):
         np.abs(np.subtract(sensor.pose.position, position)).max() < WITHIN
         and np.abs(rotation[:, [0, 2]] - expected).max() < WITHIN
     )
-
-
-X, Y, Z = np.eye(3)
 
 
 def test_emitters_fire_as_often_as_the_rates_say(tmp_path):

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -26,10 +27,10 @@ from pe_core.sensors import beam_field, kind_of
 from pe_core.sensors.field_of_view import FREE, count_by_part
 from pe_core.sensors.lidar.field_of_view import columns_around
 from pe_core.sensors.ray_fan import cast_fan
-from pe_tools.exchange import Written
-from pe_tools.graphics import png_bytes
-from pe_tools.outputs import OutputRequest, SceneOutput
-from pe_tools.outputs.request import plain_names
+
+from ..exchange import Written
+from ..graphics import png_bytes
+from .request import OutputRequest, plain_names
 
 SUMMARY = "masks.json"
 DECIMALS = 6
@@ -110,12 +111,12 @@ def revolution_mask(sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
     return EgoMask(parts.astype(np.int32), lidar.elevations[rows], azimuths[columns])
 
 
-def fan_mask(sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
+def fan_mask(sensor: Sensor, vehicle: Vehicle | None, *, through_covers: bool = False) -> EgoMask:
     """Return the rays of a fan that end on the vehicle, the highest elevation first.
 
     What a cover lets through is free.
     """
-    fan = cast_fan(sensor, vehicle, sensor.kind == "radar")
+    fan = cast_fan(sensor, vehicle, through_covers)
     elevations, azimuths = fan.angles
     flipped = fan.part[::-1, ::-1].astype(np.int32)
     return EgoMask(flipped, elevations[::-1].copy(), azimuths[::-1].copy())
@@ -124,7 +125,7 @@ def fan_mask(sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
 MASKS: dict[str, Callable[[Sensor, Vehicle | None], EgoMask]] = {
     "camera": picture_mask,
     "lidar": revolution_mask,
-    "radar": fan_mask,
+    "radar": partial(fan_mask, through_covers=True),
     "ultrasonic": fan_mask,
 }
 
@@ -180,6 +181,3 @@ def _table(mask: EgoMask) -> bytes:
     seen = mask.sees_out.astype(np.uint8).tolist()
     rows += [[f"{e:g}", *row] for e, row in zip(up.tolist(), seen, strict=True)]
     return csv_text(rows).encode()
-
-
-OUTPUT = SceneOutput("masks", "Ego Masks (PNG, CSV)", "masks", write, True, has_range=False)

@@ -10,13 +10,13 @@ import numpy as np
 from pe_core.base.arrays import Flags, Floats, Ints
 from pe_core.scene import PerceptionSpace, Rig, Vehicle
 from pe_core.sensors import MeasurementCache, Voxels, kind_of
-from pe_tools.exchange import Written
-from pe_tools.graphics import Rgb, sensor_colors_on_paper
-from pe_tools.outputs import BLIND, MountedView, OutputRequest, SceneOutput, Solid, mounted_view
-from pe_tools.outputs.glb import GlbScene, add_vehicle
-from pe_tools.outputs.request import NO_RANGE_M, plain_names
-from pe_tools.outputs.scene_gltf import ROOT, STEP
-from pe_tools.outputs.solid import NEAREST_M, border, free_solid, star
+
+from ..exchange import Written
+from ..graphics import Rgb, sensor_colors_on_paper
+from .glb import GlbScene, add_vehicle
+from .request import BLIND, NO_RANGE_M, OutputRequest, plain_names
+from .scene_gltf import ROOT, STEP
+from .solid import NEAREST_M, MountedView, Solid, border, free_solid, mounted_view, star
 
 HIDDEN: Rgb = (0.30, 0.30, 0.30)
 FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -199,7 +199,3 @@ def write(request: OutputRequest) -> tuple[Written, list[str]]:
         mesh = scene.add_mesh(solid.name, solid.points, solid.faces, material)
         nodes.append(scene.add_node(solid.name, mesh=mesh, extras={"volume_m3": volume(solid)}))
     return {SOLIDS_FILE: scene.encoded(scene.add_node(ROOT, nodes)), **files}, lines
-
-
-TITLE = "Fields of View as Solids (glTF, STL)"
-OUTPUT = SceneOutput("solids", TITLE, "solids", write, True)

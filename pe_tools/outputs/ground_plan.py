@@ -77,7 +77,15 @@ def ground_plan(request: OutputRequest) -> tuple[GroundPlan, list[str]]:
         view = mounted_view(sensor, request.study.vehicle, reach, STEP)
         loops = () if view is None else level_outlines(free_solid(plain, view), 0.0)
         model = f"{sensor.model.name}, {kind_of(sensor).label}"
-        footprint = GroundFootprint(sensor.name, plain, model, color, sensor.pose, reach, loops)
+        footprint = GroundFootprint(
+            name=sensor.name,
+            plain=plain,
+            model=model,
+            color=color,
+            pose=sensor.pose,
+            reach=reach,
+            outlines=loops,
+        )
         if not footprint.outlines:
             lines.append(f"{sensor.name}: sees no ground within {footprint.reach:g} m")
         footprints.append(footprint)
@@ -98,12 +106,15 @@ def level_outlines(solid: Solid, height: float) -> tuple[Floats, ...]:
     above."""
     above = solid.points[solid.faces][..., 2] >= height
     cut = above.any(axis=1) & ~above.all(axis=1)
-    faces, above = solid.faces[cut], above[cut]
+    faces = solid.faces[cut]
+    above = above[cut]
     # Counter-clockwise from outside: an outline comes in where an edge leads down through the
     # plane, and goes on to the triangle beside where one leads up.
-    down, up = _leading(faces, above), _leading(faces, ~above)
+    down = _leading(faces, above)
+    up = _leading(faces, ~above)
     # The points (E, 2) where edges (E, 2) cross a height [m].
-    start, end = solid.points[down[:, 0]], solid.points[down[:, 1]]
+    start = solid.points[down[:, 0]]
+    end = solid.points[down[:, 1]]
     share = (height - start[:, 2]) / (end[:, 2] - start[:, 2])
     points = start[:, :2] + share[:, None] * (end - start)[:, :2]
     numbers, back = (edge.min(axis=1) * len(solid.points) + edge.max(axis=1) for edge in (down, up))
@@ -122,7 +133,8 @@ def outline_from_above(vehicle: Vehicle) -> ClosedLines:
     """Return closed outlines (N, 2) of a vehicle as it is seen from above [m]."""
     low, high = (corner[:2] for corner in vehicle.bounds)
     cell = CELL_M * max(1.0, float((high - low).max()) / AT_ONCE_M)
-    first, last = np.floor(low / cell) - 1, np.ceil(high / cell) + 1
+    first = np.floor(low / cell) - 1
+    last = np.ceil(high / cell) + 1
     x, y = ((a * cell, b * cell) for a, b in zip(first.tolist(), last.tolist(), strict=True))
     space = PerceptionSpace(x, y, (0.0, cell), cell)
     filled = np.isfinite(vehicle.top(space))
@@ -164,7 +176,8 @@ def _feature(name: str, loops: ClosedLines, **properties: Any) -> dict[str, Any]
 
 def signed_area(loop: Floats) -> float:
     """Return the area of a closed outline (N, 2) [m2]; negative where it runs clockwise."""
-    a, b = loop[:-1], loop[1:]
+    a = loop[:-1]
+    b = loop[1:]
     return float((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum()) / 2.0
 
 
@@ -183,9 +196,11 @@ def polygons(loops: ClosedLines) -> list[list[Floats]]:
 
 def _contains(ring: Floats, point: Floats) -> bool:
     """Whether a point (2,) is in a closed ring: a ray from it crosses the ring oddly often."""
-    a, b = ring[:-1], ring[1:]
+    a = ring[:-1]
+    b = ring[1:]
     spans = (a[:, 1] > point[1]) != (b[:, 1] > point[1])
-    a, b = a[spans], b[spans]
+    a = a[spans]
+    b = b[spans]
     share = (point[1] - a[:, 1]) / (b[:, 1] - a[:, 1])
     crossing = a[:, 0] + share * (b[:, 0] - a[:, 0])
     return bool((crossing > point[0]).sum() % 2)

@@ -105,7 +105,8 @@ def picture_mask(sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
 def revolution_mask(sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
     """Return which beams end on the vehicle within their maximum range, however near."""
     lidar: Any = sensor.model
-    occluded, azimuths = beam_field(sensor, vehicle).occluded_by, columns_around(lidar)
+    occluded = beam_field(sensor, vehicle).occluded_by
+    azimuths = columns_around(lidar)
     rows, columns = (np.argsort(-angles, kind="stable") for angles in (lidar.elevations, azimuths))
     parts = occluded.reshape(len(rows), len(columns))[np.ix_(rows, columns)]
     return EgoMask(parts.astype(np.int32), lidar.elevations[rows], azimuths[columns])

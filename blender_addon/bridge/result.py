@@ -44,6 +44,7 @@ class Result:
         self.after = data["after"]
         began = data.get(BEGAN, data)
         self.before = began["before"]
+        self.placed_before = began.get("placements", {}).get("before", {})
         first = began.get("figures", {})
         figures = {"before": first.get("before"), "after": data.get("figures", {}).get("after")}
         self.kind: str = data["kind"]
@@ -157,7 +158,7 @@ def begin_with(settings: PropertyGroup, first: Result) -> None:
     """Note that a search went on from the result of another: it is compared with its start."""
     data = json.loads(settings.result_json)
     data[BEGAN] = first.data.get(BEGAN) or {
-        key: first.data[key] for key in ("before", "figures") if key in first.data
+        key: first.data[key] for key in ("before", "figures", "placements") if key in first.data
     }
     settings.result_json = json.dumps(data)
 

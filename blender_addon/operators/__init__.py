@@ -12,6 +12,7 @@ from . import (
     handles,
     known_rigs,
     look_through,
+    modes,
     mounts,
     named_places,
     panel_rows,
@@ -44,6 +45,7 @@ def unregister() -> None:
     """End what is running, and what waits for the mouse; remove what `register` added."""
     running_job.unregister()
     placement.end()
+    modes.end()
     exports.unregister()
     view_pictures.unregister()
     shortcuts.unregister()

@@ -15,7 +15,7 @@ from .figure import HIGHER, LOWER, NO_FIGURE, Figure
 from .figures import ENTROPY, FIGURES, KEPT, ON_FRONT, REQUIREMENTS, figure_of
 from .goals import Front, Goals, Start, Stop
 from .journal import EvaluatedRig, Journal, checked_entries
-from .key_figures import KeyFigures, Reading, dashboard
+from .key_figures import KeyFigures, Reading, ReadingRow, dashboard
 from .limit import Limit, LimitRule
 from .limits import LIMITED, NUMBERED, Limits
 from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_method

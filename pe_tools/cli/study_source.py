@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import TextIO
 
 from pe_core.base.errors import InputError, require_name, shown
 from pe_core.base.input_files import not_noting_inputs
@@ -40,6 +41,8 @@ class StudyFiles:
 
     versions: dict[str, str] | None = None
     """Versions of the program around the engine."""
+    out: TextIO | None = None
+    """Where the replies of a session go; None: to stdout."""
 
     def add_arguments(self, verb: argparse.ArgumentParser, takes: str) -> None:
         """Add what names the studies to the parser of a verb."""
@@ -58,8 +61,7 @@ class StudyFiles:
             return self._read(args.study, changes, args)
         if getattr(args, "resume", None) is None:
             args.usage_error("expected STUDY")
-        study = with_changes(read_search(args.resume).study, changes, args.resume)
-        return with_options(study, args)
+        return self.changed(read_search(args.resume).study, args, args.resume)
 
     def studies(self, args: argparse.Namespace) -> dict[str, Study]:
         """Return the studies of a command line by name, with the changes of its options."""
@@ -72,14 +74,23 @@ class StudyFiles:
         anywhere = getattr(args, "snap", False)
         folder = Path(path).parent
         study = changed_study(data, changes, path, folder, starts_anywhere=anywhere)
-        with _naming(path):
+        with naming_study(path):
             return with_options(study, args)
 
     @contextmanager
     def naming(self, args: argparse.Namespace) -> Iterator[None]:
         """Have errors of the study name its file, within."""
-        with _naming(getattr(args, "study", None)):
+        with naming_study(getattr(args, "study", None)):
             yield
+
+    def opened(self) -> Study:
+        """Return the study that a session begins with; `InputError` where there is none."""
+        expected = 'one that was loaded: {"do": "load", "study": "study.toml"}'
+        raise InputError("session", "study", expected, "none")
+
+    def changed(self, study: Study, args: argparse.Namespace, source: str) -> Study:
+        """Return a study in memory with the changes of a command line; errors name the source."""
+        return with_options(with_changes(study, read_changes(args.set), source), args)
 
     def artifacts(self, study: Study, *, searches: bool) -> Sequence[More]:
         """Return further files of a run; `InputError` where a result could not be kept."""
@@ -107,7 +118,7 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
 
 
 @contextmanager
-def _naming(path: str | None) -> Iterator[None]:
+def naming_study(path: str | None) -> Iterator[None]:
     """Have errors of a study name its file, within."""
     try:
         yield

@@ -4,7 +4,6 @@ The files of a run are one set. `FileSet` writes them together, with result.json
 import json
 import platform
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import asdict
 from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
@@ -134,8 +133,8 @@ def score_facts(outcome: Outcome) -> dict[str, Any]:
         "voxels": outcome.after.voxels,
         "stderr": outcome.after.stderr,
         "coverage": outcome.after.coverage,
-        "figures": [each.to_dict() for each in outcome.dashboard],
-        "verdicts": [asdict(each.summary) for each in outcome.verdicts],
+        "figures": [record(each.row) for each in outcome.dashboard],
+        "verdicts": [record(each.summary) for each in outcome.verdicts],
     }
     return finite(facts)  # type: ignore[no-any-return]
 

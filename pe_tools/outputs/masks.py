@@ -133,7 +133,8 @@ MASKS: dict[str, Callable[[Sensor, Vehicle | None], EgoMask]] = {
 
 def write(request: OutputRequest) -> tuple[Written, list[str]]:
     """Return a PNG per sensor, a table per LiDAR, the occluded shares by part, and messages."""
-    rig, vehicle = request.study.rig, request.study.vehicle
+    rig = request.study.rig
+    vehicle = request.study.vehicle
     names, lines = plain_names([sensor.name for sensor in rig])
     if vehicle is None:
         lines.append("the study has no vehicle: masks are white")

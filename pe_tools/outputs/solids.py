@@ -22,7 +22,9 @@ HIDDEN: Rgb = (0.30, 0.30, 0.30)
 FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 HEADER_BYTES = 80
 SOLIDS_FILE = "solids.glb"
-FREE_ALPHA, HIDDEN_ALPHA, BLIND_ALPHA = 0.25, 0.5, 0.4
+FREE_ALPHA = 0.25
+HIDDEN_ALPHA = 0.5
+BLIND_ALPHA = 0.4
 BLIND_NAME = "blind_volume"
 Coloured = tuple[Solid, Rgb, float]
 SIDES = {
@@ -112,8 +114,10 @@ def joined(cubes: Flags) -> Flags:
         before = int(cubes.sum())
         for axes in combinations(range(3), 2):
             turned = np.moveaxis(cubes, axes, (0, 1))
-            a, b = turned[:-1, :-1], turned[1:, :-1]
-            c, d = turned[:-1, 1:], turned[1:, 1:]
+            a = turned[:-1, :-1]
+            b = turned[1:, :-1]
+            c = turned[:-1, 1:]
+            d = turned[1:, 1:]
             b |= a & d & ~b & ~c
             a |= b & c & ~a & ~d
         if int(cubes.sum()) == before:
@@ -172,7 +176,8 @@ def write(request: OutputRequest) -> tuple[Written, list[str]]:
     shown: list[Coloured] = []
     colors = sensor_colors_on_paper(request.study.rig)
     for sensor in request.study.rig:
-        reach, plain = request.reach(sensor), names[sensor.name]
+        reach = request.reach(sensor)
+        plain = names[sensor.name]
         view = mounted_view(sensor, request.study.vehicle, reach, STEP)
         if view is None:
             lines.append(f"{sensor.name}: no field of view of a {kind_of(sensor).label} is known")
@@ -181,7 +186,8 @@ def write(request: OutputRequest) -> tuple[Written, list[str]]:
             ends = f"its solids end at {NO_RANGE_M:g} m (--range)"
             lines.append(f"{sensor.name}: has no range of its own; {ends}")
         files[f"{plain}_field.stl"] = stl_bytes(whole_solid(f"{plain}_field", view))
-        free, hidden = free_solid(f"{plain}_free", view), hidden_solid(f"{plain}_hidden", view)
+        free = free_solid(f"{plain}_free", view)
+        hidden = hidden_solid(f"{plain}_hidden", view)
         shown.append((free, colors[sensor.name], FREE_ALPHA))
         shown += [(hidden, HIDDEN, HIDDEN_ALPHA)] if hidden is not None else []
     vehicle = request.study.vehicle

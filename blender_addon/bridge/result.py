@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import bpy
 from bpy.types import Object, PropertyGroup, Scene
 
-from ..engine import advice, jobs, pe, search, sight, studies
+from ..engine import advice, jobs, known_defects, pe, search, sight, studies
 from .requirements import store_verdicts
 from .scene_diagnostics import DRIVER, MISSING
 
@@ -85,8 +85,9 @@ class Result:
 
     @cached_property
     def missing(self) -> tuple[str, ...]:
-        """What the scene lacked when it was scored."""
-        return tuple(each.text for each in self.warnings if each.code in MARKING)
+        """What the scene lacked when it was scored, and defects that were mended since."""
+        lacking = (each.text for each in self.warnings if each.code in MARKING)
+        return *lacking, *known_defects.mended_since(self.data)
 
     @property
     def fragile(self) -> str:

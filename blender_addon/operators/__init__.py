@@ -24,6 +24,7 @@ from . import (
     surroundings,
     upright,
     variants,
+    verify_engine,
     view_pictures,
     where,
 )

@@ -1,6 +1,6 @@
 """The command ``pe``, and the parts that all command lines of the project share."""
 
-from .answers import FilesAnswer
+from .answers import FilesAnswer, VerifyAnswer
 from .check_verb import check, check_study
 from .command import Parser, as_typed, run
 from .explain_verbs import refuse_different, scored
@@ -9,6 +9,16 @@ from .options import whole
 from .run_job import More, drive
 from .story_text import chosen_stories, story_names
 from .study_source import NONE, ONE, PERHAPS, SOME, StudyFiles
-from .terminal import BAD_INPUT, DONE, USAGE, Answer, answered, open_missing_streams, show, tell
+from .terminal import (
+    BAD_INPUT,
+    DONE,
+    NOT_MET,
+    USAGE,
+    Answer,
+    answered,
+    open_missing_streams,
+    show,
+    tell,
+)
 from .verbs import VERBS, Verb, answer, command_parser
 from .where_verb import where

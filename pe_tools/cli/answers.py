@@ -192,3 +192,19 @@ class Reply:
     notes: tuple[str, ...] = ()
     answer: Annotated[Any, AtTimes] = None
     error: Annotated[ReplyError | None, AtTimes] = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VerifyAnswer:
+    """The engine held to its golden cases, as in verify.json. `digests`: of all files of the engine
+    (`code`), of all values to the last bit (`results`); `bases`: where right values are from."""
+
+    passed: int
+    failed: int
+    versions: Mapping[str, str]
+    machine: OpenTable
+    digests: Mapping[str, str]
+    bases: Mapping[str, str]
+    cases: OpenRows
+    known_defects: OpenRows
+    seconds: float

@@ -2,19 +2,22 @@
 
 import argparse
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TextIO
 
 from pe_core.base.errors import InputError, require_name, shown
+from pe_core.base.files import read_bytes
 from pe_core.base.input_files import not_noting_inputs
+from pe_core.base.table_reader import parse_json
 from pe_core.search.goals import Start
-from pe_core.study import STUDY, StateInWeather, Study, load_study, load_study_data
+from pe_core.study import RESULT, STUDY, StateInWeather, Study, load_study, load_study_data
 
 from ..advice import Advice
 from ..jobs import export_study, read_search
+from ..known_defects import mended_since
 from ..sweep import KeyChange, changed_study, read_changes
 from .run_job import More
 from .terminal import tell
@@ -73,6 +76,7 @@ class StudyFiles:
         data = load_study_data(Path(path))
         anywhere = getattr(args, "snap", False)
         folder = Path(path).parent
+        tell_mended_defects(folder)
         study = changed_study(data, changes, path, folder, starts_anywhere=anywhere)
         with naming_study(path):
             return with_options(study, args)
@@ -99,6 +103,17 @@ class StudyFiles:
     def notes(self) -> tuple[Advice, ...]:
         """Return warnings about the source."""
         return ()
+
+
+@not_noting_inputs()
+def tell_mended_defects(folder: Path) -> None:
+    """Print which defects the result in a study's folder may have that were mended since."""
+    path = folder / RESULT
+    if path.is_file():
+        with suppress(InputError):  # another program's file of that name
+            data = parse_json(path, read_bytes(path))
+            for line in mended_since(data if isinstance(data, dict) else {}):
+                tell(f"{path}: {line}")
 
 
 def with_options(study: Study, args: argparse.Namespace) -> Study:

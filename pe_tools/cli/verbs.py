@@ -27,6 +27,7 @@ from .answers import (
     RigsAnswer,
     SensorAnswer,
     SweepAnswer,
+    VerifyAnswer,
     WhereAnswer,
 )
 from .catalog_verb import show_sensors
@@ -160,6 +161,11 @@ def _add_plugin_verbs(point: EntryPoint, verbs: Any) -> None:
 def _review(source: StudyFiles, args: argparse.Namespace) -> Answer:
     page: Answer = shipped("page.review")(source.studies(args), args, source.versions)
     return page
+
+
+def _verify(source: StudyFiles, args: argparse.Namespace) -> Answer:
+    found: Answer = shipped("verify.engine")(args, source.versions)
+    return found
 
 
 def _job(source: StudyFiles, args: argparse.Namespace) -> Answer:
@@ -301,5 +307,14 @@ VERBS = (
         options="",
         function=_serve,
         answer=Reply,
+    ),
+    Verb(
+        "verify",
+        MORE,
+        "hold the engine as it is installed to its golden cases; 3: some fail",
+        NONE,
+        options="folder",
+        function=_verify,
+        answer=VerifyAnswer,
     ),
 )

@@ -60,7 +60,8 @@ def hidden_solid(name: str, view: MountedView) -> Solid | None:
     if not occluded[view.faces].any():
         return None
     taken = _without_pinches(view.faces, occluded[view.faces].any(axis=1))
-    faces, count = view.faces[taken], len(view.directions)
+    faces = view.faces[taken]
+    count = len(view.directions)
     outer = view.origin + view.directions * view.reach
     inner = view.origin + view.directions * np.minimum(view.ends, view.reach - NEAREST_M)[:, None]
     a, b = border(faces).T

@@ -38,7 +38,7 @@ CALLS = {
     "export": [["study.toml", "-o", "rig.urdf", "--replace"], ["study.toml", "--to", "line"]],
     "import": [["rig.urdf", "--model", "roof=Velodyne VLP-16 Puck", "-o", "in.toml", "--replace"]],
 }
-"""Calls of each verb in all forms of its answer; `serve` has its own tests."""
+"""Calls of each verb in all forms of its answer; `serve` and `verify` have their own tests."""
 
 
 @pytest.fixture(scope="module")

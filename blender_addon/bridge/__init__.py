@@ -128,6 +128,7 @@ from .variant_results import (
     store_variant_score,
     store_variant_scores,
     stored_outcome,
+    worth_of_differences,
     write_figures,
 )
 from .variants import (

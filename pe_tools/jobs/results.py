@@ -34,7 +34,7 @@ from pe_core.version import __version__
 from ..wording import percent
 from .folder import PROGRAM, FileSet, Write, prepare_folder
 from .job import HistoryRow, Outcome
-from .result_record import End, InputsRecord, ResultRecord, RunRecord, placements
+from .result_record import BeforeOrAfter, InputsRecord, ResultRecord, RunRecord, placements
 from .searched_figure import IN_NATS, SearchedFigure
 from .study_export import fingerprint, inputs_of, study_text, study_writers
 
@@ -121,8 +121,22 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
     return finite(record(made))  # type: ignore[no-any-return]
 
 
-def _ends(both: tuple[T, T] | None) -> dict[End, T] | None:
+def _ends(both: tuple[T, T] | None) -> dict[BeforeOrAfter, T] | None:
     return None if both is None else {"before": both[0], "after": both[1]}
+
+
+def score_facts(outcome: Outcome) -> dict[str, Any]:
+    """Return what a score found as plain data, for files of other programs that have the rig: the
+    study's fingerprint, the figures of the dashboard, and the verdicts."""
+    facts = {
+        "study": fingerprint(outcome.study),
+        "voxels": outcome.after.voxels,
+        "stderr": outcome.after.stderr,
+        "coverage": outcome.after.coverage,
+        "figures": [record(each.row) for each in outcome.dashboard],
+        "verdicts": [record(each.summary) for each in outcome.verdicts],
+    }
+    return finite(facts)  # type: ignore[no-any-return]
 
 
 def _value(figure: SearchedFigure, value: Value) -> dict[str, float | None]:

@@ -34,7 +34,7 @@ from pe_core.version import __version__
 from ..wording import percent
 from .folder import PROGRAM, FileSet, Write, prepare_folder
 from .job import HistoryRow, Outcome
-from .result_record import End, InputsRecord, ResultRecord, RunRecord, placements
+from .result_record import BeforeOrAfter, InputsRecord, ResultRecord, RunRecord, placements
 from .searched_figure import IN_NATS, SearchedFigure
 from .study_export import fingerprint, inputs_of, study_text, study_writers
 
@@ -121,7 +121,7 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
     return finite(record(made))  # type: ignore[no-any-return]
 
 
-def _ends(both: tuple[T, T] | None) -> dict[End, T] | None:
+def _ends(both: tuple[T, T] | None) -> dict[BeforeOrAfter, T] | None:
     return None if both is None else {"before": both[0], "after": both[1]}
 
 

@@ -6,7 +6,7 @@ import bpy
 import pytest
 
 from blender_addon import bridge
-from blender_addon.engine import exchange, pe
+from blender_addon.engine import exchange, pe, studies
 from pe_tools.cli.verbs import main
 from tests.addon import scenes
 from tests.addon.command_line import run_here
@@ -25,7 +25,7 @@ def wheel(name, x):
 def axled(car):
     place = {"location": (1.5, 0.1, 1.3), "rotation_euler": (0.0, 0.1, 0.2)}
     scenes.add_sensor("eye", "Front 120 deg 8 MP", **place)
-    bridge.write_reference(car.perception_entropy, AXLE)
+    bridge.put(car.perception_entropy, bridge.REFERENCE, studies.write(AXLE))
     return car
 
 

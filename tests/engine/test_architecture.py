@@ -57,6 +57,7 @@ ROOMS = {
     },
     "pe_tools": {
         "versions": set(),
+        "templating": set(),
         "known_defects": set(),
         "formats": set(),
         "exchange": {"formats"},
@@ -71,6 +72,7 @@ ROOMS = {
             "versions",
             "known_defects",
             "wording",
+            "templating",
             "formats",
             "graphics",
             "exchange",
@@ -79,7 +81,7 @@ ROOMS = {
             "outputs",
             "sweep",
         },
-        "page": {"wording", "formats", "graphics", "advice", "jobs", "cli"},
+        "page": {"wording", "templating", "formats", "graphics", "advice", "jobs", "cli"},
         "verify": {"versions", "known_defects", "wording", "jobs", "cli"},
         "plot": {"graphics"},
         "public": {"formats", "exchange", "advice", "jobs", "plot"},
@@ -98,8 +100,6 @@ LIBRARIES = {
     "trimesh": {"pe_tools/formats"},
     "pyarrow": {"pe_tools/exchange"},
     "matplotlib": {"pe_tools/plot.py"},
-    "jinja2": {"pe_tools/page", "pe_tools/cli"},
-    "markupsafe": {"pe_tools/page"},
 }
 """Libraries besides NumPy, and the rooms in which they are imported."""
 FACES_ONLY = ("benchmarks", "blend_assets", "tools")

@@ -14,8 +14,8 @@ from bpy.types import Collection, Depsgraph, Mesh, Object, PropertyGroup, Scene
 from ..choices import BY_PARTS, ON_SLOTS, ON_SURFACE, LimitBox
 from ..engine import pe, search, studies
 from .rig import pose_of
-from .scene_settings import values_of
-from .sensor_records import SensorRecord, bounds_by_axis
+from .sensor_records import SensorRecord
+from .study_table import TableData, read_row, value_at
 from .transform_constraints import free_axes
 from .vehicle import drawn_meshes, placed_triangles, triangles_of
 
@@ -62,15 +62,15 @@ def mount_of_row(scene: Scene, depsgraph: Depsgraph, row: MountSettings) -> sear
     """Return one mount of a scene. `InputError` when it has no faces, or no slots."""
     if row.kind == ON_SLOTS:
         return pe.SlotMount(_slots(row, depsgraph))
-    own = values_of(row, pe.SurfaceMount)
     if row.faces == BY_PARTS:
-        return pe.SurfaceMount(part_names(row), **own)
+        return read_row(pe.SurfaceMount, row, f"mount {row.name!r}", parts=part_names(row))
     vehicle = scene.perception_entropy.vehicle
     faces = painted_area(vehicle, depsgraph, row)
     if not len(faces):
         raise area_problem(row)
     area = pe.MountArea(faces, studies.AREAS, (row.name,))
-    return pe.SurfaceMount((), **own, area=area)
+    own = read_row(pe.SurfaceMount, row, f"mount {row.name!r}", parts=[row.name])
+    return replace(own, parts=(), area=area)
 
 
 def with_mount(study: pe.Study, scene: Scene, depsgraph: Depsgraph, name: str) -> pe.Study:
@@ -124,12 +124,11 @@ def followers_of(pairs: Sequence[Sequence[str]], groups: Sequence[Sequence[str]]
     return frozenset([p[1] for p in pairs] + [name for group in groups for name in group[1:]])
 
 
-def constraints_of(scene: Scene) -> pe.Constraints:
-    """Return the constraints of a scene's search. `InputError` when a limit or a no-go area is
-    impossible."""
-    values = values_of(scene.perception_entropy, pe.Constraints)
+def constraints_of(scene: Scene, wanted: pe.Mounting) -> pe.Constraints:
+    """Return the constraints of a scene's search, with its no-go areas. `InputError` when one of
+    them is impossible."""
     try:
-        return pe.Constraints(**values, no_go=no_go_of(scene))
+        return replace(wanted.constraints, no_go=no_go_of(scene))
     except pe.InputError as error:
         raise of_scene(error) from None
 
@@ -239,8 +238,7 @@ def bounds_box(
     """Return the box of a sensor's own bounds; None for one without any. On a fixed axis the box
     has no extent. On a free axis without bounds it has the default bounds; for a sensor on a
     surface it spans the faces `around` (F, 3, 3) and the sensor."""
-    settings = obj.perception_entropy
-    limits = bounds_by_axis(settings.bounded, settings.bounds_low, settings.bounds_high)
+    limits: TableData = value_at(obj.perception_entropy.table, ("bounds",), {})
     if not set("xyz") & set(limits):
         return None
     usual = search.default_bounds(sensor, vehicle)

@@ -9,7 +9,7 @@ from bpy.types import Collection, Depsgraph, LayerCollection, Mesh, Object, Scen
 
 from ..engine import geometry, pe
 from .rig import mounted_on_sensor
-from .scene_settings import as_typed
+from .study_table import as_typed
 
 RESIDUAL = "pe_residual"
 """Mesh attribute with what single precision leaves out of the points of an imported vehicle."""

@@ -13,7 +13,6 @@ from bpy_extras.io_utils import ImportHelper
 
 from .. import bridge, signals, vehicle_cache
 from ..engine import catalog, exchange, graphics, pe, search, studies
-from ..properties import FREE_BY_DEFAULT
 from ..sensor_kinds import mount_of
 from .declared import INTERNAL, Told, chosen_file, operator
 from .exports import FORMAT_ITEMS
@@ -85,12 +84,7 @@ def record_of(sensor: catalog.KnownSensor) -> bridge.SensorRecord:
     values = (*sensor.pose.position, *sensor.pose.rpy)
     pose = search.pose_from_values(dict(zip(search.AXES, values, strict=True)))
     return bridge.SensorRecord(
-        name=sensor.name,
-        model=sensor.model,
-        pose=pose,
-        free=FREE_BY_DEFAULT,
-        display=mount.display,
-        size_m=mount.size_m,
+        name=sensor.name, model=sensor.model, pose=pose, display=mount.display, size_m=mount.size_m
     )
 
 
@@ -200,7 +194,7 @@ def import_rig(context: bpy.types.Context, filepath: str, format: str) -> Told:
     scene = context.scene
     several = [row.files for row in exchange.RIG_FORMATS.values() if row.is_folder]
     place = path.parent if any(path.name in files for files in several) else path
-    reference = bridge.reference_of(scene.perception_entropy)
+    reference = bridge.document_of(scene.perception_entropy, "reference").reference
     name = format
     found = exchange.import_rig(place, None if name == BY_NAME else name, reference)
     title = path.stem or path.parent.name

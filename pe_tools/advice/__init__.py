@@ -6,6 +6,7 @@ from pe_core.search import KeyFigures
 from pe_tools.wording import joined, percent
 from ..wording import off_by
 from .advice import FRAGILE, NOT_KEPT, UNMET, Advice, fragile, not_kept, unmet
+from .differences import Worth, worth_lines, worth_rows
 from .flatness import Flatness, flatness_lines, flatness_of
 from .body_sight import BodySight, StandingBody, see_bodies
 from .key_figures import SensorRow, loss_text, sensor_rows, sensor_table

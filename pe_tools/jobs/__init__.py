@@ -9,7 +9,7 @@ from .front_job import FrontJob, FrontJournals, has_front
 from .job import HistoryRow, Job, Outcome, Progress, StartEnd, best_so_far
 from .result_record import FrontRecord, OpenTable, PlacedSensors, ResultRecord, placements
 from .results import SearchState, add_to_result, condition_lines
-from .results import result_dict, result_names, write_outcome
+from .results import result_dict, result_names, score_facts, write_outcome
 from .score_and_optimize import OptimizeJob, ScoreJob
 from .searched_figure import SearchedFigure, searched_figure, searched_on
 from .stopping import scatter_text, stop_text, sureness_lines

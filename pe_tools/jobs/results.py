@@ -125,6 +125,20 @@ def _ends(both: tuple[T, T] | None) -> dict[BeforeOrAfter, T] | None:
     return None if both is None else {"before": both[0], "after": both[1]}
 
 
+def score_facts(outcome: Outcome) -> dict[str, Any]:
+    """Return what a score found as plain data, for files of other programs that have the rig: the
+    study's fingerprint, the figures of the dashboard, and the verdicts."""
+    facts = {
+        "study": fingerprint(outcome.study),
+        "voxels": outcome.after.voxels,
+        "stderr": outcome.after.stderr,
+        "coverage": outcome.after.coverage,
+        "figures": [record(each.row) for each in outcome.dashboard],
+        "verdicts": [record(each.summary) for each in outcome.verdicts],
+    }
+    return finite(facts)  # type: ignore[no-any-return]
+
+
 def _value(figure: SearchedFigure, value: Value) -> dict[str, float | None]:
     """Return the figure of a value, null where it breaks constraints, and by how much."""
     return dict(zip((figure.key, VIOLATION), figure.cells(value), strict=True))

@@ -37,7 +37,7 @@ def placements(rig: Rig) -> PlacedSensors:
 
 
 @dataclass(frozen=True, slots=True)
-class RunRecord:
+class RunMetadata:
     """How long a run took, and the versions of the programs; of a page, the command."""
 
     seconds: float
@@ -73,7 +73,7 @@ class FrontRecord:
     refused: Any
     notes: Any
     inputs: OpenTable
-    run: RunRecord
+    run: RunMetadata
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,4 +113,4 @@ class ResultRecord:
     warnings: tuple[Advice, ...]
     history: tuple[OpenTable, ...]
     inputs: InputsRecord
-    run: RunRecord
+    run: RunMetadata

@@ -34,7 +34,7 @@ from pe_core.version import __version__
 from ..wording import percent
 from .folder import PROGRAM, FileSet, Write, prepare_folder
 from .job import HistoryRow, Outcome
-from .result_record import BeforeOrAfter, InputsRecord, ResultRecord, RunRecord, placements
+from .result_record import BeforeOrAfter, InputsRecord, ResultRecord, RunMetadata, placements
 from .searched_figure import IN_NATS, SearchedFigure
 from .study_export import fingerprint, inputs_of, study_text, study_writers
 
@@ -144,11 +144,11 @@ def _value(figure: SearchedFigure, value: Value) -> dict[str, float | None]:
     return dict(zip((figure.key, VIOLATION), figure.cells(value), strict=True))
 
 
-def run_record(seconds: float, host: Mapping[str, str]) -> RunRecord:
+def run_record(seconds: float, host: Mapping[str, str]) -> RunMetadata:
     """Return the part of a result about the run: its duration, and versions of the programs."""
     own = {"perception-entropy": __version__, "numpy": np.__version__}
     versions = {**own, "python": platform.python_version(), **host}
-    return RunRecord(round(seconds, 3), versions)
+    return RunMetadata(round(seconds, 3), versions)
 
 
 def write_outcome(

@@ -154,13 +154,12 @@ class ExpressionParser:
         return lambda scope: (first(scope), *rest(scope))
 
     def expression(self) -> Expression:
-        """Take ``value if condition else value``, or what binds closer."""
+        """Take ``a if condition else b``, or what binds closer; without ``else`` it may be ""."""
         value = self._either()
         if not self.skip("if"):
             return value
         condition = self._either()
-        self.expect("else")
-        other = self.expression()
+        other = self.expression() if self.skip("else") else _constant("")
         return lambda scope: value(scope) if condition(scope) else other(scope)
 
     def condition(self) -> Expression:

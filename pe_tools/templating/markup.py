@@ -27,5 +27,7 @@ class Markup(str):
 
 
 def escape(value: object) -> Markup:
-    """Return a value as HTML, also for attributes; markup as it is."""
-    return value if isinstance(value, Markup) else Markup(str(value).translate(ESCAPES))
+    """Return a value as HTML, also for attributes; markup, of other libraries too, as it is."""
+    if (own := getattr(value, "__html__", None)) is not None:
+        return value if isinstance(value, Markup) else Markup(own())
+    return Markup(str(value).translate(ESCAPES))

@@ -40,8 +40,8 @@ NEVER = -math.inf  # Margin of a story that is never confirmed: there is no wors
 OTHER_HARDWARE = (
     "The rigs differ in models or numbers of sensors. On simulated rigs of LiDARs entropy was not "
     "shown to rank better than the number of beams, and it can prefer a rig with a blind sector; "
-    "nor was it shown to rank rigs of cameras; radars were not tested. Look at blind ground, and at the expected AP in traffic, "
-    "beside it (docs/validity)."
+    "nor was it shown to rank rigs of cameras; radars were not tested. Look at blind ground, and "
+    "at the expected AP in traffic, beside it (docs/validity)."
 )
 """Note beside scores of rigs that differ in their sensors, not in their placement alone."""
 OTHER_RETURNS = "LiDAR returns differ, as in the paper or on the road: do not compare scores."

@@ -34,7 +34,7 @@ KINDS = {
         "lidars_good": "LiDARs, one vehicle, good placements",
         "lidars_fixed": "LiDARs, one vehicle",
     },
-    CAMERA.name: {"cameras": "cameras"},
+    CAMERA.name: {"cameras": "cameras, by cars within 50 m"},
 }
 """By kind of sensor: rigs that had pairs, the first one counts that the table has, and their
 words."""

@@ -93,6 +93,12 @@ def test_nothing_is_said_where_no_pairs_were_alike(changes, rigs, one_vehicle):
     assert worth_rows(study(**changes), rigs, one_vehicle=one_vehicle) == {}
 
 
+def test_rigs_of_cameras_have_the_row_of_cameras_whatever_their_models():
+    rigs = [rig_at(0.0, pe.Camera("camera", 640, 480, fov)) for fov in (1.0, 1.5)]
+    found = worth_rows(study(), rigs, one_vehicle=False)
+    assert {worth.kind for worth in found.values()} == {"cameras"} and "entropy" not in found
+
+
 def row_of(values, error, measure="entropy", group="rig"):
     errors = tuple(tuple(0.0 if i == j else error for j in range(3)) for i in range(3))
     return ComparedRow(group, "", measure, values, errors=errors, factor=2.13)

@@ -38,7 +38,9 @@ search_problems.py says what each problem is.
 - Optuna GP: a Gaussian process, at most two minutes of processor time a run; slots are categories.
 
 Constraints: a placement that breaks a rule is not evaluated and counts nothing. CMA-ES draws it
-anew; the others are told a penalty, the worst entropy so far plus the number of broken rules."""
+anew; the others are told a penalty, the worst entropy so far plus the number of broken rules.
+
+Where a cell has fewer than five seeds, as it says, nothing is best and nothing is ranked."""
 SEEDS = 5
 
 Json = dict[str, Any]
@@ -101,17 +103,17 @@ def _cell(values: list[float], best: float) -> str:
     if not values:
         return "-"
     middle = f"{median(values):.3f}"
-    middle = f"**{middle}**" if median(values) == best else middle
+    middle = f"**{middle}**" if median(values) == best and len(values) == SEEDS else middle
     count = "" if len(values) == SEEDS else f", {len(values)} of {SEEDS}"
     return f"{middle} ({max(values):.3f}{count})"
 
 
 def _mean_rank(runs: list[Json], method: str, methods: list[str]) -> str:
-    """Return the mean rank of a method's median over the problems that all methods have runs of."""
+    """Return the mean rank of a method's median over problems with all seeds of all methods."""
     ranks = []
     for name in PROBLEMS:
         ends = {m: entropies(runs, name, m) for m in methods}
-        if all(ends.values()):
+        if all(len(values) == SEEDS for values in ends.values()):
             middles = {m: median(values) for m, values in ends.items()}
             ranks.append(1 + sum(value < middles[method] for value in middles.values()))
     return f"{mean(ranks):.1f} of {len(ranks)}" if ranks else "-"

@@ -22,6 +22,7 @@ from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_
 from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .objective import NO_VALUE, FeasibilityRule, Objective, Value, as_objective, violation_sum
 from .optimize import Step, optimize
+from .own_places import OwnPlace, OwnPlaces, PathPoint
 from .parametrization import Candidate, Parametrization, feasible_start, mirrored, rig_on_mounts
 from .payload import Payload, Unreadable, send_payload
 from .places import MountingPlaces, SurfacePlace, outward_yaw

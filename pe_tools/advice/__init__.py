@@ -6,10 +6,12 @@ from pe_core.search import KeyFigures
 from pe_tools.wording import joined, percent
 from ..wording import off_by
 from .advice import FRAGILE, NOT_KEPT, UNMET, Advice, fragile, not_kept, unmet
+from .free_region import EDGE, FreeRegion, Limitation, Way, region_lines, usual_loss
 from .flatness import Flatness, flatness_lines, flatness_of
 from .body_sight import BodySight, StandingBody, see_bodies
 from .key_figures import SensorRow, loss_text, sensor_rows, sensor_table
 from .key_figures import built_lines
+from .kriging import Kriging
 from .location import AskedPlace, SensorAtPlace, ask_place
 from .mount_checks import check_mirror_image, occluded_shares
 from .ranking import costs_nothing, disagreement, gain_sentence, ranking, search_cost

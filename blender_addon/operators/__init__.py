@@ -17,6 +17,7 @@ from . import (
     panel_rows,
     place_sensor,
     placement,
+    region,
     running_job,
     shortcuts,
     suggest,

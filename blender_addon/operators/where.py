@@ -17,6 +17,7 @@ from .query_location import clicking
 
 QUERY = "QUERY"
 PLACES_SHOWN = "PLACES"
+REGION_SHOWN = "REGION"
 """Answers that can be dismissed."""
 WHOLE = "WHOLE"  # What is covered, where it is no mount
 NEAR_M = 0.4  # A click takes the nearest place, if it is no farther away than this
@@ -148,6 +149,7 @@ def put(context: bpy.types.Context, sensor: pe.Sensor) -> bpy.types.Object:
         items=(
             (QUERY, "Location", "The answer of Query Location, and its mark"),
             (PLACES_SHOWN, "Places", "The colours of Where? on the body"),
+            (REGION_SHOWN, "Free Region", "The free region of a sensor"),
         ),
     ),
 )
@@ -155,5 +157,7 @@ def dismiss(context: bpy.types.Context, answer: str) -> None:
     """Remove this answer from the 3D view"""
     if answer == QUERY:
         location_query.discard(context.scene)
+    elif answer == REGION_SHOWN:
+        where_map.store_region(context.scene.name, None)
     else:
         where_map.store(context.scene.name, None)

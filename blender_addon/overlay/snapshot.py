@@ -80,6 +80,7 @@ class SnapshotReader:
             focus=bridge.focus_regions(scene),
             reference=bridge.reference_of(scene.perception_entropy),
             where=where_map.maps.get(scene.name),
+            region=where_map.regions.get(scene.name),
             **(_requirements(scene) | _story(scene)),
         )
 

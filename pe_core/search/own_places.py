@@ -76,6 +76,8 @@ class OwnPlaces:
     mount_name : str
     surface : MountSurface or None
         None for a list of slots.
+    followers : tuple of str
+        All sensors of the rig that follow another.
     broken : tuple of str
         Rules that the rig breaks as it is: they forbid nothing.
     """
@@ -101,9 +103,9 @@ class OwnPlaces:
         self.mount = mounting.mounts[self.mount_name]
         own = {axis: span for axis, span in (bounds or {}).items() if axis in POSITION_AXES}
         is_slots = isinstance(self.mount, SlotMount)
-        following = [link[1] for link in mounting.pairs] + [
-            follower for group in mounting.groups for follower in group[1:]
-        ]
+        following = [link[1] for link in mounting.pairs]
+        following += [follower for group in mounting.groups for follower in group[1:]]
+        self.followers = tuple(following)
         self._space = SearchSpace(
             {name: {} if is_slots else own | ANY_ANGLE},
             mounting,
@@ -218,7 +220,9 @@ def _refuse_follower(name: str, mounting: Mounting) -> None:
 def _on_body(rig: Rig, name: str, vehicle: Vehicle | None, mounting: Mounting) -> Mounting:
     """Return the mounting with a sensor on the whole body, as far from it as it is now."""
     if vehicle is None:
-        raise InputError("region", "vehicle", "a vehicle with a surface, or a list of slots", "none")
+        raise InputError(
+            "region", "vehicle", "a vehicle with a surface, or a list of slots", "none"
+        )
     on_body = SurfaceMount(vehicle.part_names, 0.0, max_slope=math.pi)
     surface = MountSurface(f"sensor {name!r}", on_body, vehicle)
     housing = housings_of(rig).get(name)

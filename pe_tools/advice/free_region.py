@@ -1,8 +1,8 @@
 """The free region of a sensor: where on its mount it may go while a figure loses at most an amount.
 
 Losses are kept by corner of a finely divided mount, with their standard errors. So another allowed
-loss is another cut of the same surface, without a new computation. A corner is inside where its loss
-plus `SURE` standard errors is at most the allowed loss: the region errs to the safe side.
+loss is another cut of the same surface, without a new computation. A corner is inside where its
+loss plus `SURE` standard errors is at most the allowed loss: the region errs to the safe side.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -138,6 +138,16 @@ class FreeRegion:
     def allowing(self, loss: float) -> "FreeRegion":
         """Return the region for another allowed loss; nothing is computed again."""
         return replace(self, allowed=loss)
+
+    def with_gain(self, gain: Floats, error: Floats) -> "FreeRegion":
+        """Return the region where the loss falls by a gain (V,) with an error (V,) at each corner,
+        as the other sensors are searched again. The ways along it are not told: they are of the
+        others as they are."""
+        both = np.sqrt(self.error**2 + error**2)
+        turns = tuple(way for way in self.ways if way.unit == DEGREE_UNIT)
+        loss = np.where(self.upper <= self.allowed, self.loss, self.loss - gain)
+        error = np.where(self.upper <= self.allowed, self.error, both)
+        return replace(self, loss=loss, error=error, ways=turns, with_others=True)
 
     @property
     def upper(self) -> Floats:

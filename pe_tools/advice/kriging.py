@@ -15,7 +15,7 @@ from pe_core.base.arrays import Floats
 
 NOISE = (1.0, 3.0, 9.0)
 """Factors on the variance of the noise: values may be rougher than their errors tell."""
-VARIANCE = (0.3, 1.0, 3.0)  # Factors on the variance of the values
+VARIANCE = (0.5, 3.0)  # Factors on the variance of the values
 SMOOTHEST = 1e-3
 """The noise is at least this share of the values' scatter; exact values are no smooth function."""
 AT_ONCE = 8192
@@ -40,7 +40,9 @@ class Kriging:
     _mean_variance: float
 
     @classmethod
-    def fit(cls, points: Floats, values: Floats, noise: Floats, lengths: tuple[float, ...]) -> "Kriging":
+    def fit(
+        cls, points: Floats, values: Floats, noise: Floats, lengths: tuple[float, ...]
+    ) -> "Kriging":
         """Return the most likely one.
 
         Parameters

@@ -19,6 +19,7 @@ from .exchange_verbs import export, import_study
 from .explain_verbs import compare, explain
 from .new_verb import new
 from .options import add_options
+from .region_verb import region
 from .run_job import run_study
 from .set_verb import set_keys
 from .study_source import FILE, FILES, NONE, ONE, PERHAPS, SOME, StudyFiles
@@ -146,6 +147,10 @@ def _where(source: StudyFiles, args: argparse.Namespace) -> Answer:
     return where(source.study(args), args)
 
 
+def _region(source: StudyFiles, args: argparse.Namespace) -> Answer:
+    return region(source.study(args), args)
+
+
 VERBS = (
     Verb(
         "new",
@@ -218,6 +223,14 @@ VERBS = (
         ONE,
         options="model of_part|mount figure places set workers file json replace",
         function=_where,
+    ),
+    Verb(
+        "region",
+        PLACE,
+        "tell where a sensor may go while a figure loses little",
+        ONE,
+        options="sensor figure loss others places set snap workers region_file json replace",
+        function=_region,
     ),
     Verb(
         "optimize",

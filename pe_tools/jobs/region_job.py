@@ -19,19 +19,22 @@ from pe_core.base.errors import InputError, one_of, shown
 from pe_core.base.values import Number, rounded
 from pe_core.geometry.surfaces import area_of, divided
 from pe_core.scene.rig import Rig
-from pe_core.scoring.sampling import CENTERED
+from pe_core.scoring.sampling import CENTERED, SEARCHED
 from pe_core.scoring.score import SURE, standard_error
 from pe_core.search import (
+    DEFAULT_METHOD,
     KEPT,
+    FeasibilityRule,
     Limit,
+    MountArea,
     Objective,
     OwnPlace,
     OwnPlaces,
     SurfaceMount,
-    SurfacePlace,
     Value,
     as_objective,
     evaluate_all,
+    optimize,
 )
 from pe_core.search.figures import FIGURES, REQUIREMENTS
 from pe_core.study.requirement_search import RequirementConstraint, constraints_of
@@ -51,6 +54,11 @@ PLACES = 300
 CONFIRMED = 8
 COMPARED = 8
 """How many places each has, and how many tell the error of all."""
+OTHERS = 12
+OTHERS_EVALUATIONS = 150
+SPREAD = 3
+"""At how many places outside the others are searched again, how long each, and which: the first of
+every so many, by their loss."""
 COVER_SHARE = 0.4
 """Share of the places that cover the mount evenly; the others gather at the region's end."""
 BATCH = 30
@@ -76,14 +84,6 @@ PLACING = "placing"
 LOSS = Number(0.0, above=True)
 
 
-@dataclass(frozen=True, slots=True)
-class _Losses:
-    """Losses at places: `losses` (N,) and `noise` (N,), the variance of each."""
-
-    losses: Floats
-    noise: Floats
-
-
 class RegionJob(Job):
     """Finds the free region of a sensor (`FreeRegion`). `InputError` when there is no such figure
     or sensor; once it runs, as `OwnPlaces`.
@@ -100,6 +100,9 @@ class RegionJob(Job):
         How much the figure may lose, in its own unit; by default `usual_loss`.
     count : int, optional
         How many places are evaluated; by default as many as take about 20 s.
+    search_others : bool
+        Whether the other sensors are searched again at `OTHERS` places outside, which takes
+        minutes: the region is then where the rig could be as good again.
     """
 
     shown = ("found",)
@@ -112,6 +115,7 @@ class RegionJob(Job):
         *,
         allowed: float | None = None,
         count: int | None = None,
+        search_others: bool = False,
         workers: int | None = None,
     ) -> None:
         super().__init__(study, workers)
@@ -125,6 +129,7 @@ class RegionJob(Job):
         usual = usual_loss(self.row.figure)
         self.allowed = LOSS.checked("region", "loss", usual if allowed is None else allowed)
         self.count = count or PLACES
+        self._search_others = search_others
         self.found: FreeRegion | None = None
         self._waiting = Progress(PLACING, 0.0)
 
@@ -160,7 +165,55 @@ class RegionJob(Job):
                     return
                 self.found = region
                 yield self._waiting
+            if self._search_others and not self.stopped and len(region.faces):
+                gain = yield from self._gain_of_others(objectives[-1], constraints, workers)
+                if gain is not None:
+                    self.found = region.with_gain(*gain)
         yield Progress("done", 1.0)
+
+    def _gain_of_others(
+        self, reported: Objective, constraints: Sequence[FeasibilityRule], workers: ExecutorSource
+    ) -> ProgressSteps[tuple[Floats, Floats]]:
+        """Search the other sensors again with this one at places outside, the nearest first. Return
+        by how much the loss falls at each corner, and the error of that; None where the job ends
+        before, or there is nothing to search."""
+        study = self.study
+        goals = study.search.goals
+        fixed = tuple({*goals.fixed, self.sensor} - set(self._places.followers))
+        outside = [own for own in self._with_loss if (own.place.value or 0.0) > self.allowed]
+        outside.sort(key=lambda own: own.place.value or 0.0)
+        chosen = outside[: SPREAD * OTHERS : SPREAD]
+        searched = as_objective(self.row.measured(study, SAMPLES, SEARCHED)).under(constraints)
+        gains: list[float] = []
+        for number, own in enumerate(chosen):
+            at_place = replace(study.search, goals=replace(goals, fixed=fixed))
+            moved = replace(study, search=at_place).with_rig(own.rig)
+            best = own.rig
+            steps = optimize(
+                searched,
+                own.rig,
+                moved.search_space(),
+                study.search.seed,
+                method=DEFAULT_METHOD,
+                evaluations=OTHERS_EVALUATIONS,
+                executor=workers,
+            )
+            for step in steps:
+                best = step.best
+                yield Progress("searching the others", (number + step.fraction) / len(chosen))
+                if self.stopped:
+                    return None
+            value = reported.value(best)
+            after = value.objective - self._base.objective if value.is_feasible else np.inf
+            gains.append(max((own.place.value or 0.0) - self._offset_now - after, 0.0))
+        if not gains:
+            return None
+        points = _featured([e.place.point for e in chosen], [e.place.normal for e in chosen])
+        noise = np.full(len(gains), self._variance)
+        kriging = Kriging.fit(points, np.array(gains), noise, LENGTHS_M)
+        at, normals, _ = self._seen_by_places(self._corners, self._normals)
+        gain, error = kriging.at(_featured(at, normals))
+        return np.maximum(gain, 0.0), error
 
     def _surface(self) -> None:
         """Divide the mount's surface: its corners, faces, and points as kriging sees them."""
@@ -304,8 +357,12 @@ class RegionJob(Job):
         points, losses = self._losses()
         surface = self._places.surface
         mount = self._places.mount
-        variance = self._noise()
-        sample = "" if self.row.exact else f"{samples:,} {'voxels' if self.row.of_voxels else 'voxels of scenes'}"
+        variance = self._variance = self._noise()
+        sample = (
+            ""
+            if self.row.exact
+            else f"{samples:,} {'voxels' if self.row.of_voxels else 'voxels of scenes'}"
+        )
         region = FreeRegion(
             rig=self.study.rig,
             sensor=self.sensor,
@@ -334,6 +391,7 @@ class RegionJob(Job):
             offset, offset_variance = self._offset(kriging)
         roughness = max(float(kriging.noise.min()) - variance, 0.0)
         spread = offset_variance + roughness
+        self._offset_now = offset
         losses = losses + offset
         foot = self._places.foot
         base = _featured([foot.point], [foot.normal])
@@ -347,11 +405,14 @@ class RegionJob(Job):
         model = _LossModel(kriging, spread)
         at, normals, barred = self._seen_by_places(self._corners, self._normals)
         loss, error = model.at(_featured(at, normals))
-        known = {own.place.point: rounded(value) for own, value in zip(self._with_loss, losses, strict=True)}
-        places = tuple(
-            replace(own.place, value=known.get(own.place.point)) for own in self._known
+        known = {
+            own.place.point: rounded(value)
+            for own, value in zip(self._with_loss, losses, strict=True)
+        }
+        places = tuple(replace(own.place, value=known.get(own.place.point)) for own in self._known)
+        ways = tuple(self._along(model)) + (
+            tuple(self._turns(offset, spread, variance)) if is_last else ()
         )
-        ways = tuple(self._along(model)) + (tuple(self._turns(offset, spread, variance)) if is_last else ())
         return replace(region, loss=loss, error=error, forbidden=barred, places=places, ways=ways)
 
     @property
@@ -423,14 +484,26 @@ class RegionJob(Job):
             noise = np.array([self._evaluation.least_noise, *(variance for _ in known)])
             model = _LossModel(Kriging.fit(points, losses, noise, LENGTHS_DEG), spread)
             for sign in (1.0, -1.0):
-                barred = [abs(a) for a, why in zip(signed, reasons, strict=True) if why and a * sign > 0]
-                last = max((each for each in TURNS_DEG if each < min(barred, default=99.0)), default=0.0)
-                end = "" if not barred else next(
-                    why for a, why in zip(signed, reasons, strict=True) if why and a * sign == min(barred)
+                barred = [
+                    abs(a) for a, why in zip(signed, reasons, strict=True) if why and a * sign > 0
+                ]
+                last = max(
+                    (each for each in TURNS_DEG if each < min(barred, default=99.0)), default=0.0
+                )
+                end = (
+                    ""
+                    if not barred
+                    else next(
+                        why
+                        for a, why in zip(signed, reasons, strict=True)
+                        if why and a * sign == min(barred)
+                    )
                 )
                 steps = np.arange(0.0, last + FINE_DEG / 2, FINE_DEG)
                 loss, error = model.at(sign * steps[:, None])
-                yield Way(f"{axis} {'+' if sign > 0 else '-'}", "deg", steps, loss + SURE * error, end)
+                yield Way(
+                    f"{axis} {'+' if sign > 0 else '-'}", "deg", steps, loss + SURE * error, end
+                )
 
 
 @dataclass(frozen=True, slots=True)
@@ -503,3 +576,21 @@ def held_now(study: Study) -> tuple[Study, tuple[str, ...]]:
             limits = limits.changed(**{key: None})
             broken.append(f"limits.{key}")
     return replace(study, limits=limits), tuple(broken)
+
+
+def region_mount(found: FreeRegion) -> SurfaceMount:
+    """Return the mount that a free region is: its patch, with stand-off and orientation of the
+    sensor's mount. `InputError` where the region has no area."""
+    if found.mount is None or not len(found.patch):
+        raise InputError("region", "patch", "a region with an area", "none")
+    return replace(found.mount, parts=(), area=MountArea(found.patch))
+
+
+def study_on_region(study: Study, found: FreeRegion) -> Study:
+    """Return a study whose sensor is on the free region of it: the patch is its mount. `InputError`
+    where the region has no area."""
+    name = f"{found.sensor} region"
+    area = region_mount(found)
+    own = study.search.mounting
+    mounting = replace(own, mounts={**own.mounts, name: area}, on={**own.on, found.sensor: name})
+    return replace(study, search=replace(study.search, mounting=mounting))

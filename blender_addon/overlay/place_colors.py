@@ -84,7 +84,7 @@ def _outline(triangles: np.ndarray) -> np.ndarray:
     """Return the edges (E, 2, 3) that belong to one of the triangles (F, 3, 3) alone."""
     both = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2, 3)
     turned = np.array([sorted(edge) for edge in both.tolist()]).reshape(-1, 6)
-    unique, first, count = np.unique(turned, axis=0, return_index=True, return_counts=True)
+    _, first, count = np.unique(turned, axis=0, return_index=True, return_counts=True)
     return both[np.sort(first[count == 1])]
 
 

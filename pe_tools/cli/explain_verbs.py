@@ -4,6 +4,7 @@ import argparse
 import math
 import signal
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,16 +20,19 @@ from pe_core.study import Study
 
 from .. import advice
 from ..advice import ComparedRow
-from ..jobs import Outcome, ScoreJob, SuggestJob
+from ..exchange import import_rig
+from ..jobs import BuiltJob, Outcome, ScoreJob, SuggestJob
 from ..sweep import read_changes
 from ..wording import aligned
 from .check_verb import suggested_for, suggestion_lines
+from .exchange_verbs import asked_origin, asked_reference
 from .interrupts import Interrupted, stop_at_first
 from .run_job import drive, print_vehicle
 from .study_source import StudyFiles
-from .terminal import DONE, Answer, warned, with_error
+from .terminal import DONE, NOT_MET, Answer, warned, with_error
 
 BEST = "*"
+TOML = ".toml"
 NOT_BLIND = "not blind: what is 0.5 m tall is visible there"
 WIDEST = 24  # Longer names of studies are cut at the front: their ends tell them apart
 COMPARED = ("space", "prior", "model", "targets")
@@ -124,7 +128,10 @@ def _same_body(one: Vehicle | None, other: Vehicle | None) -> bool:
 
 
 def compare(source: StudyFiles, args: argparse.Namespace) -> Answer:
-    """Score studies by name, and print a table that compares them."""
+    """Score studies by name, and print a table that compares them; a rig of another program is the
+    built one of the first study."""
+    if (file := _built_file(args)) is not None:
+        return compare_built(source, args, file)
     studies: Mapping[str, Study] = source.studies(args)
     refuse_different(studies)
     studies = {**studies, **_beside(studies, args.beside)}
@@ -155,6 +162,38 @@ def compare(source: StudyFiles, args: argparse.Namespace) -> Answer:
             "+- is that of a difference, smaller on a shared sample"
         )
     return _answer(data, [*lines, *notes], args.json)
+
+
+def _built_file(args: argparse.Namespace) -> str | None:
+    """Return the file of a built rig: of the option, or the second of two names that is no study's.
+    It is taken off the studies then."""
+    named: list[str] = getattr(args, "studies", [])
+    if args.built is None and len(named) == 2 and Path(named[1]).suffix.lower() != TOML:
+        args.built = named.pop()
+    file: str | None = args.built
+    return file
+
+
+def compare_built(source: StudyFiles, args: argparse.Namespace, file: str) -> Answer:
+    """Compare a built rig of another program's file with the designed one of a study."""
+    studies: Mapping[str, Study] = source.studies(args)
+    if len(studies) != 1:
+        raise InputError("command line", "STUDY", "one study, the design", len(studies))
+    study = next(iter(studies.values()))
+    reference = asked_reference(args.rear_axle, study.reference, study.vehicle, file)
+    found = import_rig(file, args.format, reference, placed=asked_origin(args))
+    lines = tuple(line for line in found.lines if not line.startswith(tuple(found.to_choose)))
+    print_vehicle(study)
+    job = BuiltJob(study, found.rig, lines, args.workers)
+    with stop_at_first(job.stop) as received:
+        built = drive(job)
+    if built is None:
+        raise Interrupted(received.signum or signal.SIGINT, "no comparison was complete")
+    table = advice.built_table(built)
+    text = [*aligned(table, range(2, len(table[0]))), *advice.built_sensor_lines(built), ""]
+    text += comparison(["design", "built"], built.of_rigs)
+    answer, status = _answer({"as_built": built.to_dict()}, text, args.json)
+    return answer, NOT_MET if built.fallen else status
 
 
 def _beside(studies: Mapping[str, Study], key: str | None) -> dict[str, Study]:

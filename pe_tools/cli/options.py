@@ -206,6 +206,11 @@ def _of_questions() -> dict[str, OptionRow]:
         "preset": several("--preset", metavar="ID", about=preset),
         "list": row("--list", nargs="?", const="", metavar="ID", about=listed),
         "stories": row("--stories", nargs="?", const="", metavar="NAME,...", about=stories),
+        "built": row(
+            "--built",
+            metavar="FILE",
+            about="compare the built rig in this file of another program with the design",
+        ),
         "beside": row(
             "--beside", metavar="RIG", about="a known rig on the first one's vehicle, too"
         ),

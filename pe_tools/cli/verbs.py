@@ -211,9 +211,9 @@ VERBS = (
     Verb(
         "compare",
         SCORE,
-        "score several studies and put them side by side",
+        "score several studies and put them side by side, or a built rig and its design",
         SOME,
-        options=f"beside {COMMON} workers json",
+        options=f"beside built from rear_axle origin {COMMON} workers json",
         function=compare,
     ),
     Verb(

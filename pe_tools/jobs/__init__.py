@@ -1,5 +1,6 @@
 """Jobs that score and optimize studies, their checkpoints, and the files of their results."""
 
+from .built_job import BuiltJob
 from .check_job import Checked, CheckJob, SuggestJob
 from .checkpoint import SAVE_EVERY_S, BegunSearch, Checkpoint, FrontCheckpoint, checkpoint_of
 from .checkpoint import read_search, resume

@@ -216,6 +216,9 @@ def _write_settings(settings: PropertyGroup, record: SceneRecord) -> None:
     write_goals(settings, own.goals)
     write_limits(settings, record.limits)
     settings.mounting_errors = tolerance.position > 0.0 or tolerance.angle > 0.0
+    settings.on_grid = record.search.grid.is_on
+    if settings.on_grid:
+        write_values(settings, record.search.grid)
     names = () if settings.mounting_errors else ("failures", "worst")
     write_values(settings, tolerance, names)  # without errors their fields keep their values
     settings.curves.clear()

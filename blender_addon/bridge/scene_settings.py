@@ -137,11 +137,13 @@ def search_of(settings: PropertyGroup, *, is_choice: bool) -> pe.Search:
     values = values_of(settings, pe.Tolerance)
     if not settings.mounting_errors:
         values |= {"position": 0.0, "angle": 0.0}
+    grid = pe.MountingGrid(**values_of(settings, pe.MountingGrid))
     several = values["position"] > 0.0 or values["angle"] > 0.0 or values["failures"]
     return pe.Search(
         schedule=schedule,
         method=settings.method,
         tolerance=pe.Tolerance(**values | {"worst": values["worst"] and several}),
+        grid=grid if settings.on_grid else pe.MountingGrid(),
         goals=search.Goals(
             search.Stop(**values_of(settings, search.Stop)),
             starts=search.Start.of_text(settings.start_poses),

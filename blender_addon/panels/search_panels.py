@@ -88,6 +88,7 @@ def limits(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
         layout.label(text=f"{obj.name}:", translate=False)
         draw_properties(layout, obj.perception_entropy, ("is_no_go",))
     if not is_simple(context.scene):
+        draw_grid(layout.column(), settings)
         draw_tolerance(layout.column(), settings)
         draw_goals(layout.column(), settings, context)
 
@@ -102,6 +103,14 @@ def draw_tolerance(layout: UILayout, settings: PropertyGroup) -> None:
     row = layout.row()
     row.active = settings.mounting_errors or settings.failures
     row.prop(settings, "worst")
+
+
+def draw_grid(layout: UILayout, settings: PropertyGroup) -> None:
+    """Draw the steps of positions and angles that a search ends on."""
+    draw_properties(layout, settings, ("on_grid",))
+    column = layout.column()
+    column.active = settings.on_grid
+    draw_declared(column, settings, "grid")
 
 
 def draw_goals(layout: UILayout, settings: PropertyGroup, context: Context) -> None:

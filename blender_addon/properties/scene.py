@@ -149,6 +149,9 @@ class PE_SceneSettings(StudyFields, ListFields, LimitFields, bridge.ResultViews,
         "Placements of an imported study that searches also start from, as JSON",
         options={"HIDDEN"},
     )
+    on_grid: switch(
+        "On a Grid", "A search ends on positions and angles that can be mounted: whole steps"
+    )
     mounting_errors: switch(
         "Mounting Errors",
         "Evaluate each candidate by its mean over small mounting errors, so the result "

@@ -19,6 +19,7 @@ from .key_figures import KeyFigures, Reading, dashboard
 from .limit import Limit, LimitRule
 from .limits import LIMITED, NUMBERED, Limits
 from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_method
+from .mounting_grid import GridWalk, MountingGrid, OnGrid
 from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .objective import NO_VALUE, FeasibilityRule, Objective, Value, as_objective, violation_sum
 from .optimize import Step, optimize

@@ -16,6 +16,7 @@ from .key_figures import built_lines
 from .kriging import Kriging
 from .location import AskedPlace, SensorAtPlace, ask_place
 from .mount_checks import check_mirror_image, occluded_shares
+from .mountable import Consensus, Rounding, SensorSpread, consensus_of
 from .ranking import costs_nothing, disagreement, gain_sentence, ranking, search_cost
 from .score_comparison import OTHER_HARDWARE, TRAFFIC, ComparedRow, compare
 from .score_comparison import compare_figures, difference_error, hardware_note

@@ -20,7 +20,7 @@ SAME_RAD = math.radians(5e-5)
 ARM_M = 1.0
 """Of two poses that are turned, a point this far from the sensor moves by the angle times this."""
 WHOLE = 1
-"""Column of the whole built rig in the compared rows: the design is before, single sensors after."""
+"""Column of the whole built rig in the compared rows: behind the design, before single sensors."""
 MM = 1e3
 
 
@@ -218,10 +218,9 @@ def built_table(found: AsBuilt) -> list[Sequence[str]]:
     the error."""
     measures = list(dict.fromkeys(row.measure for row in found.rows if row.group == "rig"))
     heads = [FIGURES[key].title for key in measures]
-    table: list[Sequence[str]] = [
-        ["", "built as", "x [mm]", "y [mm]", "z [mm]", "roll [deg]", "pitch [deg]", "yaw [deg]"]
-        + heads
-    ]
+    offsets = [f"{axis} [mm]" for axis in "xyz"]
+    turns = [f"{axis} [deg]" for axis in ("roll", "pitch", "yaw")]
+    table: list[Sequence[str]] = [["", "built as", *offsets, *turns, *heads]]
     for pair in found.worst_first:
         costs = found.costs(pair.name)
         cells = [_cost_text(found, pair.name, key, costs.get(key)) for key in measures]

@@ -47,8 +47,9 @@ from .where_job import PLACE_FIGURES, PlaceFigure
 
 COARSE_SAMPLES = 4096
 SAMPLES = 32_768
-CONFIRMED_SAMPLES = 524_288
-"""Voxels of the coarse places, of all others, and of those that tell how lucky the base was."""
+CONFIRMED_SAMPLES = 262_144
+"""Voxels of the coarse places, of all others, and of those that tell how lucky the base was: all of
+a space that has fewer."""
 COARSE = 40
 PLACES = 300
 CONFIRMED = 8
@@ -425,7 +426,9 @@ class RegionJob(Job):
         own = self._with_loss
         near = sorted(own, key=lambda each: abs(each.place.value - self.allowed))
         chosen = near[: 4 * CONFIRMED : 4]
-        larger = self.row.measured(self.study, CONFIRMED_SAMPLES, CENTERED)
+        voxels = int(np.prod(self.study.space.shape))
+        samples = 0 if voxels <= CONFIRMED_SAMPLES else CONFIRMED_SAMPLES
+        larger = self.row.measured(self.study, samples, CENTERED)
         objective = as_objective(larger)
         rigs = [self.study.rig, *(each.rig for each in chosen)]
         base, *found = (value.objective for value in self._evaluation.by_workers(objective, rigs))

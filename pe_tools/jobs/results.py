@@ -103,6 +103,10 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
     if is_search:
         flat = outcome.flatness
         data["flatness"] = None if flat is None else flat.to_dict()
+        rounding = outcome.rounding
+        data["rounding"] = None if rounding is None else rounding.to_dict()
+        agreed = outcome.consensus
+        data["consensus"] = None if agreed is None else agreed.to_dict()
         data["starts"] = [
             {"name": e.name, **_value(figure, e.value), "evaluations": e.evaluations}
             for e in outcome.starts

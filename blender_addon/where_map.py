@@ -24,6 +24,7 @@ class Mended(NamedTuple):
 maps: dict[str, jobs.PlaceMap] = {}
 offers: dict[str, Mended] = {}
 regions: dict[str, advice.FreeRegion] = {}
+built: dict[str, advice.AsBuilt] = {}
 """All by the scene's name."""
 
 
@@ -40,6 +41,11 @@ def store_offers(scene_name: str, found: Mended | None) -> None:
 def store_region(scene_name: str, found: advice.FreeRegion | None) -> None:
     """Store the free region of a sensor, and have it shown; None discards it."""
     _store(regions, scene_name, found)
+
+
+def store_built(scene_name: str, found: advice.AsBuilt | None) -> None:
+    """Store the comparison with a built rig, and have that shown; None discards it."""
+    _store(built, scene_name, found)
 
 
 def _store(kept: dict, scene_name: str, found: object) -> None:
@@ -67,3 +73,4 @@ def clear(*_: object) -> None:
     maps.clear()
     offers.clear()
     regions.clear()
+    built.clear()

@@ -85,15 +85,8 @@ __all__ += ["Camera", "Choice", "Conditions", "Constraints", "DataSheet", "Evalu
 __all__ += ["Focus", "Front", "Goals", "GroundMap", "GroundSight", "Housing", "InputError"]
 __all__ += ["KannalaBrandt", "Lidar", "Limit", "Limits", "Mesh", "MeshAxes", "Method", "Motion"]
 __all__ += ["MountArea", "Mounting", "MountingGrid", "NoGo", "ObjectClass", "ObjectEvaluator"]
-__all__ += [
-    "ObjectScore",
-    "Objective",
-    "Objects",
-    "Option",
-    "PartScore",
-    "PerceptionModel",
-    "PerceptionSpace",
-]
+__all__ += ["ObjectScore", "Objective", "Objects", "Option", "PartScore", "PerceptionModel"]
+__all__ += ["PerceptionSpace"]
 __all__ += ["Pinhole", "Pose", "Prior", "Reach", "Reference", "Rig", "RigEvaluator", "Scatter"]
 __all__ += ["Schedule", "Score", "Search", "SearchRun", "SearchSpace", "Selection", "Sensor"]
 __all__ += ["SensorScore", "Sight", "Slot", "SlotMount", "Start", "State", "Step", "Stop", "Study"]

@@ -4,6 +4,7 @@ Panels take from here the operators, and what menus list.
 """
 
 from . import (
+    built,
     compare_variants,
     conditions,
     edit_sensors,

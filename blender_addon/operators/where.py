@@ -18,6 +18,7 @@ from .query_location import clicking
 QUERY = "QUERY"
 PLACES_SHOWN = "PLACES"
 REGION_SHOWN = "REGION"
+BUILT_SHOWN = "BUILT"
 """Answers that can be dismissed."""
 WHOLE = "WHOLE"  # What is covered, where it is no mount
 NEAR_M = 0.4  # A click takes the nearest place, if it is no farther away than this
@@ -149,6 +150,7 @@ def put(context: bpy.types.Context, sensor: pe.Sensor) -> bpy.types.Object:
         items=(
             (QUERY, "Location", "The answer of Query Location, and its mark"),
             (PLACES_SHOWN, "Places", "The colours of Where? on the body"),
+            (BUILT_SHOWN, "Built Rig", "The built rig that is drawn beside this one"),
             (REGION_SHOWN, "Free Region", "The free region of a sensor"),
         ),
     ),
@@ -157,6 +159,8 @@ def dismiss(context: bpy.types.Context, answer: str) -> None:
     """Remove this answer from the 3D view"""
     if answer == QUERY:
         location_query.discard(context.scene)
+    elif answer == BUILT_SHOWN:
+        where_map.store_built(context.scene.name, None)
     elif answer == REGION_SHOWN:
         where_map.store_region(context.scene.name, None)
     else:

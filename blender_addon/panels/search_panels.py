@@ -110,7 +110,7 @@ def draw_grid(layout: UILayout, settings: PropertyGroup) -> None:
     draw_properties(layout, settings, ("on_grid",))
     column = layout.column()
     column.active = settings.on_grid
-    draw_declared(column, settings, "grid")
+    draw_declared(column, settings, "optimize.grid")
 
 
 def draw_goals(layout: UILayout, settings: PropertyGroup, context: Context) -> None:

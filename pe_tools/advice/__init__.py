@@ -6,6 +6,7 @@ from pe_core.search import KeyFigures
 from pe_tools.wording import joined, percent
 from ..wording import off_by
 from .as_built import AsBuilt, BuiltPair, Pairing, built_sensor_lines, built_table
+from .as_built import pair_text
 from .as_built import fallen_verdicts, paired
 from .advice import FRAGILE, NOT_KEPT, UNMET, Advice, fragile, not_kept, unmet
 from .free_region import EDGE, FreeRegion, Limitation, Way, region_lines, usual_loss

@@ -230,6 +230,12 @@ def built_table(found: AsBuilt) -> list[Sequence[str]]:
     return table
 
 
+def pair_text(pair: BuiltPair) -> str:
+    """Return how far a sensor is off, in words: "roof: 12.0 mm and 0.40 deg off"."""
+    far = f"{MM * pair.distance:.1f} mm"
+    return f"{pair.name}: {far} and {math.degrees(pair.angle):.2f} deg off"
+
+
 def _cost_text(found: AsBuilt, name: str, key: str, cost: float | None) -> str:
     if cost is None:
         return "-"

@@ -27,9 +27,9 @@ MET_M = 2e-6
 """A position is on the grid if it is so near to it: its rounding then hits it exactly [m]."""
 TRIES = 20  # How often the foot on a surface is moved until the sensor is on the grid
 SLACK = 1e-9  # Relative rounding error of a bound that is on the grid
-Numbers = tuple[int, ...]
+GridSteps = tuple[int, ...]
 """A placement on the grid: how many steps each coordinate is from 0."""
-Evaluate = Callable[[Sequence[Rig]], Sequence[Value]]
+EvaluateRigs = Callable[[Sequence[Rig]], Sequence[Value]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,19 +104,19 @@ class GridWalk:
         self._known = [each for each in every if each.high >= each.low]
         self.off = tuple(f"{e.name} {e.axis}" for e in every if e not in self._known)
 
-    def nearest(self) -> Numbers:
+    def nearest(self) -> GridSteps:
         """Return the numbers of steps of the start, each rounded to the nearest."""
         numbers = []
         for each in self._known:
             numbers.append(each.clipped(round(self._value(each) / each.step)))
         return tuple(numbers)
 
-    def best(self, evaluate: Evaluate) -> OnGrid:
+    def best(self, evaluate: EvaluateRigs) -> OnGrid:
         """Return the best placement: walk from the nearest one to better neighbours."""
-        values: dict[Numbers, Value] = {}
-        rigs: dict[Numbers, Rig] = {}
+        values: dict[GridSteps, Value] = {}
+        rigs: dict[GridSteps, Rig] = {}
 
-        def look_at(several: Sequence[Numbers]) -> None:
+        def look_at(several: Sequence[GridSteps]) -> None:
             new = [numbers for numbers in several if numbers not in values]
             placed = {numbers: self.candidate(numbers) for numbers in new}
             known = {n: c.rig for n, c in placed.items() if c is not None}
@@ -137,7 +137,7 @@ class GridWalk:
         return OnGrid(found, len(rigs), self.off)
 
     @staticmethod
-    def _least(values: dict[Numbers, Value]) -> Numbers:
+    def _least(values: dict[GridSteps, Value]) -> GridSteps:
         return min(values, key=lambda numbers: (values[numbers], numbers))
 
     def holds(self, rig: Rig) -> bool:
@@ -145,7 +145,7 @@ class GridWalk:
         candidate = self.candidate(self.nearest())
         return candidate is not None and _poses(candidate.rig) == _poses(rig)
 
-    def candidate(self, numbers: Numbers) -> Candidate | None:
+    def candidate(self, numbers: GridSteps) -> Candidate | None:
         """Return the placement at numbers of steps; None where it breaks a rule, or the surface has
         no such point."""
         vector = list(self._start.vector)
@@ -168,17 +168,17 @@ class GridWalk:
                 return None
         return candidate if self._parametrization.allowed(candidate.rig) else None
 
-    def _neighbours(self, numbers: Numbers) -> list[Numbers]:
+    def _neighbours(self, numbers: GridSteps) -> list[GridSteps]:
         return [self._moved(numbers, {k: step}) for k in range(len(numbers)) for step in (-1, 1)]
 
-    def _two_steps(self, numbers: Numbers) -> list[Numbers]:
+    def _two_steps(self, numbers: GridSteps) -> list[GridSteps]:
         return [
             self._moved(numbers, {j: one, k: other})
             for j, k in combinations(range(len(numbers)), 2)
             for one, other in product((-1, 1), repeat=2)
         ]
 
-    def _moved(self, numbers: Numbers, steps: dict[int, int]) -> Numbers:
+    def _moved(self, numbers: GridSteps, steps: dict[int, int]) -> GridSteps:
         moved = []
         for k, (each, number) in enumerate(zip(self._known, numbers, strict=True)):
             moved.append(each.clipped(number + steps.get(k, 0)))

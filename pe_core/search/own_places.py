@@ -35,10 +35,7 @@ EDGE_SHARE = 0.5
 """A step along a surface that comes less far than this share of it has met its edge."""
 
 
-Point = tuple[float, float, float]
-
-
-class OwnPlace(NamedTuple):
+class PlacedRig(NamedTuple):
     """A place of a sensor, and the rig with the sensor there."""
 
     place: SurfacePlace
@@ -49,8 +46,8 @@ class PathPoint(NamedTuple):
     """A point of a path over a surface: how far along it [m], where, and its unit normal."""
 
     distance: float
-    point: Point
-    normal: Point
+    point: tuple[float, float, float]
+    normal: tuple[float, float, float]
 
 
 class OwnPlaces:
@@ -128,7 +125,7 @@ class OwnPlaces:
         """Where the sensor is on its surface now; `InputError` for one in a slot."""
         return self._path_point(0.0, np.array(self._start[:3]))
 
-    def covered(self, count: int) -> list[OwnPlace]:
+    def covered(self, count: int) -> list[PlacedRig]:
         """Return places all over the mount, the coarse cover first: at most `count` on a surface,
         all slots of a list."""
         if self.surface is None:
@@ -140,20 +137,22 @@ class OwnPlaces:
         found = zip(points, faces[chosen].tolist(), strict=True)
         return [self.place(point, face) for point, face in found if self.surface.carries(face)]
 
-    def place(self, point: Floats, face: int) -> OwnPlace:
+    def place(self, point: Floats, face: int) -> PlacedRig:
         """Return the place at a point (3,) of a face of the surface."""
         assert self.surface is not None
         x, y, z = point.tolist()
         nx, ny, nz = self.surface.outward(face).tolist()
         return self._own((x, y, z), (nx, ny, nz), self.at(point))
 
-    def _slot_place(self, share: float) -> OwnPlace:
+    def _slot_place(self, share: float) -> PlacedRig:
         rig = self._parametrization.candidate((share,)).rig
         return self._own(rig[self.name].pose.position, (0.0, 0.0, 1.0), rig)
 
-    def _own(self, point: Point, normal: Point, rig: Rig) -> OwnPlace:
+    def _own(
+        self, point: tuple[float, float, float], normal: tuple[float, float, float], rig: Rig
+    ) -> PlacedRig:
         place = SurfacePlace(point, normal, rig[self.name].pose, self.reason(rig))
-        return OwnPlace(place, rig)
+        return PlacedRig(place, rig)
 
     def at(self, point: Sequence[float] | Floats) -> Rig:
         """Return the rig with the sensor at the nearest point of the surface to (3,) [m]."""

@@ -7,20 +7,18 @@ bad: some places are scored again on a larger sample, and all losses are moved b
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
-from math import dist, sqrt
 from typing import Any
 
 import numpy as np
 
-from pe_core.base.arrays import Flags, Floats
+from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError, one_of, shown
 from pe_core.base.values import Number, rounded
-from pe_core.geometry.surfaces import area_of, divided
 from pe_core.scene.rig import Rig
 from pe_core.scoring.sampling import CENTERED, SEARCHED
-from pe_core.scoring.score import SURE, standard_error
+from pe_core.scoring.score import standard_error
 from pe_core.search import (
     DEFAULT_METHOD,
     KEPT,
@@ -28,8 +26,8 @@ from pe_core.search import (
     Limit,
     MountArea,
     Objective,
-    OwnPlace,
     OwnPlaces,
+    PlacedRig,
     SurfaceMount,
     Value,
     as_objective,
@@ -40,9 +38,21 @@ from pe_core.search.figures import FIGURES, REQUIREMENTS
 from pe_core.study.requirement_search import RequirementConstraint, constraints_of
 from pe_core.study.study import Study
 
-from ..advice import EDGE, FreeRegion, Kriging, Way, usual_loss
+from ..advice import FreeRegion, Kriging, Way, usual_loss
 from .candidate_workers import ExecutorSource, candidate_workers
 from .job import Job, Progress, ProgressSteps, begun
+from .region_model import (
+    LENGTHS_DEG,
+    LENGTHS_M,
+    LossModel,
+    MountCorners,
+    at_known,
+    featured,
+    features_of,
+    hardest_to_tell,
+    ways_along,
+    ways_of_turn,
+)
 from .where_job import PLACE_FIGURES, PlaceFigure
 
 COARSE_SAMPLES = 4096
@@ -55,33 +65,21 @@ PLACES = 300
 CONFIRMED = 8
 COMPARED = 8
 """How many places each has, and how many tell the error of all."""
+COARSE_SHARE = 0.1  # About which share of the time the coarse places take
 OTHERS = 12
 OTHERS_EVALUATIONS = 150
 SPREAD = 3
 """At how many places outside the others are searched again, how long each, and which: the first of
 every so many, by their loss."""
+CLOSE = 4  # Of the places nearest to the allowed loss, each so many is confirmed
 COVER_SHARE = 0.4
 """Share of the places that cover the mount evenly; the others gather at the region's end."""
 BATCH = 30
-LENGTHS_M = (0.05, 0.1, 0.2, 0.4, 0.8)
-LENGTHS_DEG = (1.0, 3.0, 10.0)
-"""Ranges of kriging that are tried, over a surface and over an angle."""
-NORMAL_M = 0.3
-"""Places whose normals are perpendicular are as far apart as this over the root of 2 [m]."""
-FINEST_M = 0.02
-CORNERS = 20_000
-"""Longest edge of the divided surface [m], unless it would have more triangles than that."""
-POOL = 4000  # Corners among which the next places are chosen
-NEIGHBOURS = 3
-"""A corner is forbidden where one of so many nearest places is."""
-STEP_M = 0.02
-LENGTH_M = 1.0
-"""How far apart a way along the surface is told, and how far it is looked along [m]."""
 TURNS_DEG = (0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
-FINE_DEG = 0.25
-"""Angles that are evaluated both ways, and how finely the loss between them is told."""
+"""Angles that are evaluated, both ways."""
 ANGLES = ("yaw", "pitch", "roll")
 PLACING = "placing"
+BY_LIMIT = "a requirement or a limit"
 LOSS = Number(0.0, above=True)
 
 
@@ -141,39 +139,196 @@ class RegionJob(Job):
 
     def __iter__(self) -> Iterator[Progress]:
         yield self._waiting
-        self._held, not_held = held_now(self.study)
         study = self.study
-        options: Any = {"limits": self._held.limits}
-        options |= {"bounds": study.search.limits.get(self.sensor)}
-        mounting = study.search.mounting
-        self._places = OwnPlaces(study.rig, self.sensor, study.vehicle, mounting, **options)
+        held, not_held = held_now(study)
+        self._places = OwnPlaces(
+            study.rig,
+            self.sensor,
+            study.vehicle,
+            study.search.mounting,
+            limits=held.limits,
+            bounds=study.search.limits.get(self.sensor),
+        )
         self._not_held = (*not_held, *self._places.broken)
-        self._surface()
-        constraints = constraints_of(self._held)
-        row = self.row
-        levels = (SAMPLES,) if row.exact else (COARSE_SAMPLES, SAMPLES)
-        measures = [row.measured(study, samples, CENTERED) for samples in levels]
+        self._mount = MountCorners.of(self._places)
+        constraints = constraints_of(held)
+        levels = (SAMPLES,) if self.row.exact else (COARSE_SAMPLES, SAMPLES)
+        measures = [self.row.measured(study, samples, CENTERED) for samples in levels]
         objectives = [as_objective(each).under(constraints) for each in measures]
         models = {sensor.model.name: sensor.model for sensor in study.rig}.values()
         with candidate_workers(self, objectives, models) as workers:
-            for level, objective in enumerate(objectives):
-                is_last = level == len(levels) - 1
-                evaluation = _Evaluation(measures[level], objective, workers, self.row)
-                samples = levels[level]
-                steps = self._level(evaluation, samples, is_last=is_last)
-                region = yield from steps
+            for number, samples in enumerate(levels):
+                is_last = number == len(levels) - 1
+                level = _Level(self, measures[number], objectives[number], workers, samples=samples)
+                region = yield from self._region_on(level, is_last=is_last)
                 if region is None:
                     return
                 self.found = region
                 yield self._waiting
-            if self._search_others and not self.stopped and len(region.faces):
-                gain = yield from self._gain_of_others(objectives[-1], constraints, workers)
+            if self._search_others and not self.stopped and len(self._mount.faces):
+                gain = yield from self._gain_of_others(level, constraints)
                 if gain is not None:
                     self.found = region.with_gain(*gain)
         yield Progress("done", 1.0)
 
+    def _region_on(self, level: "_Level", is_last: bool) -> ProgressSteps[FreeRegion]:
+        """Yield progress; return the region on one level, None where the job ends before."""
+        whole = self.count if is_last else COARSE
+        shares = (COARSE_SHARE, 1.0 - COARSE_SHARE) if is_last else (0.0, COARSE_SHARE)
+        if self.row.exact:
+            shares = (0.0, 1.0)
+        self._shares = shares
+        base = begun(lambda: level.objective.value(self.study.rig))
+        value = yield from self._awaited(base, lambda: self._waiting)
+        if value is None:
+            return None
+        level.base = value.objective
+        covered = max(int(COVER_SHARE * whole), 1) if is_last else whole
+        cover = begun(partial(self._places.covered, covered))
+        places = yield from self._awaited(cover, lambda: self._waiting)
+        for start in range(0, len(places or ()), BATCH):
+            yield from self._evaluate(level, (places or [])[start : start + BATCH], whole)
+        while is_last and len(self._mount.faces) and len(level.known) < whole:
+            choose = begun(partial(self._next_places, level, whole))
+            chosen = yield from self._awaited(choose, lambda: self._waiting)
+            if not chosen:
+                break
+            yield from self._evaluate(level, chosen, whole)
+        if self.stopped:
+            return self.found
+        make = begun(partial(self._region, level, is_last))
+        return (yield from self._awaited(make, lambda: self._waiting))
+
+    def _evaluate(
+        self, level: "_Level", places: Sequence[PlacedRig], whole: int
+    ) -> Iterator[Progress]:
+        """Evaluate places, and have the level know them; nothing once the job was stopped."""
+        work = begun(partial(level.evaluated, places))
+        found = yield from self._awaited(work, lambda: self._waiting)
+        level.known += found or []
+        begin, share = self._shares
+        done = min(len(level.known) / whole, 1.0)
+        self._waiting = Progress(PLACING, begin + share * done)
+        yield self._waiting
+
+    def _next_places(self, level: "_Level", whole: int) -> list[PlacedRig]:
+        """Return the next places: those that are hardest to tell."""
+        if len(level.with_loss) < 2:
+            return []
+        corners = hardest_to_tell(
+            level.kriging(),
+            self._mount,
+            level.known,
+            self.allowed,
+            count=min(BATCH, whole - len(level.known)),
+            whole=whole,
+        )
+        surface = self._places.surface
+        assert surface is not None  # a list of slots has no corners
+        return [self._places.place(*surface.closest(corner)) for corner in corners]
+
+    def _region(self, level: "_Level", is_last: bool) -> FreeRegion:
+        """Return the region from what a level knows."""
+        mount = self._places.mount
+        count = len(self._mount.corners)
+        unit = "voxels" if self.row.of_voxels else "voxels' share of scenes"
+        region = FreeRegion(
+            rig=self.study.rig,
+            sensor=self.sensor,
+            figure=self.row.figure.key,
+            allowed=self.allowed,
+            base=rounded(self.row.sign * level.base),
+            mount_name=self._places.mount_name,
+            mount=mount if isinstance(mount, SurfaceMount) else None,
+            corners=self._mount.corners,
+            faces=self._mount.faces,
+            loss=np.full(count, np.inf),
+            error=np.zeros(count),
+            forbidden=np.zeros(count, bool),
+            places=tuple(each.place for each in level.known),
+            ways=(),
+            sample="" if self.row.exact else f"{level.samples:,} {unit}",
+            not_held=self._not_held,
+            is_coarse=not is_last,
+        )
+        if not count or len(level.with_loss) < 2:
+            return region
+        offset, spread = self._offset(level, is_last)
+        foot = self._places.foot
+        points = np.concatenate([level.points, featured([foot.point], [foot.normal])])
+        losses = np.append(level.losses + offset, 0.0)
+        roughness = max(spread - level.shared_noise, 0.0)
+        noise = np.append(np.full(len(losses) - 1, level.noise), roughness)
+        model = LossModel(Kriging.fit(points, losses, noise, LENGTHS_M), spread)
+        at, forbidden = at_known(level.known, self._mount.corners, self._mount.normals)
+        loss, error = model.at(at)
+        places = (
+            each.place if each.place.value is None else level.moved(each.place, offset)
+            for each in level.known
+        )
+        ways = [*ways_along(model, self._places, level.known)]
+        if is_last:
+            ways += self._turns(level, offset, spread)
+        return replace(
+            region,
+            loss=loss,
+            error=error,
+            forbidden=forbidden,
+            places=tuple(places),
+            ways=tuple(ways),
+        )
+
+    def _offset(self, level: "_Level", is_last: bool) -> tuple[float, float]:
+        """Return by how much losses are too low as the base was lucky, and the variance that all
+        losses share: of the base, and of what is rougher than the noise."""
+        kriging = level.kriging()
+        rough = max(float(kriging.noise.min()) - level.noise, 0.0)
+        level.shared_noise = level.noise
+        if self.row.exact or not is_last:
+            return 0.0, level.shared_noise + rough
+        close = sorted(
+            level.with_loss, key=lambda each: abs((each.place.value or 0.0) - self.allowed)
+        )
+        chosen = close[: CLOSE * CONFIRMED : CLOSE]
+        is_small = int(np.prod(self.study.space.shape)) <= CONFIRMED_SAMPLES
+        samples = 0 if is_small else CONFIRMED_SAMPLES
+        larger = self.row.measured(self.study, samples, CENTERED)
+        rigs = [self.study.rig, *(each.rig for each in chosen)]
+        base, *values = level.values(as_objective(larger), rigs)
+        smooth, _ = kriging.at(features_of(chosen))
+        off = np.array([value.objective - base.objective for value in values]) - smooth
+        scatter = float(np.var(off, ddof=1)) if len(off) > 1 else 0.0
+        level.shared_noise = scatter / len(off) + paired_noise(larger, rigs)
+        return float(off.mean()), level.shared_noise + rough
+
+    def _turns(self, level: "_Level", offset: float, spread: float) -> Iterator[Way]:
+        """Yield the ways of turning about each axis of the mount's frame."""
+        signed = [*(-each for each in reversed(TURNS_DEG)), *TURNS_DEG]
+        for axis in ANGLES:
+            rigs = [self._places.turned(axis, float(np.radians(each))) for each in signed]
+            barred = {
+                angle: reason
+                for angle, rig in zip(signed, rigs, strict=True)
+                if (reason := self._places.reason(rig))
+            }
+            free = [angle for angle in signed if angle not in barred]
+            values = level.values(
+                level.objective,
+                [rig for angle, rig in zip(signed, rigs, strict=True) if angle not in barred],
+            )
+            losses = {0.0: 0.0}
+            for angle, value in zip(free, values, strict=True):
+                if value.is_feasible:
+                    losses[angle] = value.objective - level.base + offset
+                else:
+                    barred[angle] = BY_LIMIT
+            noise = np.array([level.noise if angle else 0.0 for angle in losses])
+            points = np.array([*losses])[:, None]
+            kriging = Kriging.fit(points, np.array([*losses.values()]), noise, LENGTHS_DEG)
+            yield from ways_of_turn(LossModel(kriging, spread), axis, barred, TURNS_DEG[-1])
+
     def _gain_of_others(
-        self, reported: Objective, constraints: Sequence[FeasibilityRule], workers: ExecutorSource
+        self, level: "_Level", constraints: Sequence[FeasibilityRule]
     ) -> ProgressSteps[tuple[Floats, Floats]]:
         """Search the other sensors again with this one at places outside, the nearest first. Return
         by how much the loss falls at each corner, and the error of that; None where the job ends
@@ -181,380 +336,118 @@ class RegionJob(Job):
         study = self.study
         goals = study.search.goals
         fixed = tuple({*goals.fixed, self.sensor} - set(self._places.followers))
-        outside = [own for own in self._with_loss if (own.place.value or 0.0) > self.allowed]
-        outside.sort(key=lambda own: own.place.value or 0.0)
+        held = replace(study, search=replace(study.search, goals=replace(goals, fixed=fixed)))
+        outside = [each for each in level.with_loss if (each.place.value or 0.0) > self.allowed]
+        outside.sort(key=lambda each: each.place.value or 0.0)
         chosen = outside[: SPREAD * OTHERS : SPREAD]
         searched = as_objective(self.row.measured(study, SAMPLES, SEARCHED)).under(constraints)
         gains: list[float] = []
-        for number, own in enumerate(chosen):
-            at_place = replace(study.search, goals=replace(goals, fixed=fixed))
-            moved = replace(study, search=at_place).with_rig(own.rig)
-            best = own.rig
-            steps = optimize(
+        for number, placed in enumerate(chosen):
+            best = placed.rig
+            for step in optimize(
                 searched,
-                own.rig,
-                moved.search_space(),
+                placed.rig,
+                held.with_rig(placed.rig).search_space(),
                 study.search.seed,
                 method=DEFAULT_METHOD,
                 evaluations=OTHERS_EVALUATIONS,
-                executor=workers,
-            )
-            for step in steps:
+                executor=level.workers,
+            ):
                 best = step.best
                 yield Progress("searching the others", (number + step.fraction) / len(chosen))
                 if self.stopped:
                     return None
-            value = reported.value(best)
-            after = value.objective - self._base.objective if value.is_feasible else np.inf
-            gains.append(max((own.place.value or 0.0) - self._offset_now - after, 0.0))
-        if not gains:
+            value = level.objective.value(best)
+            lost = value.objective - level.base if value.is_feasible else np.inf
+            gains.append(max((placed.place.value or 0.0) - lost, 0.0))
+        if len(gains) < 2:
             return None
-        points = _featured([e.place.point for e in chosen], [e.place.normal for e in chosen])
-        noise = np.full(len(gains), self._variance)
-        kriging = Kriging.fit(points, np.array(gains), noise, LENGTHS_M)
-        at, normals, _ = self._seen_by_places(self._corners, self._normals)
-        gain, error = kriging.at(_featured(at, normals))
+        noise = np.full(len(gains), level.noise)
+        kriging = Kriging.fit(features_of(chosen), np.array(gains), noise, LENGTHS_M)
+        at, _ = at_known(level.known, self._mount.corners, self._mount.normals)
+        gain, error = kriging.at(at)
         return np.maximum(gain, 0.0), error
 
-    def _surface(self) -> None:
-        """Divide the mount's surface: its corners, faces, and points as kriging sees them."""
-        surface = self._places.surface
-        self._corners = np.empty((0, 3))
-        self._faces = np.empty((0, 3), dtype=np.int64)
-        self._normals = np.empty((0, 3))
-        if surface is None:
-            return
-        own = surface.triangles[surface.faces]
-        longest = max(FINEST_M, 2.0 * sqrt(area_of(own) / CORNERS))
-        fine = divided(own, longest)
-        flat = np.round(fine.reshape(-1, 3), 6) + 0.0
-        self._corners, place = np.unique(flat, axis=0, return_inverse=True)
-        self._faces = place.reshape(-1, 3)
-        along = fine[:, 1:] - fine[:, :1]
-        across = np.cross(along[:, 0], along[:, 1])
-        sums = [
-            np.bincount(place.reshape(-1), np.repeat(across[:, k], 3), len(self._corners))
-            for k in range(3)
-        ]
-        normals = np.stack(sums, axis=1)
-        size = np.sqrt((normals**2).sum(axis=1, keepdims=True))
-        self._normals = normals / np.maximum(size, 1e-12)
 
-    def _level(
-        self, evaluation: "_Evaluation", samples: int, is_last: bool
-    ) -> ProgressSteps[FreeRegion]:
-        """Yield progress; return the region on one level, None where the job ends before."""
-        self._evaluation = evaluation
-        self._known: list[OwnPlace] = []
-        self._values: list[Value] = []
-        whole = COARSE if not is_last else self.count
-        self._share = 0.1 if not is_last else 0.9
-        self._begun = 0.0 if not is_last or self.row.exact else 0.1
-        base = begun(lambda: evaluation.objective.value(self.study.rig))
-        self._base = yield from self._awaited(base, lambda: self._waiting)
-        if self._base is None:
-            return None
-        covered = whole if not is_last else max(int(COVER_SHARE * whole), 1)
-        cover = begun(partial(self._places.covered, covered))
-        places = yield from self._awaited(cover, lambda: self._waiting)
-        for start in range(0, len(places or ()), BATCH):
-            assert places is not None
-            yield from self._evaluate(places[start : start + BATCH], whole)
-        if self.stopped or places is None:
-            return None
-        surface = self._places.surface
-        while is_last and surface is not None and len(self._known) < whole:
-            choose = begun(partial(self._straddling, min(BATCH, whole - len(self._known))))
-            chosen = yield from self._awaited(choose, lambda: self._waiting)
-            if not chosen:
-                break
-            yield from self._evaluate(chosen, whole)
-        if self.stopped:
-            return self.found
-        make = begun(partial(self._region, samples, is_last))
-        return (yield from self._awaited(make, lambda: self._waiting))
-
-    def _evaluate(self, places: Sequence[OwnPlace], whole: int) -> Iterator[Progress]:
-        """Evaluate places that break no rule, and keep all; nothing once the job was stopped."""
-        free = [each.rig for each in places if not each.place.reason]
-        work = begun(partial(self._evaluation.values, free))
-        values = yield from self._awaited(work, lambda: self._waiting)
-        if values is None:
-            return
-        found = iter(values)
-        for own in places:
-            value = None if own.place.reason else next(found)
-            place = own.place
-            if value is not None and not value.is_feasible:
-                place = replace(place, reason=self._evaluation.reason)
-            elif value is not None:
-                place = replace(place, value=rounded(value.objective - self._base.objective))
-            self._known.append(OwnPlace(place, own.rig))
-        fraction = self._begun + self._share * min(len(self._known) / whole, 1.0)
-        self._waiting = Progress(PLACING, fraction)
-        yield self._waiting
-
-    def _losses(self) -> tuple[Floats, Floats]:
-        """Return points (N, 6) with a loss as kriging sees them, and the losses (N,)."""
-        known = [own.place for own in self._known if own.place.value is not None]
-        points = _featured([p.point for p in known], [p.normal for p in known])
-        return points, np.array([p.value for p in known])
-
-    def _noise(self) -> float:
-        """Return the variance of one place's value by its sample: half of the difference's."""
-        own = [each for each in self._known if each.place.value is not None]
-        step = max(len(own) // COMPARED, 1)
-        return self._evaluation.noise(self.study.rig, [each.rig for each in own[::step]])
-
-    def _straddling(self, count: int) -> list[OwnPlace]:
-        """Return the next places: where loss and error leave open most whether it is allowed."""
-        points, losses = self._losses()
-        if not len(losses):
-            return []
-        if not hasattr(self, "_variance"):
-            self._variance = self._noise()
-        noise = np.full(len(losses), self._variance)
-        kriging = Kriging.fit(points, losses, noise, LENGTHS_M)
-        pool = np.arange(0, len(self._corners), max(len(self._corners) // POOL, 1))
-        at, normals, barred = self._seen_by_places(self._corners[pool], self._normals[pool])
-        loss, error = kriging.at(_featured(at, normals))
-        open_to_doubt = SURE * error - np.abs(loss - self.allowed)
-        open_to_doubt[barred] = -np.inf
-        apart = 0.5 * sqrt(area_of(self._corners[self._faces]) / self.count)
-        chosen: list[int] = []
-        taken = [own.place.point for own in self._known]
-        for k in np.argsort(-open_to_doubt, kind="stable").tolist():
-            point = tuple(at[k].tolist())
-            if len(chosen) == count or not np.isfinite(open_to_doubt[k]):
-                break
-            if all(dist(point, each) >= apart / 4.0 for each in taken):
-                near = any(dist(point, at[j]) < apart for j in chosen)
-                if not near:
-                    chosen.append(k)
-        surface = self._places.surface
-        assert surface is not None
-        found = []
-        for k in chosen:
-            foot, face = surface.closest(at[k])
-            found.append(self._places.place(foot, face))
-        return found
-
-    def _seen_by_places(self, points: Floats, normals: Floats) -> tuple[Floats, Floats, Flags]:
-        """Return points (M, 3), their normals turned as those of the nearest place, and whether one
-        of the nearest places is forbidden."""
-        known = np.array([own.place.point for own in self._known])
-        own_normals = np.array([own.place.normal for own in self._known])
-        is_forbidden = np.array([bool(own.place.reason) for own in self._known])
-        square = (points**2).sum(axis=1)[:, None] + (known**2).sum(axis=1) - 2 * points @ known.T
-        count = min(NEIGHBOURS, len(known))
-        near = np.argpartition(square, count - 1, axis=1)[:, :count]
-        nearest = square.argmin(axis=1)
-        agree = (normals * own_normals[nearest]).sum(axis=1)
-        turned = normals * np.where(agree < 0.0, -1.0, 1.0)[:, None]
-        return points, turned, is_forbidden[near].any(axis=1)
-
-    def _region(self, samples: int, is_last: bool) -> FreeRegion:
-        """Return the region from what is known."""
-        points, losses = self._losses()
-        surface = self._places.surface
-        mount = self._places.mount
-        variance = self._variance = self._noise()
-        sample = (
-            ""
-            if self.row.exact
-            else f"{samples:,} {'voxels' if self.row.of_voxels else 'voxels of scenes'}"
-        )
-        region = FreeRegion(
-            rig=self.study.rig,
-            sensor=self.sensor,
-            figure=self.row.figure.key,
-            allowed=self.allowed,
-            base=rounded(self.row.sign * self._base.objective),
-            mount_name=self._places.mount_name,
-            mount=mount if isinstance(mount, SurfaceMount) else None,
-            corners=self._corners,
-            faces=self._faces,
-            loss=np.full(len(self._corners), np.inf),
-            error=np.zeros(len(self._corners)),
-            forbidden=np.zeros(len(self._corners), bool),
-            places=tuple(own.place for own in self._known),
-            ways=(),
-            sample=sample,
-            not_held=self._not_held,
-            is_coarse=not is_last,
-        )
-        if surface is None or not len(losses):
-            return region
-        noise = np.full(len(losses), variance)
-        kriging = Kriging.fit(points, losses, noise, LENGTHS_M)
-        offset, offset_variance = 0.0, variance
-        if is_last and not self.row.exact:
-            offset, offset_variance = self._offset(kriging)
-        roughness = max(float(kriging.noise.min()) - variance, 0.0)
-        spread = offset_variance + roughness
-        self._offset_now = offset
-        losses = losses + offset
-        foot = self._places.foot
-        base = _featured([foot.point], [foot.normal])
-        at_base = roughness + self._evaluation.least_noise
-        kriging = Kriging.fit(
-            np.concatenate([points, base]),
-            np.append(losses, 0.0),
-            np.append(noise, at_base),
-            LENGTHS_M,
-        )
-        model = _LossModel(kriging, spread)
-        at, normals, barred = self._seen_by_places(self._corners, self._normals)
-        loss, error = model.at(_featured(at, normals))
-        known = {
-            own.place.point: rounded(value)
-            for own, value in zip(self._with_loss, losses, strict=True)
-        }
-        places = tuple(replace(own.place, value=known.get(own.place.point)) for own in self._known)
-        ways = tuple(self._along(model)) + (
-            tuple(self._turns(offset, spread, variance)) if is_last else ()
-        )
-        return replace(region, loss=loss, error=error, forbidden=barred, places=places, ways=ways)
-
-    @property
-    def _with_loss(self) -> list[OwnPlace]:
-        return [own for own in self._known if own.place.value is not None]
-
-    def _offset(self, kriging: Kriging) -> tuple[float, float]:
-        """Return by how much losses are too low for the base was lucky, and the variance of that:
-        of places near the region's end, on a larger sample."""
-        own = self._with_loss
-        near = sorted(own, key=lambda each: abs(each.place.value - self.allowed))
-        chosen = near[: 4 * CONFIRMED : 4]
-        voxels = int(np.prod(self.study.space.shape))
-        samples = 0 if voxels <= CONFIRMED_SAMPLES else CONFIRMED_SAMPLES
-        larger = self.row.measured(self.study, samples, CENTERED)
-        objective = as_objective(larger)
-        rigs = [self.study.rig, *(each.rig for each in chosen)]
-        base, *found = (value.objective for value in self._evaluation.by_workers(objective, rigs))
-        smooth, _ = kriging.at(
-            _featured([e.place.point for e in chosen], [e.place.normal for e in chosen])
-        )
-        off = np.array(found) - base - smooth
-        scatter = float(np.var(off, ddof=1)) if len(off) > 1 else 0.0
-        own_noise = self._noise_of(larger, rigs)
-        self._evaluation.least_noise = own_noise
-        return float(off.mean()), scatter / len(off) + own_noise
-
-    def _noise_of(self, measure: Any, rigs: Sequence[Rig]) -> float:
-        own, *others = measure.residuals(rigs)
-        return float(np.mean([standard_error(each - own) ** 2 for each in others])) / 2.0
-
-    def _along(self, model: "_LossModel") -> Iterator[Way]:
-        """Yield the ways along the surface."""
-        for name, direction in self._places.directions().items():
-            path = [self._places.foot, *self._places.path(direction, STEP_M, LENGTH_M)]
-            points = np.array([each.point for each in path])
-            normals = np.array([each.normal for each in path])
-            _, turned, barred = self._seen_by_places(points, normals)
-            loss, error = model.at(_featured(points, turned))
-            barred[0] = False
-            first = int(barred.argmax()) if barred.any() else len(path)
-            end = EDGE if len(path) - 1 < int(LENGTH_M / STEP_M) else ""
-            if first < len(path):
-                near = min(
-                    (own.place for own in self._known if own.place.reason),
-                    key=lambda place: dist(place.point, path[first].point),
-                )
-                end = near.reason
-            upper = (loss + SURE * error)[:first]
-            steps = np.array([each.distance for each in path])[:first]
-            yield Way(name, "m", steps, upper, end)
-
-    def _turns(self, offset: float, spread: float, variance: float) -> Iterator[Way]:
-        """Yield the ways of turning."""
-        for axis in ANGLES:
-            signed = [*(-each for each in reversed(TURNS_DEG)), *TURNS_DEG]
-            rigs = [self._places.turned(axis, float(np.radians(each))) for each in signed]
-            reasons = [self._places.reason(rig) for rig in rigs]
-            free = [k for k, reason in enumerate(reasons) if not reason]
-            values = self._evaluation.values([rigs[k] for k in free])
-            for k, value in zip(free, values, strict=True):
-                if not value.is_feasible:
-                    reasons[k] = self._evaluation.reason
-            known = [
-                (signed[k], value.objective - self._base.objective + offset)
-                for k, value in zip(free, values, strict=True)
-                if value.is_feasible
-            ]
-            points = np.array([0.0, *(angle for angle, _ in known)])[:, None]
-            losses = np.array([0.0, *(loss for _, loss in known)])
-            noise = np.array([self._evaluation.least_noise, *(variance for _ in known)])
-            model = _LossModel(Kriging.fit(points, losses, noise, LENGTHS_DEG), spread)
-            for sign in (1.0, -1.0):
-                barred = [
-                    abs(a) for a, why in zip(signed, reasons, strict=True) if why and a * sign > 0
-                ]
-                last = max(
-                    (each for each in TURNS_DEG if each < min(barred, default=99.0)), default=0.0
-                )
-                end = (
-                    ""
-                    if not barred
-                    else next(
-                        why
-                        for a, why in zip(signed, reasons, strict=True)
-                        if why and a * sign == min(barred)
-                    )
-                )
-                steps = np.arange(0.0, last + FINE_DEG / 2, FINE_DEG)
-                loss, error = model.at(sign * steps[:, None])
-                yield Way(
-                    f"{axis} {'+' if sign > 0 else '-'}", "deg", steps, loss + SURE * error, end
-                )
-
-
-@dataclass(frozen=True, slots=True)
-class _LossModel:
-    """A kriged loss, and what its error has besides: the variance that all places share."""
-
-    kriging: Kriging
-    spread: float
-
-    def at(self, points: Floats) -> tuple[Floats, Floats]:
-        """Return losses (M,) and their standard errors (M,)."""
-        loss, error = self.kriging.at(points)
-        return loss, np.sqrt(error**2 + self.spread)
-
-
-class _Evaluation:
-    """Evaluates rigs on one level, by workers."""
-
-    reason = "a requirement or a limit"
+class _Level:
+    """What is known on one number of voxels. `base` is the value of the rig as it is."""
 
     def __init__(
-        self, measure: Any, objective: Objective, workers: ExecutorSource, row: PlaceFigure
+        self,
+        job: RegionJob,
+        measure: Any,
+        objective: Objective,
+        workers: ExecutorSource,
+        samples: int,
     ) -> None:
-        self._measure = measure
         self.objective = objective
-        self._workers = workers
-        self._row = row
-        self.least_noise = 0.0
+        self.workers = workers
+        self.samples = samples
+        self.base = 0.0
+        self.known: list[PlacedRig] = []
+        self.shared_noise = 0.0
+        self._rig = job.study.rig
+        self._exact = job.row.exact
+        self._measure = measure
+        self._noise: float | None = None
 
-    def values(self, rigs: Sequence[Rig]) -> list[Value]:
-        """Return the values of rigs: their figure, or a violation."""
-        return self.by_workers(self.objective, rigs)
+    @property
+    def with_loss(self) -> list[PlacedRig]:
+        """The places whose loss is known."""
+        return [each for each in self.known if each.place.value is not None]
 
-    def by_workers(self, objective: Objective, rigs: Sequence[Rig]) -> list[Value]:
-        """Return the values of rigs for another objective."""
-        return evaluate_all(objective, rigs, executor=self._workers())
+    @property
+    def points(self) -> Floats:
+        """(N, 6) The places whose loss is known, as kriging sees them."""
+        return features_of(self.with_loss)
 
-    def noise(self, base: Rig, rigs: Sequence[Rig]) -> float:
-        """Return the variance of one value by its sample: half of that of differences."""
-        if self._row.exact or not rigs:
-            return 0.0
-        own, *others = self._measure.residuals([base, *rigs])
-        return float(np.mean([standard_error(each - own) ** 2 for each in others])) / 2.0
+    @property
+    def losses(self) -> Floats:
+        """(N,) Their losses."""
+        return np.array([each.place.value for each in self.with_loss])
+
+    @property
+    def noise(self) -> float:
+        """The variance of one place's value by its sample: half of that of differences."""
+        if self._noise is None:
+            own = self.with_loss
+            some = [each.rig for each in own[:: max(len(own) // COMPARED, 1)]]
+            exact = self._exact or not some
+            self._noise = 0.0 if exact else paired_noise(self._measure, [self._rig, *some])
+        return self._noise
+
+    def kriging(self) -> Kriging:
+        """Return the losses between the places."""
+        noise = np.full(len(self.losses), self.noise)
+        return Kriging.fit(self.points, self.losses, noise, LENGTHS_M)
+
+    def values(self, objective: Objective, rigs: Sequence[Rig]) -> list[Value]:
+        """Return the values of rigs, which workers evaluate."""
+        return evaluate_all(objective, rigs, executor=self.workers())
+
+    def evaluated(self, places: Sequence[PlacedRig]) -> list[PlacedRig]:
+        """Return places with their losses; where a limit is broken, with that as the reason."""
+        free = [each.rig for each in places if not each.place.reason]
+        values = iter(self.values(self.objective, free))
+        return [each if each.place.reason else self._told(each, next(values)) for each in places]
+
+    def _told(self, placed: PlacedRig, value: Value) -> PlacedRig:
+        if not value.is_feasible:
+            return placed._replace(place=replace(placed.place, reason=BY_LIMIT))
+        loss = rounded(value.objective - self.base)
+        return placed._replace(place=replace(placed.place, value=loss))
+
+    @staticmethod
+    def moved(place: Any, offset: float) -> Any:
+        """Return a place whose loss is moved by an offset."""
+        return replace(place, value=rounded(place.value + offset))
 
 
-def _featured(points: Any, normals: Any) -> Floats:
-    """Return points (N, 6) as kriging sees them: positions, and normals by `NORMAL_M`."""
-    return np.concatenate([np.asarray(points), NORMAL_M * np.asarray(normals)], axis=1)
+def paired_noise(measure: Any, rigs: Sequence[Rig]) -> float:
+    """Return the variance of one rig's value by the sample of an evaluator: half of the mean square
+    of the standard errors of differences from the first one."""
+    own, *others = measure.residuals(rigs)
+    return float(np.mean([standard_error(each - own) ** 2 for each in others])) / 2.0
 
 
 def held_now(study: Study) -> tuple[Study, tuple[str, ...]]:
@@ -564,9 +457,10 @@ def held_now(study: Study) -> tuple[Study, tuple[str, ...]]:
     limits = study.limits
     if study.requirements:
         off = RequirementConstraint(study).shortfalls(study.rig)
-        broken += [r.name for r, lack in zip(study.requirements, off, strict=True) if lack]
-        kept = [r for r, lack in zip(study.requirements, off, strict=True) if not lack]
-        study = replace(study, requirements=tuple(kept))
+        both = [*zip(study.requirements, off, strict=True)]
+        broken += [requirement.name for requirement, lack in both if lack]
+        kept = tuple(requirement for requirement, lack in both if not lack)
+        study = replace(study, requirements=kept)
         limits = limits.changed(**{REQUIREMENTS: Limit()})
     figures = study.key_figures() if any(key in KEPT for key, _ in limits) else None
     for key, limit in limits:

@@ -22,7 +22,7 @@ from .domains import METRE, POSITION_AXES, RADIAN, SurfaceDomain
 from .objective import NO_VALUE, Value
 from .parametrization import Candidate, Parametrization
 
-WALKS = 6  # How often all neighbours of the best placement on the grid are evaluated at most
+WALKS = 30  # How often all neighbours of the best placement on the grid are evaluated at most
 MET_M = 2e-6
 """A position is on the grid if it is so near to it: its rounding then hits it exactly [m]."""
 TRIES = 20  # How often the foot on a surface is moved until the sensor is on the grid

@@ -54,10 +54,9 @@ def test_a_search_ends_on_the_grid_and_tells_what_that_cost(study):
     assert all(on_grid(v, STEP_M) for v in (*roof.position[:2], front.position[1]))
     assert on_grid(front.rpy[1], STEP_RAD) and on_grid(roof.rpy[2], STEP_RAD)
     assert front.position[0] == 2.4  # is not free
-    assert free.rounding is None and free.history == found.history
+    assert free.rounding is None  # and the search before was the same
+    assert [row.value for row in free.history] == [row.value for row in found.history]
     assert found.rounding.evaluations > 4
-    held = [study.evaluator(4096 // 2 * 1) for _ in range(1)]
-    assert held  # the cost is one of figures that the search did not use
     assert found.rounding.cost is not None and found.rounding.stderr >= 0.0
 
 

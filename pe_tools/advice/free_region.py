@@ -165,6 +165,16 @@ class FreeRegion:
         across = np.cross(along[:, 0], along[:, 1])
         return cut[(across != 0.0).any(axis=1)]
 
+    def outward(self, triangles: Floats) -> Floats:
+        """Return the outward normal (N, 3) of the place that is nearest to each of triangles
+        (N, 3, 3)."""
+        at = np.array([place.point for place in self.places])
+        middles = triangles.mean(axis=1)
+        square = (middles**2).sum(axis=1)[:, None] + (at**2).sum(axis=1) - 2.0 * middles @ at.T
+        normals = np.array([place.normal for place in self.places])
+        nearest: Floats = normals[square.argmin(axis=1)]
+        return nearest
+
     @property
     def area(self) -> float:
         """Area of the patch [m2]."""

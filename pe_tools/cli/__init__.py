@@ -3,9 +3,10 @@
 from ..sweep import read_changes
 from .check_verb import check, check_study
 from .command import Parser, as_typed, run
-from .explain_verbs import refuse_different, scored
+from .explain_verbs import found_built, refuse_different, scored
 from .interrupts import leave, noted_when_interrupted
 from .options import whole
+from .region_verb import found_region
 from .run_job import More, drive
 from .story_text import chosen_stories, story_names
 from .study_source import NONE, ONE, PERHAPS, SOME, StudyFiles, with_changes, with_options

@@ -19,7 +19,7 @@ from pe_core.search import FIGURES
 from pe_core.study import Study
 
 from .. import advice
-from ..advice import ComparedRow
+from ..advice import AsBuilt, ComparedRow
 from ..exchange import import_rig
 from ..jobs import BuiltJob, Outcome, ScoreJob, SuggestJob
 from ..sweep import read_changes
@@ -179,7 +179,16 @@ def compare_built(source: StudyFiles, args: argparse.Namespace, file: str) -> An
     studies: Mapping[str, Study] = source.studies(args)
     if len(studies) != 1:
         raise InputError("command line", "STUDY", "one study, the design", len(studies))
-    study = next(iter(studies.values()))
+    built = found_built(next(iter(studies.values())), args, file)
+    table = advice.built_table(built)
+    text = [*aligned(table, range(2, len(table[0]))), *advice.built_sensor_lines(built), ""]
+    text += comparison(["design", "built"], built.of_rigs)
+    answer, status = _answer({"as_built": built.to_dict()}, text, args.json)
+    return answer, NOT_MET if built.fallen else status
+
+
+def found_built(study: Study, args: argparse.Namespace, file: str) -> AsBuilt:
+    """Return the comparison of a study with the built rig in a file; Ctrl-C ends it."""
     reference = asked_reference(args.rear_axle, study.reference, study.vehicle, file)
     found = import_rig(file, args.format, reference, placed=asked_origin(args))
     lines = tuple(line for line in found.lines if not line.startswith(tuple(found.to_choose)))
@@ -189,11 +198,7 @@ def compare_built(source: StudyFiles, args: argparse.Namespace, file: str) -> An
         built = drive(job)
     if built is None:
         raise Interrupted(received.signum or signal.SIGINT, "no comparison was complete")
-    table = advice.built_table(built)
-    text = [*aligned(table, range(2, len(table[0]))), *advice.built_sensor_lines(built), ""]
-    text += comparison(["design", "built"], built.of_rigs)
-    answer, status = _answer({"as_built": built.to_dict()}, text, args.json)
-    return answer, NOT_MET if built.fallen else status
+    return built
 
 
 def _beside(studies: Mapping[str, Study], key: str | None) -> dict[str, Study]:

@@ -273,6 +273,9 @@ def _of_exchange() -> dict[str, OptionRow]:
 def _of_pages() -> dict[str, OptionRow]:
     """What stands on a review page."""
     return {
+        "regions": several(
+            "--region", metavar="SENSOR", about="show where this sensor may go; any number"
+        ),
         "title": row("--title", default="", metavar="TEXT", about="title of the page"),
         "author": row("--author", default="", metavar="TEXT", about="who made it"),
         "date": row(

@@ -27,6 +27,7 @@ def region(study: Study, args: argparse.Namespace) -> Answer:
     """Find the free region of a sensor; write its patch, its data, or the next study on it."""
     path = output_file(args.output, args)
     _check_suffix(path)
+    print_vehicle(study)
     job = RegionJob(
         study,
         args.sensor,
@@ -36,15 +37,24 @@ def region(study: Study, args: argparse.Namespace) -> Answer:
         search_others=args.others,
         workers=args.workers,
     )
-    print_vehicle(study)
-    with stop_at_first(job.stop) as received:
-        drive(job)
-    found = job.result
-    if found is None:
-        raise Interrupted(received.signum or 2, "no place was scored")
+    found, status = _driven(job)
     text = dump_json(finite(found.to_dict())) if args.json else "\n".join(region_lines(found))
     unwritten = _save(path, study, found)
-    return text, unwritten or received.status(DONE)
+    return text, unwritten or status
+
+
+def found_region(study: Study, sensor: str, workers: int | None) -> FreeRegion:
+    """Return the free region of a sensor, with progress; Ctrl-C ends it with what is known."""
+    return _driven(RegionJob(study, sensor, workers=workers))[0]
+
+
+def _driven(job: RegionJob) -> tuple[FreeRegion, int]:
+    """Run a job; return its region and the exit status."""
+    with stop_at_first(job.stop) as received:
+        drive(job)
+    if job.result is None:
+        raise Interrupted(received.signum or 2, "no place was scored")
+    return job.result, received.status(DONE)
 
 
 def _check_suffix(path: Path | None) -> None:

@@ -254,7 +254,8 @@ VERBS = (
         SHOW,
         "write an HTML page that shows a rig and what its sensors see",
         SOME,
-        options=f"title author date revision {COMMON} workers required_folder replace",
+        options=f"title author date revision regions built from rear_axle origin {COMMON} "
+        "workers required_folder replace",
         function=_review,
     ),
     Verb(

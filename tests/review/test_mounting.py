@@ -11,7 +11,7 @@ from pe_tools.jobs import BuiltJob, RegionJob
 from pe_tools.page import ReportContext
 from pe_tools.page.sections.mounting import as_built, free_regions
 from tests.engine import shapes
-from tests.review.conftest import finished
+from tests.engine.processes import finished
 
 
 @pytest.fixture(scope="module")

@@ -319,18 +319,42 @@ def bca_interval(
     every = np.arange(len(values))
     rhos = np.concatenate([statistic(portion) for portion in resamples(samples, rule, seed)])
     rho = float(statistic(samples.whole))
-    normal = NormalDist()
-    below = float((rhos < rho - SAME).mean() + 0.5 * (np.abs(rhos - rho) <= SAME).mean())
-    bias = normal.inv_cdf(min(max(below, 1.0 / len(rhos)), 1.0 - 1.0 / len(rhos)))
     left_out = np.array([_without(values, samples, np.delete(every, k), given) for k in every])
+    return bca_limits(rho, rhos, left_out), float(rhos.mean())
+
+
+def bca_limits(value: float, drawn: Floats, left_out: Floats) -> Interval:
+    """Return the BCa interval (95 %) of a statistic.
+
+    `drawn` (R,) are its bootstraps, `left_out` (P,) its values without each of the samples.
+    """
+    normal = NormalDist()
+    below = float((drawn < value - SAME).mean() + 0.5 * (np.abs(drawn - value) <= SAME).mean())
+    bias = normal.inv_cdf(min(max(below, 1.0 / len(drawn)), 1.0 - 1.0 / len(drawn)))
     off = left_out.mean() - left_out
     acceleration = float((off**3).sum() / (6.0 * max((off**2).sum(), SAME) ** 1.5))
     levels = []
     for p in (0.025, 0.975):
         shifted = bias + normal.inv_cdf(p)
         levels.append(100.0 * normal.cdf(bias + shifted / (1.0 - acceleration * shifted)))
-    low, high = np.percentile(rhos, levels)
-    return (float(low), float(high)), float(rhos.mean())
+    low, high = np.percentile(drawn, levels)
+    return float(low), float(high)
+
+
+def rank_figures(
+    values: Floats, samples: PlacementSamples, rule: Any, seed: int, given: Floats | None = None
+) -> dict[str, Any]:
+    """Return rho of values with AP, its BCa interval, and its p; nothing is rounded.
+
+    With a third variable, `given` (P,), they are those of the partial rho.
+    """
+    if given is None:
+        p = permutation_p(values, samples, rule, seed)
+    else:
+        p = permutation_p_beyond(values, given, samples, rule, seed=seed)
+    limits, _ = bca_interval(values, samples, rule, seed, given=given)
+    rho = float(rho_statistic(values, samples, given)(samples.whole))
+    return {"rho": rho, "interval": list(limits), "p": p}
 
 
 def _without(values: Floats, samples: PlacementSamples, index: Ints, given: Floats | None) -> float:

@@ -18,12 +18,11 @@ from ..ranks import (
     PlacementSamples,
     Resample,
     Statistic,
-    bca_interval,
     holm,
     interval,
     ordered_share,
     permutation_p,
-    permutation_p_beyond,
+    rank_figures,
     rho_statistic,
     rho_within,
 )
@@ -228,15 +227,7 @@ def rank_of(
     plan: Plan, samples: PlacementSamples, values: Floats, given: Floats | None = None
 ) -> Json:
     """Return rho as `rho_of`, its interval corrected for bias, and its p; nothing is rounded."""
-    rule = plan.statistics
-    seed = plan.seed
-    if given is None:
-        p = permutation_p(values, samples, rule, seed)
-    else:
-        p = permutation_p_beyond(values, given, samples, rule, seed=seed)
-    limits, _ = bca_interval(values, samples, rule, seed, given=given)
-    rho = float(rho_statistic(values, samples, given)(samples.whole))
-    return {"rho": rho, "interval": list(limits), "p": p}
+    return rank_figures(values, samples, plan.statistics, plan.seed, given=given)
 
 
 def _figure(key: str, plan: Plan, samples: PlacementSamples, statistic: Statistic) -> Json:

@@ -176,7 +176,7 @@ def test_a_signal_to_the_whole_group_is_the_parent_s_affair():
         "processes = Processes(2)\n"
         "found = [processes.submit(os.getpid) for _ in range(2)]\n"
         f"os.killpg(os.getpgid(0), {signal.SIGINT:d})\n"
-        "assert all(future.result(60) for future in found)\n"
+        "assert all(future.result() for future in found)\n"
         "processes.shutdown(cancel_futures=True)\n"
     )
     command = [sys.executable, "-c", code]
@@ -191,7 +191,7 @@ def test_python_says_nothing_of_semaphores_after_an_interrupted_run():
         "from pe_core.search import Processes\n"
         "from pe_tools.cli import leave\n"
         "processes = Processes(2)\n"
-        "processes.submit(os.getpid).result(60)\n"
+        "processes.submit(os.getpid).result()\n"
         "leave(130)\n"
     )
     command = [sys.executable, "-c", code]

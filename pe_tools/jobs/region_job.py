@@ -273,7 +273,7 @@ class RegionJob(Job):
             region,
             loss=loss,
             error=error,
-            forbidden=forbidden,
+            forbidden=forbidden > 0.0,
             places=tuple(places),
             ways=tuple(ways),
         )

@@ -6,7 +6,7 @@ from math import dist, sqrt
 
 import numpy as np
 
-from pe_core.base.arrays import Flags, Floats, Ints
+from pe_core.base.arrays import Floats, Ints
 from pe_core.geometry.surfaces import area_of, divided
 from pe_core.scoring.score import SURE
 from pe_core.search import OwnPlaces, PathPoint, PlacedRig
@@ -24,6 +24,7 @@ CORNERS = 20_000
 POOL = 4000  # Corners among which the next places are chosen
 NEIGHBOURS = 3
 """A corner is forbidden where one of so many nearest places is."""
+RULE_PART = 3  # One in so many new places is where a rule begins to forbid
 APART_SHARE = 0.5
 NEW_SHARE = 0.125
 """How far new places are apart, and from known ones, as a share of the mean distance of places."""
@@ -77,9 +78,9 @@ def features_of(placed: Sequence[PlacedRig]) -> Floats:
     return featured(points, [each.place.normal for each in placed])
 
 
-def at_known(known: Sequence[PlacedRig], points: Floats, normals: Floats) -> tuple[Floats, Flags]:
+def at_known(known: Sequence[PlacedRig], points: Floats, normals: Floats) -> tuple[Floats, Floats]:
     """Return points (M, 3) as kriging sees them (M, 6), their normals turned as that of the nearest
-    known place, and whether one of the nearest places is forbidden (M,)."""
+    known place, and which share of the nearest places is forbidden (M,)."""
     places = [each.place for each in known]
     at = np.array([place.point for place in places])
     square = (points**2).sum(axis=1)[:, None] + (at**2).sum(axis=1) - 2.0 * points @ at.T
@@ -88,7 +89,7 @@ def at_known(known: Sequence[PlacedRig], points: Floats, normals: Floats) -> tup
     own = np.array([place.normal for place in places])[square.argmin(axis=1)]
     sign = np.where((normals * own).sum(axis=1) < 0.0, -1.0, 1.0)
     is_forbidden = np.array([bool(place.reason) for place in places])
-    return featured(points, normals * sign[:, None]), is_forbidden[near].any(axis=1)
+    return featured(points, normals * sign[:, None]), is_forbidden[near].mean(axis=1)
 
 
 def hardest_to_tell(
@@ -108,12 +109,15 @@ def hardest_to_tell(
     at, forbidden = at_known(known, points, mount.normals[pool])
     loss, error = kriging.at(at)
     doubt = SURE * error - np.abs(loss - allowed)
-    doubt[forbidden] = -np.inf
+    doubt[forbidden > 0.0] = -np.inf
+    between = np.flatnonzero((forbidden > 0.0) & (forbidden < 1.0))
+    first = between[:: max(len(between) // max(count // RULE_PART, 1), 1)]
+    doubt[first] = np.inf  # where a rule begins to forbid
     spacing = sqrt(mount.area / whole)
     taken = [each.place.point for each in known]
     chosen: list[int] = []
     for k in np.argsort(-doubt, kind="stable").tolist():
-        if len(chosen) == count or not np.isfinite(doubt[k]):
+        if len(chosen) == count or doubt[k] == -np.inf:
             break
         is_new = all(dist(points[k], each) >= NEW_SHARE * spacing for each in taken)
         if is_new and all(dist(points[k], points[j]) >= APART_SHARE * spacing for j in chosen):
@@ -146,7 +150,8 @@ def ways_along(model: LossModel, places: OwnPlaces, known: Sequence[PlacedRig]) 
     for name, direction in places.directions().items():
         path = [places.foot, *places.path(direction, STEP_M, LENGTH_M)]
         points = np.array([each.point for each in path])
-        at, forbidden = at_known(known, points, np.array([each.normal for each in path]))
+        at, share = at_known(known, points, np.array([each.normal for each in path]))
+        forbidden = share > 0.0
         forbidden[0] = False  # where it is now, it may be
         free = int(forbidden.argmax()) if forbidden.any() else len(path)
         end = EDGE if len(path) <= whole else ""

@@ -47,7 +47,7 @@ def test_the_layer_follows_the_loss_at_once_and_the_panel_tells_it(asked):
 
 
 def test_one_click_makes_the_region_the_mount(asked):
-    car, name, found = asked
+    _, name, found = asked
     assert bpy.ops.pe.mount_on_region() == {"FINISHED"}
     study = scenes.study()
     mount = study.search.mounting.mount_of(name)

@@ -11,20 +11,26 @@ from tests.addon import scenes
 from tests.addon.layouts import Window, drawn
 
 
+@pytest.fixture(autouse=True)
+def _one_process(monkeypatch):
+    """No worker processes: they do not look at the few heights that this one looks at."""
+    monkeypatch.setattr("os.cpu_count", lambda: 1)
+
+
 @pytest.fixture
 def asked(car):
     """The car's scene, its first sensor, and that sensor's region by a figure without a sample."""
     name = next(iter(scenes.study().rig)).name
     view = car.perception_entropy.view
     view.region_loss = 400.0  # nothing is lost but what rules forbid
-    done = bpy.ops.pe.free_region(name=name, figure="blind_sector", places=20)
+    done = bpy.ops.pe.free_region(name=name, figure="blind_sector", places=12)
     assert done == {"FINISHED"}
     return car, name, where_map.regions[car.name]
 
 
 def test_the_operator_finds_what_the_engine_finds(asked):
     _, name, found = asked
-    job = jobs.RegionJob(scenes.study(), name, "blind_sector", allowed=400.0, count=20)
+    job = jobs.RegionJob(scenes.study(), name, "blind_sector", allowed=400.0, count=12)
     for _ in job:
         pass
     assert np.array_equal(found.patch, job.found.patch) and len(found.patch)

@@ -19,12 +19,16 @@ import pe_core as pe
 from tests.engine.shapes import box, refined
 
 SPACE = pe.PerceptionSpace((-60.0, 60.0), (-30.0, 30.0), (0.0, 5.0), 0.5)
+BUDGETS = ("small", "default")
+"""Evaluations of a run: those of the problem, or as many as a study that names none has."""
 SAMPLES = 8192
 """Voxels on which the methods evaluate a placement; its entropy on the grid is compared."""
 SEDAN = Path(__file__).resolve().parent.parent / "blend_assets" / "experiments" / "1_pandar64.toml"
 PUCK = "Velodyne VLP-16 Puck"
 """A model whose housing the catalogue knows."""
 UPRIGHT = (0.0, 0.0, 0.0)
+ANY_SLOPE = math.pi
+"""Of an upright sensor on a bumper or a side: the face may be vertical."""
 Vector3 = tuple[float, float, float]
 AxisLimits = dict[str, tuple[float, float]]
 CAR = {
@@ -113,8 +117,8 @@ def car_and_pairs() -> pe.Study:
     ]
     mounts = {
         "cabin": pe.SurfaceMount(["cabin top"], 0.15, "upright"),
-        "left": pe.SurfaceMount(["body left"], 0.01, "upright"),
-        "nose": pe.SurfaceMount(["body front"], 0.01, "upright"),
+        "left": pe.SurfaceMount(["body left"], 0.01, "upright", max_slope=ANY_SLOPE),
+        "nose": pe.SurfaceMount(["body front"], 0.01, "upright", max_slope=ANY_SLOPE),
     }
     mounting = pe.Mounting(
         mounts=mounts,
@@ -149,8 +153,8 @@ def corners_and_rack() -> pe.Study:
     ]
     slots = [pe.Slot(f"{slot.name} {k}", slot.pose) for k, slot in enumerate(slots)]
     mounts = {
-        "front": pe.SurfaceMount(["body front"], 0.1, "upright"),
-        "rear": pe.SurfaceMount(["body rear"], 0.1, "upright"),
+        "front": pe.SurfaceMount(["body front"], 0.1, "upright", max_slope=ANY_SLOPE),
+        "rear": pe.SurfaceMount(["body rear"], 0.1, "upright", max_slope=ANY_SLOPE),
         "rack": pe.SlotMount(slots),
     }
     mounting = pe.Mounting(

@@ -1,29 +1,35 @@
-"""``python -m benchmarks.searches``: methods of search on a dozen problems, and other libraries.
+"""``python -m benchmarks.searches``: methods of search on fifteen problems, and other libraries.
 
-All methods have the same evaluator and the same number of evaluations. Every run leaves a JSON file
+All methods have the same evaluator and the same number of evaluations: the problem's own, which is
+small, or with ``--budgets default`` that of a study that names none. Every run leaves a JSON file
 of its own; what is there, or in the summary that is kept with the project, is not run again. Then
 come the summary, its table (benchmarks/searches.md) and the plot of docs/optimize.md.
 
-Nevergrad and pycma come with the extra "bench". `--problems`, `--methods` and `--seeds` select, and
-`--again METHOD` forgets the runs of a method that has changed.
+The other libraries come with the extra "bench". `--problems`, `--methods` and `--seeds` select, and
+`--again METHOD` forgets the runs of a method that has changed. `--only run` leaves the summary
+alone, `--only tell` runs nothing.
 """
 
 from __future__ import annotations
 
 import argparse
+import hashlib
+import os
 import sys
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pe_core as pe
+from pe_core.scoring import sampling
+from pe_core.search import Parametrization, default_budget
 
 from .run_files import restore, run_once
-from .search_problems import PROBLEMS
-from .yardstick_searches import YARDSTICKS, Landscape
+from .search_problems import BUDGETS, PROBLEMS, SearchProblem
+from .yardstick_searches import YARDSTICKS, Landscape, search_by
 
 RUNS = Path(__file__).resolve().parent.parent / "build" / "search_problems"
 SUMMARY = Path(__file__).with_name("searches.json")
@@ -41,56 +47,111 @@ def main(arguments: Sequence[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.searches", description=__doc__)
     parser.add_argument("--problems", nargs="+", choices=PROBLEMS, default=list(PROBLEMS))
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS))
+    parser.add_argument("--budgets", nargs="+", choices=BUDGETS, default=["small"])
+    parser.add_argument("--samples", type=int, help="voxels that all methods evaluate (problem's)")
     parser.add_argument("--seeds", type=int, nargs="+", default=list(range(5)))
     parser.add_argument("--again", nargs="+", choices=METHODS, default=[])
     parser.add_argument("--runs", type=Path, default=RUNS, help="folder of the runs' files")
+    parser.add_argument("--only", choices=("run", "tell"))
     args = parser.parse_args(arguments)
     restore(args.runs, SUMMARY, partial(_path, args.runs), args.again)
-    for seed in args.seeds:
-        for name in args.problems:
-            for method in args.methods:
-                path = _path(args.runs, {"problem": name, "method": method, "seed": seed})
-                run_once(path, partial(run, name, method, seed), " of processor")
-    from .searches_told import write_summary
+    if args.only != "tell":
+        _run_missing(args)
+    if args.only != "run":
+        from .searches_told import write_summary
 
-    write_summary(args.runs, SUMMARY)
+        write_summary(args.runs, SUMMARY)
     return 0
 
 
+def _run_missing(args: argparse.Namespace) -> None:
+    """Run all problems by all methods with one seed before the next seed: what is there when it is
+    broken off is balanced."""
+    for length in args.budgets:
+        for seed in args.seeds:
+            for name in args.problems:
+                for method in args.methods:
+                    chosen = {"problem": name, "method": method, "budget": length, "seed": seed}
+                    path = _path(args.runs, chosen)
+                    search = partial(run, **chosen, samples=args.samples)
+                    run_once(path, search, " of processor")
+
+
 def _path(folder: Path, run: Json) -> Path:
-    return folder / f"{run['problem']}, {run['method']}, {run['seed']}.json"
+    names = (run["problem"], run["method"], run["budget"], run["seed"])
+    return folder / f"{', '.join(map(str, names))}.json"
 
 
-def run(name: str, method: str, seed: int) -> Json:
-    """Search; return the entropy that was found on the grid, and the curve of the best."""
-    problem = PROBLEMS[name]
+def evaluations_of(problem: SearchProblem, budget_name: str) -> int:
+    """Return how many placements a run evaluates."""
+    if budget_name == "small":
+        return problem.evaluations
     study = problem.make()
-    evaluator = study.evaluator(study.search.samples)
+    return default_budget(len(Parametrization(study.rig, study.search_space()).blocks))
+
+
+def run(problem: str, method: str, budget: str, seed: int, samples: int | None = None) -> Json:
+    """Search; return the entropy that was found on the grid, and the curve of the best. Candidates
+    are evaluated on so many samples, the problem's own by default."""
+    study = PROBLEMS[problem].make()
+    if samples is not None:
+        study = replace(study, search=replace(study.search, samples=samples))
+    evaluations = evaluations_of(PROBLEMS[problem], budget)
+    evaluator = study.evaluator(study.search.samples, shift=sampling.SEARCHED)
     search = _ours if method in OURS else _theirs
     begun = time.process_time()
-    rows, count, how = search(study, evaluator, method, seed, problem.evaluations)
+    found = search(study, evaluator, method, seed, evaluations=evaluations)
     seconds = time.process_time() - begun
-    kept = list(_marked(rows))
+    best = found.rows[-1][1]
     return {
-        "problem": name,
+        "problem": problem,
         "method": method,
+        "budget": budget,
         "seed": seed,
-        "entropy": study.evaluator(0).entropy(rows[-1][1]),
-        "own_sample": evaluator.entropy(rows[-1][1]),
+        "samples": study.search.samples,
+        "load": round(os.getloadavg()[0], 1),
+        "entropy": study.evaluator(0).entropy(best),
+        "own_sample": evaluator.entropy(best),
         "seconds": round(seconds, 3),
-        "evaluations": count,
-        "chosen": how,
-        "curve": [[round(at - begun, 3), evaluator.entropy(rig)] for at, rig in kept],
+        "evaluations": found.evaluations,
+        "asked": evaluations,
+        "broken": found.broken,
+        "chosen": found.chosen,
+        "path": _digest_of(found.rows),
+        "curve": [
+            [round(at - begun, 3), evaluator.entropy(rig)] for at, rig in _marked(found.rows)
+        ],
     }
+
+
+def _digest_of(rows: Sequence[EvaluatedRow]) -> str:
+    """Return a digest of the placements that were the best one after the other: that two seeds
+    searched alike is seen by it."""
+    poses = [[(each.pose.position, each.pose.rpy) for each in rig] for _, rig in rows]
+    return hashlib.sha256(repr(poses).encode()).hexdigest()[:12]
+
+
+@dataclass(frozen=True, slots=True)
+class RunRecord:
+    """What a search did: each placement that was the best so far, placements evaluated, those that
+    broke a rule instead (None: not counted), and the method that a method chose."""
+
+    rows: list[EvaluatedRow]
+    evaluations: int
+    broken: int | None
+    chosen: str
 
 
 def _ours(
     study: pe.Study, last: pe.RigEvaluator, method: str, seed: int, evaluations: int
-) -> tuple[list[EvaluatedRow], int, str]:
+) -> RunRecord:
     """Search by a method of the engine, on its own levels."""
     searched = replace(study.search, method=method, evaluations=evaluations)
     levels = replace(study, search=searched).level_samples
-    objectives = [last if n == study.search.samples else study.evaluator(n) for n in levels]
+    objectives = [
+        last if n == study.search.samples else study.evaluator(n, shift=sampling.SEARCHED)
+        for n in levels
+    ]
     schedule = None
     if method == "random":
         rounds = len(pe.Schedule().scales)
@@ -109,12 +170,12 @@ def _ours(
         count = step.evaluations
         if step.improved or not rows:
             rows.append((time.process_time(), step.best))
-    return rows, count, method
+    return RunRecord(rows, count, None, method)
 
 
 def _theirs(
     study: pe.Study, evaluator: pe.RigEvaluator, method: str, seed: int, evaluations: int
-) -> tuple[list[EvaluatedRow], int, str]:
+) -> RunRecord:
     """Search by a method of another library."""
     rows = list[EvaluatedRow]()
     lowest = float("inf")
@@ -128,8 +189,8 @@ def _theirs(
             rows.append((time.process_time(), rig))
 
     landscape = Landscape(study, evaluator, evaluations, told)
-    chosen = YARDSTICKS[method](landscape, seed, evaluations)
-    return rows, count, chosen
+    chosen = search_by(method, landscape, seed, evaluations)
+    return RunRecord(rows, count, landscape.broken, chosen)
 
 
 def _marked(rows: list[EvaluatedRow]) -> Iterator[EvaluatedRow]:

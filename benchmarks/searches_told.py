@@ -2,22 +2,48 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
-from statistics import median
+from statistics import mean, median
 from typing import Any
 
 import pe_core as pe
 
 from .run_files import summarise
 from .search_curves import draw_curve, save_with_legend
-from .search_problems import PROBLEMS
+from .search_problems import BUDGETS, PROBLEMS
 from .yardstick_searches import YARDSTICKS
 
 ROOT = Path(__file__).resolve().parent.parent
 PLOT = ROOT / "docs" / "images" / "search_problems.png"
 TABLE = Path(__file__).with_name("searches.md")
-NAMES = {"ngopt": "Nevergrad NGOpt", "pycma": "pycma, restarts"}
+OPTIMUM = Path(__file__).with_name("slot_optimum.json")
+NAMES = {
+    "cma": "CMA-ES",
+    "lq-cma": "lq-CMA-ES",
+    "ngioh": "NgIohTuned",
+    "lengler": "DiscreteLengler",
+    "bobyqa": "Py-BOBYQA",
+    "gp": "Optuna GP",
+}
+ABOUT = """\
+Entropy on the grid [nats], lower is better: median of the seeds, and in brackets the worst one. All
+methods have the same start, the same evaluator and the same number of evaluations; the result is
+scored on all voxels. `python -m benchmarks.searches` writes this from its run files, searches.json;
+search_problems.py says what each problem is.
+
+- portfolio: the default search here. Its first level evaluates fewer voxels.
+- CMA-ES, lq-CMA-ES: pycma, steps of 0.2 of each range, restarts from anywhere with twice the
+  population; slots are integers. lq-CMA-ES has a linear or quadratic model of the values.
+- NgIohTuned, DiscreteLengler (DiscreteLenglerOnePlusOne): Nevergrad; slots are integers.
+- Py-BOBYQA: with its own restarts, then from anywhere. Its first directions are random, as else
+  all seeds would search alike.
+- Optuna GP: a Gaussian process, at most two minutes of processor time a run; slots are categories.
+
+Constraints: a placement that breaks a rule is not evaluated and counts nothing. CMA-ES draws it
+anew; the others are told a penalty, the worst entropy so far plus the number of broken rules."""
 COLUMNS = 4
+SEEDS = 5
 
 Json = dict[str, Any]
 
@@ -28,7 +54,7 @@ def write_summary(runs: Path, path: Path) -> None:
     lines = table(found)
     print("\n".join(lines))
     TABLE.write_text("\n".join(lines) + "\n", "utf-8")
-    plot(found, PLOT)
+    plot([run for run in found if run["budget"] == BUDGETS[0]], PLOT)
 
 
 def methods_of(runs: list[Json]) -> list[str]:
@@ -37,31 +63,37 @@ def methods_of(runs: list[Json]) -> list[str]:
 
 
 def table(runs: list[Json]) -> list[str]:
-    """Return the table: median of the seeds, and lowest to highest."""
+    """Return the page: a table for each budget, the counted optimum, and notes on the runs."""
+    lines = ["# Methods of search on fifteen problems", "", *ABOUT.splitlines()]
+    for budget in dict.fromkeys(run["budget"] for run in runs):
+        lines += ["", *_of_budget([run for run in runs if run["budget"] == budget], budget)]
+    return [*lines, "", *_optimum_lines(runs), *_notes(runs)]
+
+
+def _of_budget(runs: list[Json], budget: str) -> list[str]:
+    """Return the table of one budget: problems that have runs."""
     methods = methods_of(runs)
     lines = [
-        "# Methods of search on fifteen problems",
+        f"## {budget.capitalize()} budget",
         "",
-        "Entropy on the grid [nats], lower is better: the median of the seeds, and lowest to",
-        "highest. All methods have the same evaluator and the same number of evaluations. Shares",
-        "and counts of race and images were chosen on experiment 4; that the race replaces other",
-        "descents also for small budgets, on the first twelve; fewer images for those, on all.",
-        "Of large budgets, of which none is here: on seeds 8 and 10 to 19 of experiment 4.",
-        "`python -m benchmarks.searches` writes this; search_problems.py says what each is.",
-        "",
-        f"| problem | evaluations | {' | '.join(NAMES.get(m, m) for m in methods)} |",
-        f"|{' --- |' * (len(methods) + 2)}",
+        f"| problem | evaluations | voxels | {' | '.join(NAMES.get(m, m) for m in methods)} |",
+        f"|{' --- |' * (len(methods) + 3)}",
     ]
     for name, problem in PROBLEMS.items():
-        ends = {m: entropies(runs, name, m) for m in methods}
-        best = min((median(values) for values in ends.values() if values), default=0.0)
-        cells = [_cell(ends[m], best) for m in methods]
+        own = [run for run in runs if run["problem"] == name]
+        if not own:
+            continue
+        ends = {m: entropies(own, name, m) for m in methods}
+        best = min(median(values) for values in ends.values() if values)
         title = f"{name} ({problem.mark})" if problem.mark else name
-        lines.append(f"| {title} | {problem.evaluations} | {' | '.join(cells)} |")
-    counts = [max(len(entropies(runs, name, m)) for name in PROBLEMS) for m in methods]
-    lines.append(f"| seeds, at most | | {' | '.join(map(str, counts))} |")
-    seconds = [f"{sum(r['seconds'] for r in runs if r['method'] == m):.0f} s" for m in methods]
-    lines.append(f"| processor time of all runs | | {' | '.join(seconds)} |")
+        head = f"| {title} | {own[0]['asked']:,} | {own[0]['samples']:,} "
+        lines.append(f"{head}| {' | '.join(_cell(ends[m], best) for m in methods)} |")
+    ranks = [_mean_rank(runs, m, methods) for m in methods]
+    lines.append(f"| mean rank | | | {' | '.join(ranks)} |")
+    seconds = [_seconds(runs, m) for m in methods]
+    lines.append(f"| processor time of a run, median | | | {' | '.join(seconds)} |")
+    broken = [_broken(runs, m) for m in methods]
+    lines.append(f"| broken placements for each evaluated one | | | {' | '.join(broken)} |")
     return lines
 
 
@@ -75,7 +107,75 @@ def _cell(values: list[float], best: float) -> str:
         return "-"
     middle = f"{median(values):.3f}"
     middle = f"**{middle}**" if median(values) == best else middle
-    return f"{middle} ({min(values):.3f} to {max(values):.3f})"
+    count = "" if len(values) == SEEDS else f", {len(values)} of {SEEDS}"
+    return f"{middle} ({max(values):.3f}{count})"
+
+
+def _mean_rank(runs: list[Json], method: str, methods: list[str]) -> str:
+    """Return the mean rank of a method's median over the problems that all methods have runs of."""
+    ranks = []
+    for name in PROBLEMS:
+        ends = {m: entropies(runs, name, m) for m in methods}
+        if all(ends.values()):
+            middles = {m: median(values) for m, values in ends.items()}
+            ranks.append(1 + sum(value < middles[method] for value in middles.values()))
+    return f"{mean(ranks):.1f} of {len(ranks)}" if ranks else "-"
+
+
+def _seconds(runs: list[Json], method: str) -> str:
+    return f"{median(r['seconds'] for r in runs if r['method'] == method):.1f} s"
+
+
+def _broken(runs: list[Json], method: str) -> str:
+    own = [r for r in runs if r["method"] == method and r["broken"] is not None]
+    evaluated = sum(r["evaluations"] for r in own)
+    return f"{sum(r['broken'] for r in own) / evaluated:.2f}" if own else "not counted"
+
+
+def _optimum_lines(runs: list[Json]) -> list[str]:
+    """Return what counting all placements in slots found, beside the searches."""
+    if not OPTIMUM.exists():
+        return []
+    found = json.loads(OPTIMUM.read_text("utf-8"))
+    name = found["problem"]
+    own = entropies(runs, name, "portfolio")
+    lines = [
+        "## The optimum in slots",
+        "",
+        f"*{name}*: all {found['counted']:,} different placements, fused on {found['voxels']:,} "
+        f"voxels by `python -m benchmarks.slot_optimum`; of the {found['finalists']} best there, "
+        f"the best on the grid has **{found['entropy']:.3f}**.",
+    ]
+    if own:
+        lines[-1] += f" The portfolio found {min(own):.3f} to {max(own):.3f}."
+    return [*lines, ""]
+
+
+def _notes(runs: list[Json]) -> list[str]:
+    """Return what the files say of themselves: seeds that searched alike, missing runs, load."""
+    lines = ["## What is to be said of the runs", ""]
+    keys = dict.fromkeys((r["problem"], r["method"], r["budget"]) for r in runs)
+    alike = []
+    for key in keys:
+        own = [r for r in runs if (r["problem"], r["method"], r["budget"]) == key]
+        if len({r["path"] for r in own}) < len(own):
+            alike.append(f"{key[0]} by {NAMES.get(key[1], key[1])}")
+    text = ", ".join(alike) if alike else "none"
+    lines.append(f"- Seeds of a method that searched alike (digest of all placements): {text}.")
+    whole = sum(1 for r in keys if sum((x["problem"], x["method"], x["budget"]) == r for x in runs))
+    lines.append(f"- {len(runs)} runs, of {whole} pairs of problem and method.")
+    missing = [n for n in PROBLEMS if not any(r["problem"] == n for r in runs)]
+    if missing:
+        lines.append(f"- No run in the time there was: {', '.join(missing)}.")
+    lines += [
+        f"- No run with the {b} budget." for b in BUDGETS if all(r["budget"] != b for r in runs)
+    ]
+    chosen = sorted({r["chosen"] for r in runs if r["method"] == "ngioh"})
+    if chosen:
+        lines.append(f"- NgIohTuned chose: {', '.join(chosen)}.")
+    loads = [r["load"] for r in runs]
+    lines.append(f"- Load of the two processors: {min(loads):.0f} to {max(loads):.0f}; nice 15.")
+    return lines
 
 
 def plot(runs: list[Json], path: Path) -> None:
@@ -87,16 +187,19 @@ def plot(runs: list[Json], path: Path) -> None:
 
     @plotting.styled
     def draw() -> None:
-        rows = -(-len(PROBLEMS) // COLUMNS)
-        figure, grid = plotting.pyplot().subplots(rows, COLUMNS, figsize=(10.4, 2.3 * rows))
-        for axis, (name, problem) in zip(grid.flat, PROBLEMS.items(), strict=False):
+        shown = {n: p for n, p in PROBLEMS.items() if any(r["problem"] == n for r in runs)}
+        rows = -(-len(shown) // COLUMNS)
+        figure, grid = plotting.pyplot().subplots(
+            rows, COLUMNS, squeeze=False, figsize=(10.4, 2.3 * rows)
+        )
+        for axis, (name, problem) in zip(grid.flat, shown.items(), strict=False):
             for method in methods:
                 some = [r for r in runs if (r["problem"], r["method"]) == (name, method)]
                 if some:
                     draw_curve(axis, some, looks[method], NAMES.get(method, method))
             axis.set(xscale="log", title=name + (f" ({problem.mark})" if problem.mark else ""))
             plotting.remove_frame(axis)
-        for axis in grid.flat[len(PROBLEMS) :]:
+        for axis in grid.flat[len(shown) :]:
             axis.set_axis_off()
         for axis in grid[-1]:
             axis.set_xlabel("processor time [s]")

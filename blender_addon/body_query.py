@@ -16,7 +16,6 @@ TOPIC = f"{engine_process.OVERLAY}test bodies"
 """As a layer of the view: what has been found is taken before the view is drawn."""
 PLACE_DIGITS = 5
 HEADING_DIGITS = 4
-MAX_LINES = 4
 SEEN = graphics.with_alpha(graphics.VIEWPORT.words, 1.0)
 UNSEEN = graphics.with_alpha(graphics.VIEWPORT.occluded, 1.0)
 
@@ -76,15 +75,13 @@ def seen(scene: bpy.types.Scene) -> dict[str, advice.BodySight]:
 
 
 def labels(scene: bpy.types.Scene, active: bpy.types.Object | None) -> list[graphics.Tag]:
-    """Return a label for each visible body; that of the active one has all sensors."""
+    """Return a label for each visible body: a line, of the active one all sensors."""
     found = []
     for name, body in seen(scene).items():
         obj = scene.objects[name]
         if not obj.visible_get():
             continue
-        lines = [f"{each.name}: {each.text}" for each in body.seeing]
-        if obj != active and len(lines) > MAX_LINES:
-            lines[MAX_LINES - 1 :] = [f"+ {len(lines) - MAX_LINES + 1}"]
+        lines = [f"{each.name}: {each.text}" for each in body.seeing] if obj == active else []
         text = "\n".join([f"{name}: {body.summary}", *lines])
         x, y, _ = bridge.body_place(obj)
         top = max((obj.matrix_world @ corner).z for corner in map(Vector, obj.bound_box))

@@ -35,7 +35,8 @@ def note_if_changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> N
     vehicle = scene.perception_entropy.vehicle
     sensors = tuple((s.name, s.visible_get(view_layer=layer)) for s in sensor_cache.sensors(scene))
     parts = () if vehicle is None else vehicle_cache.counted_members(vehicle, depsgraph)
-    present = sensors, parts, vehicle_cache.shared.version
+    units = scene.unit_settings.system, scene.unit_settings.scale_length
+    present = sensors, parts, vehicle_cache.shared.version, units
     if _last_counted.get(scene.name) != present or _sensor_moved(depsgraph):
         _last_counted[scene.name] = present
         note_change()

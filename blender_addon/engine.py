@@ -26,8 +26,10 @@ if TYPE_CHECKING:
         formats,
         graphics,
         jobs,
+        known_defects,
         outputs,
         page,
+        verify,
         wording,
     )
     from pe_tools import cli as app
@@ -42,6 +44,7 @@ ROOMS = {
     "geometry": (pe, "scene"),
     "graphics": (tools, "graphics"),
     "jobs": (tools, "jobs"),
+    "known_defects": (tools, "known_defects"),
     "motion": (pe, "motion"),
     "kinds": (pe, "sensors"),
     "outputs": (tools, "outputs"),
@@ -52,6 +55,7 @@ ROOMS = {
     "sight": (pe, "scoring.sight"),
     "studies": (pe, "study"),
     "text": (pe, "base"),
+    "verify": (tools, "verify"),
     "wording": (tools, "wording"),
 }
 """Where the rooms are, by the names that they have in the add-on."""

@@ -23,8 +23,8 @@ POLL_S = 0.005  # How often the timer looks for results, while one is awaited
 MAX_MODELS = 256
 LIVE_SCORE = "live score of "
 OVERLAY = "overlay "
-VIEW_TOPICS = LIVE_SCORE, OVERLAY
-"""How topics begin whose results are drawn, and write nothing into Blender's data."""
+"""How topics begin. Layers are delivered while a view is drawn, as they write nothing into
+Blender's data; a score is not, as the sidebar has been drawn by then."""
 _PACKAGES = (__package__, f"{__package__}.overlay")
 
 
@@ -66,7 +66,7 @@ def ask(
 def deliver_for_view() -> None:
     """Before a view is drawn: deliver what it shows. A timer's turn comes after the redraw."""
     try:
-        _engine.deliver_all(*VIEW_TOPICS)
+        _engine.deliver_all(OVERLAY)
     except Exception:  # in what takes a result: the view is drawn all the same
         traceback.print_exc()
 

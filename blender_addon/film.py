@@ -22,6 +22,10 @@ from .engine import Floats, graphics, motion, pe, text
 WEBM = ".webm"
 FORMATS = {WEBM: ("WEBM", "WEBM"), ".mp4": ("MPEG4", "H264")}
 """Container and codec of FFmpeg by the file's suffix."""
+NO_FILM = "FFmpeg in it, and OpenGL"
+POLL_S = 0.5
+TOLD_S = 8.0
+"""How often a window looks whether a film is done, and how long it says so."""
 SIZE_PX = 1280, 720
 ENGINE = "BLENDER_WORKBENCH"
 SHOWN = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "LIGHT"}
@@ -55,17 +59,73 @@ GOP = 12  # Frames from one key frame to the next: a page jumps to any moment
 def write_film(scene: bpy.types.Scene, study: pe.Study, story: motion.Story, path: Path) -> None:
     """Render a story as a film, and write the file once it is complete; its scene is left. Render
     Animation renders that scene again. `InputError` where the suffix is none of `FORMATS`."""
-    if path.suffix not in FORMATS:
-        raise pe.InputError("film", "file", f"a name that ends in {' or '.join(FORMATS)}", path)
+    check_suffix(path)
     film = film_scene(scene, study, story)
     with tempfile.TemporaryDirectory() as folder:
-        made = Path(folder) / f"film{path.suffix}"
-        film.render.filepath = str(made)
-        film.render.ffmpeg.format, film.render.ffmpeg.codec = FORMATS[path.suffix]
+        made = _rendered_to(film, folder, path.suffix)
         bpy.ops.render.render(animation=True, scene=film.name)
         if not made.is_file():
-            raise pe.InputError("film", "Blender", "FFmpeg in it, and OpenGL", "no film")
+            raise pe.InputError("film", "Blender", NO_FILM, "no film")
         text.write_bytes(path, made.read_bytes())
+
+
+class FilmRender:
+    """A film that Blender renders beside its window, which shows how far it is; Esc ends it, and
+    keeps the frames that are done. The file is written in the end."""
+
+    def __init__(
+        self, scene: bpy.types.Scene, study: pe.Study, story: motion.Story, path: Path
+    ) -> None:
+        check_suffix(path)
+        film = film_scene(scene, study, story)
+        self.path = path
+        self._folder = tempfile.TemporaryDirectory()
+        self._made = _rendered_to(film, self._folder.name, path.suffix)
+        view = bpy.context.preferences.view
+        display = view.render_display_type
+        view.render_display_type = "NONE"  # else an image editor takes the view's place
+        try:
+            bpy.ops.render.render("INVOKE_DEFAULT", animation=True, scene=film.name)
+        finally:
+            view.render_display_type = display
+        bpy.app.timers.register(self._poll, first_interval=POLL_S)
+
+    def _poll(self) -> float | None:
+        """Timer: write the file once nothing is rendered any more."""
+        if bpy.app.is_job_running("RENDER"):
+            return POLL_S
+        is_made = self._made.is_file()
+        if is_made:
+            text.write_bytes(self.path, self._made.read_bytes())
+        self._folder.cleanup()
+        _tell(f"Wrote {self.path}" if is_made else f"No film: {NO_FILM}")
+        return None
+
+
+def _tell(line: str) -> None:
+    """Show a line in the status bar for some time."""
+
+    def clear() -> None:
+        for workspace in bpy.data.workspaces[:1]:
+            workspace.status_text_set(None)
+
+    for workspace in bpy.data.workspaces[:1]:
+        workspace.status_text_set(line)
+    bpy.app.timers.register(clear, first_interval=TOLD_S)
+
+
+def _rendered_to(film: bpy.types.Scene, folder: str, suffix: str) -> Path:
+    """Have a film rendered into a folder; return its file."""
+    made = Path(folder) / f"film{suffix}"
+    film.render.filepath = str(made)
+    film.render.ffmpeg.format, film.render.ffmpeg.codec = FORMATS[suffix]
+    return made
+
+
+def check_suffix(path: Path) -> None:
+    """`InputError` where a film's suffix is none of `FORMATS`."""
+    if path.suffix not in FORMATS:
+        raise pe.InputError("film", "file", f"a name that ends in {' or '.join(FORMATS)}", path)
 
 
 def film_scene(scene: bpy.types.Scene, study: pe.Study, story: motion.Story) -> bpy.types.Scene:

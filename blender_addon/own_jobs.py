@@ -114,16 +114,57 @@ def _picture(outcome: jobs.Outcome, _watch: OnProgress) -> bytes:
     return page.picture_file(outcome.study, outcome)
 
 
-def page_job(study: pe.Study, path: Path, about: page.About, facts: dict[str, Any]) -> ExportJob:
-    """Return the job that scores a study and writes its review page."""
-    make = partial(_page, path.stem, about, facts)
+class SearchedFrom(NamedTuple):
+    """The study that a search began with, and the result of the search as plain data."""
+
+    start: pe.Study
+    data: Mapping[str, Any]
+
+
+def page_job(
+    study: pe.Study,
+    path: Path,
+    about: page.About,
+    facts: dict[str, Any],
+    search: SearchedFrom | None = None,
+) -> ExportJob:
+    """Return the job that scores a study and writes its review page: that of a search, if it is the
+    result of one. `facts` are fields of the page's context, its name among them."""
+    make = partial(_page, about, facts, search)
     return ExportJob(study, "page", make, partial(_write_one, path), scored=True)
 
 
 def _page(
-    title: str, about: page.About, facts: dict[str, Any], outcome: jobs.Outcome, watch: OnProgress
+    about: page.About,
+    facts: dict[str, Any],
+    search: SearchedFrom | None,
+    outcome: jobs.Outcome,
+    watch: OnProgress,
 ) -> bytes:
-    return page.page_bytes([page.ReportContext(title, outcome, **facts)], watch, about)
+    shown = outcome if search is None else _searched(outcome, search)
+    return page.page_bytes([page.ReportContext(outcome=shown, **facts)], watch, about)
+
+
+def _searched(outcome: jobs.Outcome, search: SearchedFrom) -> jobs.Outcome:
+    """Return the outcome of the search that a scored study is the result of."""
+    job = jobs.ScoreJob(search.start)
+    for _ in job:
+        pass
+    first = job.outcome
+    if first is None:
+        return outcome
+    before = first.figures_after
+    after = outcome.figures_after
+    return replace(
+        outcome,
+        kind=search.data["kind"],
+        start=search.start,
+        before=first.after,
+        figures=None if before is None or after is None else (before, after),
+        evaluations=search.data["evaluations"],
+        stopped=search.data["stopped"],
+        stop_reason=search.data["stop_reason"] or "",
+    )
 
 
 def _write_one(path: Path, made: bytes) -> WrittenFiles:

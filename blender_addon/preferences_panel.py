@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import library, own_catalog, signals
+from . import library, own_catalog, signals, verification
 from .library import stored
 from .panel_text import draw_label
 from .properties import fields
@@ -49,6 +49,12 @@ class PE_Preferences(bpy.types.AddonPreferences):
         if own_catalog.problem:
             draw_label(column, own_catalog.problem, "ERROR")
         column.prop(self, "show_library")
+        column = self._section("Engine")
+        column.operator("pe.verify_engine", icon="CHECKMARK")
+        if verification.is_running():
+            draw_label(column, "Golden cases are being computed", "SORTTIME")
+        for number, line in enumerate(verification.lines()):
+            draw_label(column, line, "ERROR" if number else "NONE")
 
     def _section(self, heading: str) -> bpy.types.UILayout:
         """Draw a heading; return a column below it. Blender draws a column's own only at a tick."""

@@ -51,6 +51,13 @@ def redraw_editors() -> None:
                     area.tag_redraw()
 
 
+def redraw_soon() -> None:
+    """Have every 3D view and its sidebar redrawn after the present redraw: during it Blender
+    ignores a tag of the region that is drawn."""
+    if not bpy.app.background and not bpy.app.timers.is_registered(redraw_editors):
+        bpy.app.timers.register(redraw_editors, first_interval=0.0)
+
+
 def shader(name: str) -> gpu.types.GPUShader:
     """Return a built-in shader; made when first drawn, as there is no GPU in background."""
     if name not in _shaders:

@@ -98,7 +98,7 @@ LISTENERS: tuple[tuple[signals.Signal, tuple[signals.Listener, ...]], ...] = (
             housing.update_housings,
         ),
     ),
-    (signals.view_changed, (scheduler.schedule,)),
+    (signals.view_changed, (scheduler.schedule, viewport.redraw_editors)),
     (
         signals.moving,
         (
@@ -155,6 +155,7 @@ def register() -> None:
     for signal, listeners in LISTENERS:
         for listener in listeners:
             signal.connect(listener)
+    change_events.note_change()  # switched on again: what is there has not been read
 
 
 def unregister() -> None:

@@ -8,11 +8,12 @@ from pe_core.version import __version__
 
 def versions_text() -> str:
     """Return the versions of the program, NumPy and Python, and the machine."""
-    numpy = f"NumPy {_numpy_version()}"
+    numpy = f"NumPy {numpy_version()}"
     return f"pe {__version__}, {numpy}, Python {platform.python_version()}, {platform.platform()}"
 
 
-def _numpy_version() -> str:
+def numpy_version() -> str:
+    """Return the version of NumPy."""
     try:
         return version("numpy")
     except PackageNotFoundError:  # copied into a folder without what pip notes of it

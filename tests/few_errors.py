@@ -6,11 +6,13 @@ places. In small studies each takes longer than the rest.
 """
 
 import importlib
+import math
 from dataclasses import replace
 
 import pytest
 
 from pe_core.scoring.sight import sight
+from pe_core.search import processes
 from pe_core.study import suggestion
 
 ROBUSTNESS = importlib.import_module("pe_core.search.tolerance")
@@ -18,6 +20,7 @@ ROBUSTNESS = importlib.import_module("pe_core.search.tolerance")
 WORKSHOP = ROBUSTNESS.WORKSHOP
 OBJECTS = sight.ObjectEvaluator
 HEIGHTS = sight.SECTOR_HEIGHTS_M
+SHORT_S = processes.SHORT_S
 FEW_SCENES = 16
 FEW_PLACES = {"HELP_PLACES": 8, "ADD_PLACES": 24, "ADD_COMPARED": 2}
 
@@ -29,7 +32,11 @@ def objects_of_few_scenes(*where, targets, **more):
 
 
 def draw_few(monkeypatch):
-    """Draw two mounting errors a sensor, not six; few scenes and places, one height of sectors."""
+    """Draw two mounting errors a sensor, not six; few scenes and places, one height of sectors.
+
+    A search that takes long on a busy machine starts no workers: they would draw all.
+    """
+    monkeypatch.setattr(processes, "SHORT_S", math.inf)
     monkeypatch.setattr(ROBUSTNESS, "WORKSHOP", replace(WORKSHOP, draws=2))
     monkeypatch.setattr(sight, "ObjectEvaluator", objects_of_few_scenes)
     monkeypatch.setattr(sight, "SECTOR_HEIGHTS_M", HEIGHTS[:1])
@@ -49,3 +56,4 @@ def all_errors(few_errors, monkeypatch):
     monkeypatch.setattr(ROBUSTNESS, "WORKSHOP", WORKSHOP)
     monkeypatch.setattr(sight, "ObjectEvaluator", OBJECTS)
     monkeypatch.setattr(sight, "SECTOR_HEIGHTS_M", HEIGHTS)
+    monkeypatch.setattr(processes, "SHORT_S", SHORT_S)

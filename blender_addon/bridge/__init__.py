@@ -39,6 +39,7 @@ from .result import (
     begin_with,
     blender_version,
     figures_of_sensor,
+    score_from_dict,
     sensor_loss,
     store_outcome,
     store_warnings,

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import bpy
 from bpy.types import Object, PropertyGroup, Scene
 
-from ..engine import advice, jobs, pe, search, sight, studies
+from ..engine import advice, jobs, known_defects, pe, search, sight, studies
 from .requirements import store_verdicts
 from .scene_diagnostics import DRIVER, MISSING
 
@@ -44,6 +44,7 @@ class Result:
         self.after = data["after"]
         began = data.get(BEGAN, data)
         self.before = began["before"]
+        self.placed_before = began.get("placements", {}).get("before", {})
         first = began.get("figures", {})
         figures = {"before": first.get("before"), "after": data.get("figures", {}).get("after")}
         self.kind: str = data["kind"]
@@ -84,8 +85,9 @@ class Result:
 
     @cached_property
     def missing(self) -> tuple[str, ...]:
-        """What the scene lacked when it was scored."""
-        return tuple(each.text for each in self.warnings if each.code in MARKING)
+        """What the scene lacked when it was scored, and defects that were mended since."""
+        lacking = (each.text for each in self.warnings if each.code in MARKING)
+        return *lacking, *known_defects.mended_since(self.data)
 
     @property
     def fragile(self) -> str:
@@ -157,7 +159,7 @@ def begin_with(settings: PropertyGroup, first: Result) -> None:
     """Note that a search went on from the result of another: it is compared with its start."""
     data = json.loads(settings.result_json)
     data[BEGAN] = first.data.get(BEGAN) or {
-        key: first.data[key] for key in ("before", "figures") if key in first.data
+        key: first.data[key] for key in ("before", "figures", "placements") if key in first.data
     }
     settings.result_json = json.dumps(data)
 

@@ -7,9 +7,9 @@ open scene.
 import argparse
 import contextlib
 import shlex
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 import bpy
 
@@ -33,7 +33,7 @@ def main(argv: Sequence[str], prog: str, out: TextIO) -> int:
     named = prog.replace("FILE.blend", file)
     try:
         with contextlib.redirect_stdout(out):
-            args = parser(prog).parse_args(argv)
+            args = parser(prog, out).parse_args(argv)
     except SystemExit as stop:  # help was asked for, or the usage was wrong
         return int(stop.code or 0)
     except pe.InputError as error:
@@ -60,13 +60,23 @@ def unregister() -> None:
     bpy.utils.unregister_cli_command(_registered.pop())
 
 
-def parser(prog: str) -> argparse.ArgumentParser:
-    """Return the parser of the command line."""
+def parser(prog: str, out: TextIO | None = None) -> argparse.ArgumentParser:
+    """Return the parser of the command line; replies of a session go to `out`."""
+    source = SceneStudies()
+    source.out = out
     shared = [verb for verb in app.VERBS if verb.name not in OF_FILES]
     verbs = [verb._replace(function=OWN.get(verb.name, verb.function)) for verb in shared]
     about = "list the variants in the file"
     verbs.append(
-        app.Verb("variants", "show", about, app.NONE, options="json", function=list_variants)
+        app.Verb(
+            "variants",
+            "show",
+            about,
+            app.NONE,
+            options="",
+            function=list_variants,
+            answer=tuple[Mapping[str, Any], ...],
+        )
     )
-    top, _ = app.command_parser(prog, f"pe {pe.__version__}", verbs, SceneStudies())
+    top, _ = app.command_parser(prog, f"pe {pe.__version__}", verbs, source)
     return top

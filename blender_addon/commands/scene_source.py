@@ -39,7 +39,11 @@ class SceneStudies(app.StudyFiles):
 
     def study(self, args: argparse.Namespace) -> pe.Study:
         """Return the study of the scene, or of a variant, with the changes of the options."""
-        return self._changed(opened_study(args.variant), args)
+        return self.changed(opened_study(args.variant), args, bpy.data.filepath)
+
+    def opened(self) -> pe.Study:
+        """Return the study of the scene: a session begins with it."""
+        return opened_study()
 
     def studies(self, args: argparse.Namespace) -> dict[str, pe.Study]:
         """Return the studies of variants by name, with the changes of the options: of those that
@@ -52,13 +56,9 @@ class SceneStudies(app.StudyFiles):
                 raise pe.InputError(bpy.data.filepath, "variants", "at least one", "none")
         if not names:
             name = Path(bpy.data.filepath).stem or "scene"
-            return {name: self._changed(opened_study(), args)}
+            return {name: self.changed(opened_study(), args, bpy.data.filepath)}
         found = studies_of(scene, names)
-        return {name: self._changed(study, args) for name, study in found.items()}
-
-    def _changed(self, study: pe.Study, args: argparse.Namespace) -> pe.Study:
-        changes = app.read_changes(args.set)
-        return app.with_options(app.with_changes(study, changes, bpy.data.filepath), args)
+        return {n: self.changed(s, args, bpy.data.filepath) for n, s in found.items()}
 
     @contextlib.contextmanager
     def naming(self, _: argparse.Namespace) -> Iterator[None]:

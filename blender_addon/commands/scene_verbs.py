@@ -1,7 +1,6 @@
 """Verbs that the open scene does otherwise than a study file, and its list of variants."""
 
 import argparse
-import json
 from pathlib import Path
 
 import bpy
@@ -46,9 +45,7 @@ def list_variants(_: SceneStudies, args: argparse.Namespace) -> app.Answer:
     scene = opened_scene()
     bridge.check_variants(scene, result_staleness.fingerprint(scene))
     data = [bridge.variant_dict(scene, row) for row in scene.perception_entropy.variants]
-    if args.json:
-        return json.dumps(data, indent=2), app.DONE
-    return "\n".join(map(_listed, data)) or "no variants", app.DONE
+    return app.answered(args, data, map(_listed, data) if data else ["no variants"]), app.DONE
 
 
 def _listed(row: dict) -> str:

@@ -12,8 +12,9 @@ import bpy
 from .. import engine_process, viewport
 from ..panel_text import is_simple, plain, typeset
 from ..viewport import FAINT, INK, PLATE, SMALL, Rgba
-from .readout_text import BETTER, WORSE, ReadoutLine, TextPiece, readout_of
-from .state import LiveScore, ShownScore, live_state, shown_score
+from .readout_text import BETTER, WORSE, ReadoutLine, TextPiece, readout_of, state_of
+from .shown import ShownScore, for_drawing
+from .state import live_state
 
 LARGE = 17.0
 """Size of the headline, in pixels of an interface at scale 1; so are all lengths below."""
@@ -61,11 +62,9 @@ def draw() -> None:
     overlays = space is None or space.type != "VIEW_3D" or space.overlay.show_overlays
     box = None
     if scene.perception_entropy.live.on and overlays and viewport.is_lower_left(context):
-        state = live_state(scene.name)
-        shown = shown_score(scene)
-        if shown is not None and shown.exact and engine_process.busy(engine_process.OVERLAY):
-            shown = shown._replace(view_outdated=True)
-        rows = rows_of(state.score, state.note, shown)
+        shown = for_drawing(scene)
+        is_late = engine_process.busy(engine_process.OVERLAY)
+        rows = rows_of(shown, live_state(scene.name).note, view_outdated=is_late)
         if is_simple(scene):
             rows = [row._replace(words=tuple((plain(t), c) for t, c in row.words)) for row in rows]
         box = draw_rows(
@@ -80,9 +79,12 @@ def row_of(line: ReadoutLine, color: Rgba = INK) -> TextRow:
     return TextRow(SMALL, words, WORD_GAP)
 
 
-def rows_of(score: LiveScore | None, note: str, shown: ShownScore | None) -> list[TextRow]:
-    """Return rows from the top down: the score, and why there is no newer one."""
-    rows = [] if shown is None else _rows_of_score(score, shown)
+def rows_of(
+    shown: ShownScore | None, note: str = "", *, view_outdated: bool = False
+) -> list[TextRow]:
+    """Return rows from the top down: the score, and why there is no newer one. `view_outdated`:
+    beams and maps are still those of before the last move."""
+    rows = [] if shown is None else _rows_of_score(shown, view_outdated and shown.exact)
     if note:
         rows += [
             TextRow(SMALL, ((line, ALERT),)) for line in textwrap.wrap(typeset(note), MAX_COLUMNS)
@@ -90,17 +92,18 @@ def rows_of(score: LiveScore | None, note: str, shown: ShownScore | None) -> lis
     return rows or [TextRow(SMALL, (("Live: scoring ...", FAINT),))]
 
 
-def _rows_of_score(score: LiveScore | None, shown: ShownScore) -> list[TextRow]:
-    text = readout_of(score, shown)
+def _rows_of_score(shown: ShownScore, view_outdated: bool) -> list[TextRow]:
+    text = readout_of(shown)
     arrow = ARROWS.get(text.sense, "")
     color = SENSE_COLORS.get(text.sense, FAINT)
     change = ((f"{arrow} {text.change}".strip(), color),) if text.change else ()
-    has_zones = score is not None and score.before is not None
-    reserved = ((TextPiece(""),),) * (ZONE_ROWS + 1 - len(text.lines)) if has_zones else ()
+    lacking = ZONE_ROWS + 1 - len(text.lines)
+    reserved = ((TextPiece(""),),) * lacking if shown.pair is not None else ()
+    error = state_of(shown, view_outdated=view_outdated)
     coverage, *zones = (row_of(line) for line in (*text.lines, *reserved))
     return [
         TextRow(LARGE, ((text.headline, INK), *change)),
-        TextRow(SMALL, tuple((part, FAINT) for part in (text.error, text.against) if part)),
+        TextRow(SMALL, tuple((part, FAINT) for part in (error, text.against) if part)),
         coverage,
         *zones,
     ]

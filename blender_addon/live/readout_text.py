@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from ..engine import advice, pe, scoring, search
-from .state import LiveScore, ShownScore
+from .shown import ShownScore
 
 MIN_CHANGE = 0.0005
 """Entropies nearer to each other than this are the same in the text [nats]."""
@@ -16,7 +16,6 @@ SENSE_ICONS = {BETTER: "COLORSET_04_VEC", SAME: "NONE", WORSE: "COLORSET_02_VEC"
 """Blender's own: blue is better, orange worse, told apart by colour-blind eyes, too."""
 MAX_LABEL_LETTERS = 32  # Letters of a variant's name that the read-out has room for
 MINUS = "\N{MINUS SIGN}"
-BEFORE_SEARCH = "before the search"
 NO_FIGURE = "\N{EN DASH}"
 
 
@@ -32,67 +31,59 @@ ReadoutLine = tuple[TextPiece, ...]
 
 
 class ReadoutText(NamedTuple):
-    """The text of a score: headline, error, change, reference of the change, and further lines."""
+    """The text of a score: headline, change, reference of the change, and further lines."""
 
     headline: str
-    error: str
     change: str
     sense: int
     against: str
     lines: tuple[ReadoutLine, ...]
 
 
-def readout_of(score: LiveScore | None, shown: ShownScore) -> ReadoutText:
-    """Return the text of the score that is shown: a live or a stored one. Changes are those of the
-    live score, from sample to sample; of a stored search, its own."""
-    change = ""
-    sense = SAME
-    against = ""
+def readout_of(shown: ShownScore) -> ReadoutText:
+    """Return the text of what is shown. All changes are from the same baseline."""
+    now = shown.now
+    what = "Coverage" if now.voxels else "Objects visible:"
+    coverage = TextPiece(f"{what} {advice.percent(now.coverage, 1)}")
     lines: tuple[ReadoutLine, ...] = (
-        (TextPiece(f"Coverage {advice.percent(shown.coverage, 1)}"),),
+        (
+            coverage,
+            *change_of(100.0 * _change(shown, "coverage"), 1, 100.0 * shown.error("coverage")),
+        ),
     )
-    if score is not None:
-        now = score.summary
-        before = score.before
-        what = "Coverage" if now.voxels else "Objects visible:"
-        by = None if before is None else 100.0 * (now.coverage - before.coverage)
-        off = 100.0 * error_of_change(now, before, "coverage")
-        lines = (
-            (TextPiece(f"{what} {advice.percent(shown.coverage, 1)}"), *change_of(by, 1, off)),
-        )
-        if now.ap is not None:
-            by = None if before is None or before.ap is None else now.ap - before.ap
-            off = error_of_change(now, before, "ap")
-            lines += ((TextPiece(f"Expected AP {now.ap:.3f}"), *change_of(by, 3, off)),)
-        lines += tuple(zone_lines(now, before))
-        if before is not None and score.baseline is not None:
-            off = error_of_change(now, before, "entropy")
-            change, sense = entropy_change(now.entropy, before.entropy, off)
-            against = f"compared with {shortened(score.baseline.label)}"
-    if shown.before is not None:
-        change, sense = entropy_change(shown.entropy, shown.before, shown.change_error)
-        against = f"compared with {BEFORE_SEARCH}"
+    if now.ap is not None:
+        by = change_of(_change(shown, "ap"), 3, shown.error("ap"))
+        lines += ((TextPiece(f"Expected AP {now.ap:.3f}"), *by),)
+    change = against = ""
+    sense = SAME
+    before = shown.before("entropy")
+    if shown.pair is not None and before is not None:
+        lines += tuple(zone_lines(*shown.pair))
+        change, sense = entropy_change(now.entropy, before, shown.error("entropy"))
+        against = f"compared with {shortened(shown.label)}"
     headline = f"{shown.entropy:.3f} nats"
-    return ReadoutText(headline, state_of(shown), change, sense, against=against, lines=lines)
+    return ReadoutText(headline, change, sense, against=against, lines=lines)
 
 
-def error_of_change(now: pe.Score, before: pe.Score | None, measure: str) -> float:
-    """Return the standard error of the change of a measure of the rig; 0 without a change."""
-    return 0.0 if before is None else advice.difference_error(before, now, ("rig", "", measure))
+def _change(shown: ShownScore, measure: str) -> float:
+    """Return by how much a measure of the rig changed from the baseline; 0 without one."""
+    before = shown.before(measure)
+    return 0.0 if before is None else getattr(shown.now, measure) - before
 
 
-def state_of(shown: ShownScore) -> str:
-    """Return a score's error, and what it is of: the scene now, one that moves, a stored result."""
-    state = "as scored" if shown.stored else "at rest" if shown.exact else "moving"
+def state_of(shown: ShownScore, *, view_outdated: bool = False) -> str:
+    """Return a score's error, and what it is of: the scene now, one that moves, a stored result.
+    `view_outdated`: beams and maps are still those of before the last move."""
+    state = shown.phase
     if shown.state:
         state += f", state {shown.state}"
-    if shown.view_outdated:
+    if view_outdated:
         state += ", beams and maps follow"
-    whole = shown.stored and not shown.stderr
-    if whole:
+    now = shown.now
+    if shown.stored and not now.stderr:
         return f"on all voxels, {state}"
-    sample = f" on {shown.voxels:,} voxels" if shown.voxels else ""
-    return f"± {advice.error_text(shown.stderr)}{sample}, {state}"
+    sample = f" on {now.voxels:,} voxels" if now.voxels else ""
+    return f"± {advice.error_text(now.stderr)}{sample}, {state}"
 
 
 def shortened(name: str) -> str:
@@ -111,10 +102,8 @@ def entropy_change(now: float, before: float, error: float = 0.0) -> tuple[str, 
     return f"{abs(by):.3f} {'worse' if by > 0.0 else 'better'}", WORSE if by > 0.0 else BETTER
 
 
-def zone_lines(now: pe.Score, before: pe.Score | None) -> list[ReadoutLine]:
+def zone_lines(before: pe.Score, now: pe.Score) -> list[ReadoutLine]:
     """Return the zone that improved most, and the one that worsened most: at most a line each."""
-    if before is None:
-        return []
     common = [name for name in now.per_zone if name in before.per_zone]
     by = {name: now.per_zone[name].entropy - before.per_zone[name].entropy for name in common}
     lines: list[ReadoutLine] = []
@@ -144,11 +133,11 @@ def is_noise(by: float, error: float) -> bool:
     return abs(by) <= scoring.SURE * error
 
 
-def change_of(by: float | None, digits: int, error: float = 0.0) -> ReadoutLine:
+def change_of(by: float, digits: int, error: float = 0.0) -> ReadoutLine:
     """Return "(+1.2)" as a gain or a loss; nothing where the change is 0 in these digits, or within
     its standard error."""
-    text = "" if by is None else f"{by:+.{digits}f}"
-    if by is None or not text.strip("+-0.") or is_noise(by, error):
+    text = f"{by:+.{digits}f}"
+    if not text.strip("+-0.") or is_noise(by, error):
         return ()
     sense = BETTER if by >= 0.0 else WORSE
     return (TextPiece(f"({text.replace('-', MINUS)})", sense),)

@@ -17,6 +17,7 @@ from .. import (
     sensor_cache,
     signals,
     vehicle_cache,
+    viewport,
 )
 from ..choices import BEFORE_MOVE
 from ..engine import pe
@@ -40,10 +41,14 @@ def follow_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Non
         return
     if last.vehicle_version != vehicle_cache.shared.version:
         state.next_request()
+        state.moving = True
+        viewport.redraw_editors()
         if operator := _moving_operator():  # the vehicle is dragged; an undo is no move
             note_move(state, operator, None)
             state.note = VEHICLE_MOVES
         return
+    state.moving = True
+    viewport.redraw_editors()  # of the sidebar, too: it shows the same as the view
     request_score(scene, depsgraph, moving=True)
 
 
@@ -53,13 +58,16 @@ def on_restored(*_: object) -> None:
         cancel(name)
         state.next_request()
         state.score = state.exact = None
+        state.moving = False
         state.note = ""
 
 
 def on_idle() -> None:
     """Request the exact score of every scene that is shown: nothing moves any more."""
-    if not _moving_operator():
-        for state in list(states.values()):
+    is_held = bool(_moving_operator())
+    for state in list(states.values()):
+        state.moving = False
+        if not is_held:
             state.operator = 0  # what moves next is another move
     for scene in shown_scenes():
         depsgraph = bridge.view_layer_of(scene).depsgraph

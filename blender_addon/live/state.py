@@ -7,11 +7,7 @@ from collections.abc import Hashable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-import bpy
-
-from .. import bridge
-from ..choices import BEFORE_MOVE
-from ..engine import advice, pe, search
+from ..engine import advice, pe
 from ..engine_calls import Problem
 
 
@@ -78,6 +74,8 @@ class LiveState:
     requests: int = 0
     last_read: LastRead | None = None
     """None while *Live* is off."""
+    moving: bool = False
+    """Whether something moves: from an update that moves it until the scene is idle."""
     operator: int = 0
     """Number of the operator that moves sensors with the mouse; 0 when there is none."""
     before_move: Baseline | None = None
@@ -87,6 +85,8 @@ class LiveState:
     figures: Problem | None = None
     shown_figures: list[advice.KeyFigures] = field(default_factory=list)
     """The problem whose key figures are wanted, and those that were shown last."""
+    drawn: Hashable = None
+    """Signature of what panel and read-out were last drawn with."""
     prior: tuple[Hashable, pe.Prior] | None = None
     """The prior that was read last, and its key: a file of boxes takes long to read."""
 
@@ -109,6 +109,7 @@ class LiveState:
     def switch_off(self) -> None:
         """Drop what the live score found; finished scores stay."""
         self.score = self.exact = self.last_read = self.before_move = None
+        self.moving = False
         self.figures = None
         self.shown_figures = []
         self.note = ""
@@ -121,69 +122,3 @@ states: dict[str, LiveState] = {}
 def live_state(scene_name: str) -> LiveState:
     """Return the state of a scene; a new one where there is none."""
     return states.setdefault(scene_name, LiveState())
-
-
-class ShownScore(NamedTuple):
-    """The one score that panel and read-out show; entropy and standard error in nats.
-
-    `exact`: it is of the scene as it is now. `stored`: it is the stored result. `view_outdated`:
-    beams and maps are still those of before the last move. `state` is the vehicle's; empty: as
-    drawn. `before` is the entropy before the search whose result is stored, `change_error` the
-    standard error of the change from it [nats]. `voxels`: How many were evaluated; 0: objects.
-    """
-
-    entropy: float
-    coverage: float
-    stderr: float
-    exact: bool
-    stored: bool
-    view_outdated: bool = False
-    state: str = ""
-    before: float | None = None
-    change_error: float = 0.0
-    voxels: int = 0
-
-
-def shown_score(scene: bpy.types.Scene) -> ShownScore | None:
-    """Return the score that is shown of a scene with *Live* on; None while there is none yet.
-
-    That is the live score; or the stored result, where the scene is idle and the result is that of
-    the scene as it is now: it is of more voxels. After undo and redo there is no live score yet,
-    and the stored result came back with the scene. With *Live* off the panel shows the stored one.
-    A stored result is never that of another state than as drawn.
-    """
-    settings = scene.perception_entropy
-    state = live_state(scene.name)
-    if not settings.live.on:
-        return None
-    other = bridge.shown_state(scene)
-    score = state.score
-    is_stored = settings.has_result and not (settings.result_stale or other)
-    exact = score is None or state.is_current(score)
-    # While something moves it is not known yet whether a result is stale.
-    if is_stored and exact:
-        result = settings.result
-        is_search = result.kind == "optimize" and settings.live.against == BEFORE_MOVE
-        before = result.entropy_before if is_search else None
-        return ShownScore(
-            result.entropy,
-            result.coverage,
-            result.stderr,
-            exact=True,
-            stored=True,
-            before=before,
-            change_error=result.change_errors.get(search.ENTROPY, 0.0),
-            voxels=result.after["voxels"],
-        )
-    if score is None:
-        return None
-    summary = score.summary
-    return ShownScore(
-        summary.entropy,
-        summary.coverage,
-        summary.stderr,
-        exact,
-        stored=False,
-        state=other,
-        voxels=summary.voxels,
-    )

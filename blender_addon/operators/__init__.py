@@ -13,6 +13,7 @@ from . import (
     handles,
     known_rigs,
     look_through,
+    modes,
     mounts,
     named_places,
     panel_rows,
@@ -25,6 +26,7 @@ from . import (
     surroundings,
     upright,
     variants,
+    verify_engine,
     view_pictures,
     where,
 )
@@ -46,6 +48,7 @@ def unregister() -> None:
     """End what is running, and what waits for the mouse; remove what `register` added."""
     running_job.unregister()
     placement.end()
+    modes.end()
     exports.unregister()
     view_pictures.unregister()
     shortcuts.unregister()

@@ -72,9 +72,9 @@ def draw(context: bpy.types.Context) -> None:
     viewport.fill_box(box, UNSEEN)
     _draw_ground(context, shape, size, box)
     old = scheduler.is_preview(scene.name, BIRDS_EYE, WHOLE_RIG, item)
-    title = (
-        f"No camera sees {shape.blind_m2:.1f} m²" if shape.blind_m2 else "Cameras see all ground"
-    )
+    ahead = f"{shape.x[1]:.0f} m ahead"
+    blind = f"Cameras alone: {shape.blind_m2:.1f} m² unseen to {ahead}"
+    title = blind if shape.blind_m2 else f"Cameras see all ground to {ahead}"
     title += " (preview)" if old else ""
     frame = sensor_pictures.draw_frame((left, bottom), size, title, scale)
     _draw_ruler((left, bottom), size.width * BAR_M / proportions[0], scale)

@@ -101,13 +101,22 @@ def play_story(context: bpy.types.Context) -> None:
         bpy.ops.screen.animation_play()
 
 
-@operator(
-    "Film", unless=unless_selected("stories"), **dialog("", lambda _self: f"drive_by{film.WEBM}")
-)
-def film_story(context: bpy.types.Context, filepath: str) -> str:
+def _unless_rendering(context: bpy.types.Context) -> str | None:
+    """Why no film can be begun; None: one can."""
+    if bpy.app.is_job_running("RENDER"):
+        return "Another render is running; Esc stops it"
+    return unless_selected("stories")(context)
+
+
+@operator("Film", unless=_unless_rendering, **dialog("", lambda _self: f"drive_by{film.WEBM}"))
+def film_story(context: bpy.types.Context, filepath: str, asked_in_window: bool) -> str:
     """Render the selected story as a film (.webm, .mp4), with what the 3D view shows over it"""
     settings = context.scene.perception_entropy
     path = chosen_file(filepath)
     story = bridge.story_of(settings.stories[settings.story_index])
-    film.write_film(context.scene, bridge.study_as_drawn(context.scene), story, path)
-    return f"Wrote {path}"
+    study = bridge.study_as_drawn(context.scene)
+    if bpy.app.background or not asked_in_window:
+        film.write_film(context.scene, study, story, path)
+        return f"Wrote {path}"
+    film.FilmRender(context.scene, study, story, path)
+    return "Rendering: Esc ends it, and keeps what is done"

@@ -15,7 +15,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
 from .. import bridge, own_jobs
-from ..engine import app, exchange, jobs, outputs, page
+from ..engine import app, exchange, jobs, outputs, page, pe
 from ..own_jobs import ExportJob, WrittenFiles
 from . import running_job
 from .declared import Answer, OperatorResult, Stopped, Told, chosen_file, operator
@@ -164,12 +164,37 @@ def export_review(
     about = page.About(title, author, date, revision)
     study = bridge.study_as_drawn(context.scene)
     facts: dict[str, Any] = {
+        "name": name_of(context.scene, path),
         "command": headless_command(path, about),
         "versions": bridge.blender_version(),
     }
     jobs.prepare_folder(path.parent)  # fail before the work, not after
+    search = searched_from(context.scene, study)
 
-    return run(own_jobs.page_job(study, path, about, facts), asked_in_window)
+    return run(own_jobs.page_job(study, path, about, facts, search=search), asked_in_window)
+
+
+def name_of(scene: bpy.types.Scene, path: Path) -> str:
+    """Return the name of what a page is about: that of the chosen file; of the vehicle where the
+    dialog proposed "untitled", as the .blend has no name."""
+    vehicle = scene.perception_entropy.vehicle
+    return path.stem if bpy.data.filepath or vehicle is None else vehicle.name
+
+
+def searched_from(scene: bpy.types.Scene, study: pe.Study) -> own_jobs.SearchedFrom | None:
+    """Return what the search began with that a study is the result of; None if it is of none."""
+    settings = scene.perception_entropy
+    result = settings.result
+    if result is None or result.kind != "optimize" or settings.result_stale:
+        return None
+    poses = {
+        name: pe.Pose.from_degrees(each["position"], each["rotation"])
+        for name, each in result.placed_before.items()
+    }
+    if set(poses) != {sensor.name for sensor in study.rig}:
+        return None
+    rig = pe.Rig([sensor.moved(poses[sensor.name]) for sensor in study.rig])
+    return own_jobs.SearchedFrom(study.with_rig(rig), result.data)
 
 
 def headless_command(path: Path, about: page.About) -> str:

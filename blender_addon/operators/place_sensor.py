@@ -13,7 +13,7 @@ from .. import bridge
 from ..engine import catalog, kinds, pe
 from ..housing import measured_housing
 from ..sensor_kinds import Mount, mount_for
-from . import placement
+from . import modes, placement
 from .add_sensor import (
     MODEL,
     choose_vehicle,
@@ -48,8 +48,6 @@ NUMBERS = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT
 TYPED = {key: str(n) for n, key in enumerate(NUMBERS)} | {"PERIOD": ".", "COMMA": "."}
 TYPED |= {"MINUS": "-", "BACK_SPACE": ""}
 """Keys of a typed number; those of the number pad turn the view."""
-VIEW = ("NUMPAD_", "MIDDLEMOUSE", "WHEEL", "TRACKPAD", "MOUSE", "NDOF", "TIMER", "WINDOW", "HOME")
-"""How events begin that turn, move and zoom the view, or are Blender's own: they pass."""
 BUSY = "Something else waits for Esc: a search, or a sensor to place"
 
 
@@ -126,6 +124,8 @@ def _pressed(
         held.point(context, event)
         return _click(self, context, held, more=event.shift and not self.sensor)
     if event.type in {"RET", "NUMPAD_ENTER"}:
+        return _click(self, context, held, more=False)
+    if event.type == "R" and is_plain:
         held.matrix = Matrix.Translation(default_location(context, held.mount))
         return _click(self, context, held, more=False)
     if event.type == "N" and is_plain:
@@ -141,7 +141,7 @@ def _pressed(
         held.stand(held.stance.turned(*(step * way for way in TURNS[event.type])))
     elif event.type in TYPED and is_plain:
         held.typed(TYPED[event.type])
-    elif event.type.startswith(VIEW):
+    elif event.type.startswith(modes.OF_VIEW):
         return {"PASS_THROUGH"}
     return {"RUNNING_MODAL"}
 

@@ -22,13 +22,13 @@ from ..engine_calls import Gain
 from ..overlay.regions import box_edges
 from ..panel_text import draw_label
 from ..sensor_kinds import mount_for
-from . import running_job
+from . import modes, running_job
 from .surface_pose import (
-    MAGNET_M,
     MAX_STAND_OFF_M,
     Stance,
     SurfaceSpot,
     parts_of,
+    pulls_to_middle,
     ray_of,
     spot_beside,
     spot_on_ray,
@@ -45,12 +45,6 @@ HELD_PALETTE = replace(graphics.VIEWPORT, free=(1.0, 0.93, 0.55, 0.5), other=(1.
 """Lighter than sensors that are there."""
 POINT_AT = "Point at the vehicle"
 LINE_PX = 1.5
-TEXT_PX = 12
-TEXT_GAP = 1.5
-PAD_PX = 6
-TEXT_AT = (26, -12)
-"""Where text begins beside the mouse [px]."""
-PLATE = (0.08, 0.08, 0.08, 0.78)
 OFF = -1
 ALONG = 0.5
 """Numbers are typed for the stand-off; of a normal: along this axis the body goes on."""
@@ -87,6 +81,7 @@ class HeldSensor:
         self.lines = self._faces = graphics.Primitives.empty()
         self.score = self._typed = ""
         self._spot: SurfaceSpot | None = None
+        self._is_near = False
         self._region = 0
         self._mouse = (0, 0)
         self._handlers = viewport.DrawHandlers()
@@ -110,6 +105,9 @@ class HeldSensor:
             spot = spot_on_ray(context.scene, depsgraph, self._parts, *ray_of(view))
             self._region = view.region.as_pointer()
             self._mouse = view.mouse
+        self._is_near = False
+        if view is not None and spot is not None:
+            self._is_near = pulls_to_middle(view, spot.point, viewport.ui_scale())
         self.stance = replace(self.stance, magnet=not event.ctrl)
         self.put(spot)
 
@@ -203,7 +201,7 @@ class HeldSensor:
         self.matrix = None
         self.lines = self._faces = graphics.Primitives.empty()
         if spot is not None:
-            wanted = self._wanted(spot)
+            wanted = self._wanted()
             spot = self._moved_to(spot, wanted)
             self.matrix = self.stance.placed(spot, self.mount, self._middle)
             if self._own is not None:
@@ -225,12 +223,11 @@ class HeldSensor:
                 )
         self._write()
 
-    def _wanted(self, spot: SurfaceSpot) -> dict[int, float]:
+    def _wanted(self) -> dict[int, float]:
         """Return the typed coordinates; near the centre line, the magnet's too: not of one of a
         pair, which would meet the other there."""
         is_pulled = self.stance.magnet and not self._is_linked
-        is_near = is_pulled and abs(spot.point.y) < MAGNET_M
-        return ({1: 0.0} if is_near else {}) | self._given
+        return ({1: 0.0} if is_pulled and self._is_near else {}) | self._given
 
     def _moved_to(self, spot: SurfaceSpot, wanted: dict[int, float]) -> SurfaceSpot:
         """Return the spot with those coordinates that run along the body."""
@@ -309,17 +306,7 @@ class HeldSensor:
         region = bpy.context.region
         if region is None or region.as_pointer() != self._region:
             return
-        scale = viewport.ui_scale()
-        size = TEXT_PX * scale
-        pad = PAD_PX * scale
-        row = size * TEXT_GAP
-        left, top = (at + off * scale for at, off in zip(self._mouse, TEXT_AT, strict=True))
-        width = max((viewport.text_size(line, size)[0] for line in self.text), default=0.0)
-        low = top - row * (len(self.text) - 1) - pad
-        left = min(left, viewport.sidebar_left(bpy.context) - width - 2.0 * pad)
-        viewport.fill_box((left - pad, low, left + width + pad, top + row), PLATE)
-        for number, line in enumerate(self.text):
-            viewport.draw_text(line, left, top - number * row, size, color=viewport.INK)
+        modes.draw_at_mouse(self._mouse, self.text)
 
 
 current: HeldSensor | None = None
@@ -335,6 +322,7 @@ def begin(
 ) -> None:
     """Start to hold a new sensor under the mouse, or one that is there and is moved."""
     global current
+    modes.end()
     current = HeldSensor(context, model, stance, moved)
 
 
@@ -383,7 +371,8 @@ def draw_status(header: bpy.types.Header, _context: bpy.types.Context) -> None:
     keys = (
         (("MOUSE_LMB",), "Place"),
         (("EVENT_SHIFT", "MOUSE_LMB"), "Place More"),
-        (("EVENT_RETURN",), "On the Roof"),
+        (("EVENT_RETURN",), "   Place"),
+        (("EVENT_R",), "On the Roof"),
         (("EVENT_N",), other),
         (("EVENT_M",), "One Side" if current.mirrored else "Both Sides"),
         (("EVENT_CTRL",), "   No Magnet"),

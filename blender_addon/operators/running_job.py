@@ -12,6 +12,7 @@ import bpy
 from .. import best_so_far, engine_process, signals, viewport
 from ..engine import jobs
 from ..panel_text import draw_label, typeset
+from . import modes
 
 TOPIC = "job"
 TICK_S = 0.05
@@ -65,21 +66,24 @@ class RunningJob(jobs.WatchedJob):
 
     @property
     def text(self) -> str:
-        """The stage, the progress, and the best entropy so far: approximate, if on a sample."""
+        """The stage, the progress, and what was gained so far: approximate, if on a sample."""
         if self.seen.dropped:
             return "Stopping"
         stage = f"{self.progress.stage.capitalize()} {self.progress.fraction:.0%}"
         value = self.progress.value
         figure = self.progress.figure
-        if value is None:
+        if value is None or self.progress.stage != "optimizing":
             return stage
-        if self.progress.stage == "optimizing" and (curve := getattr(self.seen, "curve", ())):
-            value = curve[-1][1]  # as the 3D view shows it, from all starts
-        sampled = self.progress.stage == "optimizing" and self.job.study.search.samples
+        curve = getattr(self.seen, "curve", ())  # as the 3D view shows it, from all starts
+        first, value = (curve[0][1], curve[-1][1]) if curve else (value, value)
         if not value.is_feasible:
             return f"{stage}, limits not met yet"
-        what = "best AP" if figure.higher_is_better else "best"
-        return f"{stage}, {what} {'≈ ' if sampled else ''}{figure.to_figure(value):.3f}"
+        sampled = "≈ " if self.job.study.search.samples else ""
+        if first.is_feasible and first != value:  # it never falls: both are of the same sample
+            gain = abs(figure.to_figure(first) - figure.to_figure(value))
+            return f"{stage}, {sampled}{gain:.3f} better"
+        what = "AP" if figure.higher_is_better else "best"
+        return f"{stage}, {what} {sampled}{figure.to_figure(value):.3f}"
 
     @property
     def on_escape(self) -> str:
@@ -134,6 +138,7 @@ current: RunningJob | None = None
 def begin(context: bpy.types.Context, job: jobs.Job, outcome: str) -> RunningJob:
     """Have the engine run the job from now on; `outcome` is its attribute of the result."""
     global current
+    modes.end()  # Esc is the job's
     current = RunningJob(context, job, outcome)
     current.start()
     return current

@@ -20,8 +20,9 @@ POSITION_DECIMALS = 3  # A sensor that is put down by hand stands at whole milli
 PARALLEL_COS = 0.999  # Of two unit vectors: they are parallel
 QUARTER = math.pi / 2.0
 MAGNET_RAD = math.radians(12.0)
-MAGNET_M = 0.06
-"""The magnet: to a quarter turn from so near, to the centre line from so near."""
+MAGNET_PX = 12.0
+"""The magnet: to a quarter turn from so near, to the centre line from so near on the screen, at a
+scale of 1."""
 STAND_OFF_STEP_M = 0.01
 MIN_STAND_OFF_M = 0.0
 MAX_STAND_OFF_M = 2.0
@@ -166,6 +167,14 @@ def ray_of(view: ViewUnderMouse) -> tuple[Vector, Vector]:
     look = view.region.data
     origin = view3d_utils.region_2d_to_origin_3d(view.region, look, view.mouse)
     return origin, view3d_utils.region_2d_to_vector_3d(view.region, look, view.mouse)
+
+
+def pulls_to_middle(view: ViewUnderMouse, point: Vector, scale: float) -> bool:
+    """Whether a point is seen so near to its place on the centre line that the magnet pulls it."""
+    look = view.region.data
+    middle = Vector((point.x, 0.0, point.z))
+    ends = [view3d_utils.location_3d_to_region_2d(view.region, look, p) for p in (point, middle)]
+    return None not in ends and (ends[0] - ends[1]).length <= MAGNET_PX * scale
 
 
 def _holds(rectangle: bpy.types.Area | bpy.types.Region, x: int, y: int) -> bool:

@@ -21,6 +21,7 @@ REGION_SHOWN = "REGION"
 BUILT_SHOWN = "BUILT"
 """Answers that can be dismissed."""
 WHOLE = "WHOLE"  # What is covered, where it is no mount
+PICK = "Pick a Place: click the coloured body. Esc: cancel"
 NEAR_M = 0.4  # A click takes the nearest place, if it is no farther away than this
 _listed: list[tuple[str, str, str]] = []
 """What the menu lists: Blender reads the texts after the function that made them returned."""
@@ -102,18 +103,18 @@ def _task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -
     return Task(job, finish, "found", progressed)
 
 
-PLACES = JobRow(
-    read=of_study(_task),
-    unfinished="Stopped before a place was scored",
-    show=lambda: bpy.ops.pe.take_place("INVOKE_DEFAULT"),
-)
+PLACES = JobRow(read=of_study(_task), unfinished="Stopped before a place was scored")
+
+
+def _lacks_map(context: bpy.types.Context) -> str | None:
+    return None if where_map.maps.get(context.scene.name) else "Ask Where? first"
 
 
 @operator(
     "Pick a Place",
     mode="Sensors are placed in Object Mode",
-    unless=lambda context: None if where_map.maps.get(context.scene.name) else "Ask Where? first",
-    **clicking("Click a place to put the sensor there     Esc, right click: cancel", once=True),
+    unless=_lacks_map,
+    **clicking(PICK, once=True, without=_lacks_map),
 )
 def take_place(context: bpy.types.Context, point: tuple[float, float, float]) -> str:
     """Click the coloured body: the sensor is put at the nearest place that was scored"""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..engine import graphics
+from ..engine import catalog, graphics
 from .regions import box_edges
 
 if TYPE_CHECKING:
@@ -54,6 +54,11 @@ GHOST_PALETTE = replace(
 )
 """Colours of another variant's reach."""
 GHOST_TITLE = "Other variant"
+MENDS = "Would mend it"
+"""Title of suggestions: these are drawn as bodies with their beams."""
+BODY_COLOR = (1.0, 0.85, 0.3, 0.95)
+BODY_M = 0.12
+BEAMS_M = 2.0
 
 
 def axles(reference: pe.Reference, half_width: float | None) -> graphics.LayerShape:
@@ -131,6 +136,9 @@ def ghost_sensors(
     is the other variant's, for the legend."""
     here = {sensor.name: sensor for sensor in present}
     lines = [_ghost_outline(sensor) for sensor in others]
+    is_offer = title == MENDS
+    faces = [_ghost_body(sensor) for sensor in others if is_offer]
+    lines += [_ghost_beams(sensor) for sensor in others if is_offer]
     color = graphics.with_alpha(PALE, LINK_ALPHA)
     labels = []
     for other in others:
@@ -143,8 +151,28 @@ def ghost_sensors(
             labels.append(graphics.Tag(other.name, place, color))
     legend = graphics.ColorKey(title, classes=((color, name or "another one"),)) if others else None
     return graphics.LayerShape(
-        through=graphics.Primitives.joined(lines), labels=tuple(labels), legend=legend
+        faces=graphics.Primitives.joined(faces),
+        through=graphics.Primitives.joined(lines),
+        labels=tuple(labels),
+        legend=legend,
     )
+
+
+def _ghost_body(sensor: pe.Sensor) -> graphics.Primitives:
+    """Return the housing of a sensor as a body; a cube where it is not known."""
+    housing = catalog.housing(sensor.model.name)
+    size = np.full(3, BODY_M) if housing is None else np.array(housing.size)
+    middle = np.zeros(3) if housing is None else -np.array(housing.optical_center)
+    middle = middle + ([0.0, 0.0, size[2] / 2.0] if housing is not None else 0.0)
+    corners = graphics.CORNERS * size + middle
+    placed = corners @ sensor.pose.ground_from_sensor.T + np.array(sensor.pose.position)
+    quads = placed[np.array(graphics.FACES)]
+    return graphics.Primitives.of(quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3), BODY_COLOR)
+
+
+def _ghost_beams(sensor: pe.Sensor) -> graphics.Primitives:
+    """Return the first metres of a sensor's beams, or its view."""
+    return graphics.drawing_of(sensor.kind).lines(sensor, BEAMS_M, graphics.VIEWPORT)
 
 
 def _ghost_outline(sensor: pe.Sensor) -> graphics.Primitives:

@@ -1,6 +1,7 @@
 """Text of the overlay: labels at positions in the 3D view, and legends beside the vehicle."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -20,6 +21,8 @@ BESIDE_GIZMOS = 48.0
 """Height and width of Blender's own gizmos, from the upper right corner."""
 HEADER = 110.0  # Height of the headers and of Blender's own text, from the top
 MIN_WIDTH = 150.0
+MAX_SHARE = 0.25  # Of the view that plates cover at most
+TITLE_ROWS = 1.5  # Height of a plate that is folded into its title
 BAR = 10.0
 ROW = 17.0
 VALUES = 0.8
@@ -84,16 +87,53 @@ def draw_legends(
     ]
     margin = MARGIN * scale
     room = viewport.beside_toolbar(context), margin, right - margin, height - HEADER * scale
-    taken = [*blenders, *viewport.plate_boxes(region.as_pointer())]
+    plates = viewport.plate_boxes(region.as_pointer())
     sizes = [(_width(legend, scale), _height(legend, scale)) for legend in legends]
     if sizes:
         widest = max(width for width, _ in sizes)
         sizes = [(widest, height) for _, height in sizes]
-    boxes = arranged(sizes, room, taken, _box_of(context, vehicle), gap=GAP * scale / 2.0)
-    for legend, box in zip(legends, boxes, strict=True):
+    boxes = folded(
+        sizes,
+        TITLE_ROWS * ROW * scale,
+        Surroundings(room, [*blenders, *plates], _box_of(context, vehicle), GAP * scale / 2.0),
+        MAX_SHARE * right * height - sum(map(_area, plates)),
+    )
+    for legend, box, (_, full) in zip(legends, boxes, sizes, strict=True):
         if box is not None:
-            _draw_legend(legend, box, scale)
+            is_whole = box[3] - box[1] >= full
+            _draw_legend(legend if is_whole else graphics.ColorKey(legend.title), box, scale)
     return [*blenders, *(box for box in boxes if box is not None)]
+
+
+class Surroundings(NamedTuple):
+    """What plates are arranged in [px]: the room, what is there, the vehicle, and the gap."""
+
+    room: PlateBox
+    taken: Sequence[PlateBox]
+    vehicle: PlateBox | None
+    gap: float
+
+
+def folded(
+    sizes: Sequence[tuple[float, float]], title: float, around: Surroundings, area: float
+) -> list[PlateBox | None]:
+    """Return where plates go: as `arranged`, but a plate that does not fit beside the vehicle folds
+    into its title, `title` high; the last first, until all together cover no more than `area`
+    [px²]. A title that fits nowhere beside the vehicle is left out."""
+    heights = [height for _, height in sizes]
+    for last in range(len(sizes) - 1, -2, -1):
+        now = [(width, height) for (width, _), height in zip(sizes, heights, strict=True)]
+        boxes = arranged(now, around.room, around.taken, around.vehicle, around.gap)
+        covered = sum(_area(box) for box in boxes if box is not None)
+        over = [box is None or _overlap(box, around.vehicle) > 0.0 for box in boxes]
+        if last < 0 or (covered <= area and not any(over)):
+            break
+        heights[last] = title
+    return [None if is_over else box for box, is_over in zip(boxes, over, strict=True)]
+
+
+def _area(box: PlateBox) -> float:
+    return (box[2] - box[0]) * (box[3] - box[1])
 
 
 def arranged(

@@ -38,8 +38,9 @@ def place_colors(found: "jobs.PlaceMap", sensors: "Sequence[pe.Sensor]") -> grap
     ends = [low + (high - low) * k / (TICKS - 1) for k in range(TICKS)]
     classes = [(GREY, f"forbidden: {why} ({n:,})") for why, n in found.reasons().items()]
     unit = f" [{figure.unit}]" if figure.unit else ""
+    title = f"{figure.label} with {found.sensor.model.name} here{unit}{_state(found, sensors)}"
     legend = graphics.ColorKey(
-        f"{figure.label} with {found.sensor.model.name} here{unit}{_state(found, sensors)}",
+        f"{title}; small: its change",
         scale=graphics.swatches_of(graphics.VIRIDIS),
         ticks=tuple(f"{end:.{figure.decimals}f}" for end in ends),
         values=tuple(f"{end - found.base:+.{figure.decimals}f}" for end in ends),

@@ -1,4 +1,5 @@
-"""Zones of requirements in the 3D view: filled where met, hatched where not; no scene, no GPU."""
+"""Zones of requirements in the 3D view, of those not met and of the chosen one: filled where met,
+hatched where not; no scene, no GPU."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -40,9 +41,10 @@ def requirement_zones(
     before: Mapping[str, bool] | None = None,
     unplaced: Mapping[str, str] | None = None,
 ) -> VerdictShape:
-    """Return the zones of all requirements. Of the `chosen` one, by its name, worst place, body,
-    height and margin are drawn. `before` says whether each was met before the last move: the legend
-    names what was lost or won since. `unplaced` says why a requirement cannot be checked."""
+    """Return the zones of requirements that are not met, and of the `chosen` one, by its name. Of
+    that worst place, body, height and margin are drawn. `before` says whether each was met before
+    the last move: the legend names what was lost or won since. `unplaced` says why a requirement
+    cannot be checked."""
     lines = []
     faces = []
     thin = []
@@ -50,6 +52,8 @@ def requirement_zones(
     for verdict in verdicts:
         color = MET if verdict.met else NOT_MET
         is_chosen = verdict.name == chosen
+        if verdict.met and not is_chosen:
+            continue  # what is met needs no look
         alpha = 1.0 if is_chosen else FAINT_ALPHA
         lines += _outlines(verdict, graphics.with_alpha(color, alpha))
         passed, failed, size = graphics.painted_samples(verdict)

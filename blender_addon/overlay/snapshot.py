@@ -11,8 +11,9 @@ import numpy as np
 from .. import best_so_far, bridge, location_query, sensor_cache, vehicle_cache, where_map
 from ..choices import LimitBox
 from ..engine import graphics, pe, studies
-from ..live import live_state
+from ..live import BEFORE_SEARCH, live_state, shown_score
 from ..view_settings import MIN_LENGTH_M, ViewSettings
+from .annotations import MENDS
 from .layers import LAYERS
 from .request import MountFaces, SceneSensor, ViewRequest
 
@@ -53,7 +54,7 @@ class SnapshotReader:
         vehicle, body_key = self._vehicle(scene, depsgraph, moving)
         inputs = self._inputs_by(scene)
         others, name, title = _ghosts(scene)
-        compared, compared_name = _compared(scene)
+        compared, compared_name = _compared(scene, sensors)
         answer = location_query.answer(scene)
         mounts = self._mounts(scene, depsgraph, sensors, vehicle, body_key=body_key)
         return ViewRequest(
@@ -211,23 +212,32 @@ def _ghosts(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str, str]:
         return best, BEST_SO_FAR, "Search"
     if (offers := where_map.offers.get(scene.name)) and offers.found:
         new = tuple(each.rig[name] for each in offers.found for name in each.moved)
-        return new, "moved, or added", "Would mend it"
+        return new, "moved, or added", MENDS
     if (compared := where_map.built.get(scene.name)) is not None:
         pairs = compared.pairing.pairs
         return tuple(each.designed.moved(each.built.pose) for each in pairs), "calibration", "Built"
     return *_variant(scene, scene.perception_entropy.view.ghost_key), ""
 
 
-def _compared(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str]:
-    """Return the sensors that the difference map compares with, and their name: the baseline of the
-    live score; without it, the variant that it is set to."""
+def _compared(
+    scene: bpy.types.Scene, sensors: tuple[SceneSensor, ...]
+) -> tuple[tuple[pe.Sensor, ...], str]:
+    """Return the sensors that the difference map compares with, and their name: the baseline of
+    what is shown; without it, the variant that the live score is set to."""
     settings = scene.perception_entropy
     if not settings.view.ground_difference:
         return (), ""
-    score = live_state(scene.name).score if settings.live.on else None
-    baseline = None if score is None else score.baseline
+    shown = shown_score(scene)
+    baseline = None if shown is None else shown.baseline
     if baseline is not None and baseline.rig is not None:
         return tuple(baseline.rig), baseline.label
+    if baseline is not None and baseline.label == BEFORE_SEARCH:
+        poses = {
+            name: pe.Pose.from_degrees(each["position"], each["rotation"])
+            for name, each in settings.result.placed_before.items()
+        }
+        now = [each.sensor for each in sensors if each.sensor.name in poses]
+        return tuple(each.moved(poses[each.name]) for each in now), baseline.label
     return _variant(scene, settings.live.against)
 
 

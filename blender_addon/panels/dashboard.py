@@ -1,109 +1,182 @@
 """The dashboard: what the sensors are decided by, what is wanted, and what *Optimize* keeps."""
 
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
 from bpy.types import Context, PropertyGroup, Scene, UILayout
 
-from ..bridge import NONE, Result, keep_property, limit_property, limits_of, shown_state
+from ..bridge import NONE, keep_property, limit_property, limits_of, shown_state
 from ..engine import advice, search
-from ..live import BETTER, SAME, SENSE_ICONS, WORSE, change_text, shown_score, told_figures
+from ..live import (
+    AT_REST,
+    BETTER,
+    MOVING,
+    OUT_OF_DATE,
+    PENDING,
+    SAME,
+    SENSE_ICONS,
+    STORED,
+    WORSE,
+    ShownScore,
+    change_text,
+    for_drawing,
+    shown_score,
+)
 from ..operators import known_rigs, shown_verdicts
 from ..panel_text import draw_label, is_simple
 from ..sensor_cache import sensors as listed_sensors
-from .layout import columns, draw_sentence
+from .layout import columns, draw_sentence, room_px, shortened_to, text_px
 
 MET_ICONS = {True: "COLORSET_03_VEC", False: "ERROR"}
 """Blender's own green, and its orange triangle."""
 NAME_SHARE = 0.39
-VALUE_SHARE = 0.42
-SHARE_WITHOUT_UNIT = 0.34
+BESIDE_ROW_PX = 68
+WANTED_PX = 58
+CHANGED_PX = 68
+LABEL_PX = 14
+"""What is beside a row: borders, tabs and the lock; the room for what is wanted, and for what a
+figure was before; what a label takes beside its text; all at a scale of 1."""
 LOCKS = {True: "LOCKED", False: "UNLOCKED"}
 
 
+HEADS = {
+    STORED: ("As scored", "CHECKMARK"),
+    OUT_OF_DATE: ("Out of date", "FILE_REFRESH"),
+    AT_REST: ("Live", "REC"),
+    MOVING: ("Live: moving", "REC"),
+    PENDING: ("Live: scoring", "REC"),
+}
+"""What the dashboard is of, by the phase of what is shown."""
+
+
 def draw_dashboard(layout: UILayout, context: Context) -> None:
-    """Draw the live score, or the stored one if it is current or Live is off, and its figures. Each
-    takes the same rows, those that come late included: what is below stays where it is."""
+    """Draw what is shown of the score, and its figures. Each takes the same rows, those that come
+    late included: what is below stays where it is."""
     scene = context.scene
     settings = context.scene.perception_entropy
     if not listed_sensors(scene) and not settings.has_result:
         return
-    live = shown_score(scene)
-    live = None if live is None or live.stored else live
-    now = settings.result if live is None else live
-    result = settings.result if live is None else None
+    shown = for_drawing(scene)
+    is_stored = shown is not None and shown.stored
     column = layout.box().column(align=True)
-    column.active = live is not None or not settings.result_stale
+    column.active = shown is None or shown.phase != OUT_OF_DATE
     head, wanted = columns(column, 0.66)
-    if live is not None:
-        sample = f"Live: {live.voxels:,} voxels" if live.voxels else "Live"
-        draw_label(head, sample if live.exact else "Live: moving", "REC")
-    elif result is None:
-        draw_label(head, "Not scored yet", "BLANK1")
-    elif settings.result_stale:
-        draw_label(head, "Out of date", "FILE_REFRESH")
-    else:
-        draw_label(head, "As scored", "CHECKMARK")
-    figures = [] if now is None else told_figures(scene, live=live is not None)
-    entropies = [] if now is None else [now.entropy]
-    if result and result.kind == "optimize":
-        entropies.insert(0, result.entropy_before)
+    draw_head(head, shown)
+    figures = () if shown is None else shown.figures
+    before = None if shown is None else shown.before("entropy")
+    entropies = [] if shown is None else [shown.entropy]
+    entropies = entropies if before is None else [before, *entropies]
     met = [v.met for v in shown_verdicts(scene).values() if v.met is not None]
     rows = search.dashboard(
-        figures[-1] if figures else None, (entropies or [None])[-1], met, limits_of(settings)
+        figures[-1] if figures else None,
+        entropies[-1] if entropies else None,
+        met,
+        limits_of(settings),
     )
     judged = [row.met for row in rows if row.met is not None]
     draw_label(wanted, f"{sum(judged)} of {len(judged)} met" if judged else "Wanted")
-    errors = change_errors(figures, result)
-    for row in rows:
-        known = [row.figure.value(each) for each in figures] if row.figure.is_seen else [row.value]
-        known = entropies if row.figure.key == search.ENTROPY else known
-        values = [value for value in known if value is not None]
-        draw_row(column, scene, row, values, error=errors.get(row.figure.key, 0.0))
+    errors = {} if shown is None else shown.change_errors()
+    drawn = [drawn_row(scene, row, figures, entropies, errors) for row in rows]
+    sides = RowWidths.of(context, drawn)
+    for each in drawn:
+        draw_row(column, context, each, sides)
     if not is_simple(scene):
         name, value = columns(column, NAME_SHARE)
         draw_label(name, "Coverage")
-        draw_label(value, "\N{EN DASH}" if now is None else advice.percent(now.coverage, 1))
-    told = "" if result is None else known_rigs.told(scene)
+        coverage = "\N{EN DASH}" if shown is None else advice.percent(shown.now.coverage, 1)
+        draw_label(value, coverage)
+    told = known_rigs.told(scene) if is_stored else ""
     draw_label(column, told or "Score: lower is better")
-    if result is not None:
+
+
+def draw_result(layout: UILayout, context: Context) -> None:
+    """Draw what a stored result says besides its figures: below what has buttons, as it comes
+    late."""
+    scene = context.scene
+    settings = scene.perception_entropy
+    shown = shown_score(scene)
+    if shown is not None and shown.stored:
         draw_outcome(layout, context)
     if settings.has_result and (state := shown_state(scene)):
         draw_sentence(layout, context, f"Shown: state {state}. Scored: as drawn", icon="INFO")
 
 
-def change_errors(figures: list[advice.KeyFigures], result: Result | None) -> dict[str, float]:
-    """Return the standard errors of the changes that are drawn, by figure: of a stored result, or
-    of the live score's figures from those of what it is compared with."""
-    if result is not None:
-        return result.change_errors
-    return figures[-1].errors_from(figures[0]) if len(figures) > 1 else {}
+def draw_head(layout: UILayout, shown: ShownScore | None) -> None:
+    """Draw what the dashboard is of, and what its changes are from."""
+    text, icon = ("Not scored yet", "BLANK1") if shown is None else HEADS[shown.phase]
+    if shown is not None and shown.phase == AT_REST and shown.now.voxels:
+        text += f": {shown.now.voxels:,} voxels"
+    draw_label(layout, text, icon)
 
 
-def draw_row(
-    layout: UILayout, scene: Scene, row: search.Reading, values: list[float], error: float = 0.0
-) -> None:
-    """Draw a figure: whether *Optimize* keeps it, its name, its value, and what is wanted. `error`
-    is the standard error of its change."""
-    settings = scene.perception_entropy
+class DrawnRow(NamedTuple):
+    """A row as it is drawn: its name, its value, and what that was before, if it has changed."""
+
+    row: search.Reading
+    name: str
+    value: str
+    before: str
+    sense: int
+
+
+def drawn_row(
+    scene: Scene,
+    row: search.Reading,
+    figures: Sequence[advice.KeyFigures],
+    entropies: list[float],
+    errors: Mapping[str, float],
+) -> DrawnRow:
+    """Return the texts of a row. `errors` are standard errors of changes, by figure."""
     figure = row.figure
-    line = layout.row(align=True)
-    draw_lock(line, settings, figure)
-    name, rest = columns(line, NAME_SHARE, align=True)
+    known = [figure.value(each) for each in figures] if figure.is_seen else [row.value]
+    values = [value for value in known if value is not None]
+    values = entropies if figure.key == search.ENTROPY else values
     is_score = figure.key == search.ENTROPY and is_simple(scene)
-    draw_label(name, "Score" if is_score else figure.label)
-    text, sense = change_text(figure, values, error)
+    text, sense = change_text(figure, values, errors.get(figure.key, 0.0))
     text = f"{'≥ ' * row.is_cut}{text.removesuffix(' nats' if is_score else ' met')}"
     is_changed = row.wanted is None and sense != SAME
-    makes_room = is_changed and " " not in text  # for what it was before
-    share = SHARE_WITHOUT_UNIT if makes_room else VALUE_SHARE
-    value, wanted = columns(rest, share, align=True)
-    draw_label(value, text)
+    before = figure.text(values[0]).partition(" ")[0] if is_changed else ""
+    name = "Score" if is_score else figure.label
+    return DrawnRow(row, name=name, value=text, before=before, sense=sense)
+
+
+class RowWidths(NamedTuple):
+    """Room for the columns of the dashboard [px]. Figures are never cut: names give way."""
+
+    name: float
+    value: float
+    wanted: float
+
+    @classmethod
+    def of(cls, context: Context, rows: Sequence[DrawnRow]) -> "RowWidths":
+        """Return the room that rows have in the sidebar."""
+        room, size = room_px(context, BESIDE_ROW_PX)
+        scale = size / context.preferences.ui_styles[0].widget.points
+        value = max(text_px(each.value, size) for each in rows) + LABEL_PX * scale
+        wanted = (CHANGED_PX if any(each.before for each in rows) else WANTED_PX) * scale
+        name = max(text_px(each.name, size) for each in rows) + LABEL_PX * scale
+        return cls(min(name, max(room - value - wanted, LABEL_PX * scale)), value, wanted)
+
+
+def draw_row(layout: UILayout, context: Context, drawn: DrawnRow, sides: RowWidths) -> None:
+    """Draw a figure: whether *Optimize* keeps it, its name, its value, and what is wanted."""
+    row = drawn.row
+    line = layout.row(align=True)
+    if row.kept or row.wanted is not None or not is_simple(context.scene):
+        draw_lock(line, context.scene.perception_entropy, row.figure)
+    else:
+        line.label(text="", icon="BLANK1")
+    name, rest = columns(line, sides.name / sum(sides), align=True)
+    draw_label(name, shortened_to(context, drawn.name, sides.name))
+    value, wanted = columns(rest, sides.value / (sides.value + sides.wanted), align=True)
+    draw_label(value, drawn.value)
     wanted = wanted.row(align=True)
-    if is_changed:
-        before = figure.text(values[0]).partition(" ")[0]
-        draw_label(wanted, f"({before})", SENSE_ICONS[sense])
-    elif figure.rule is None:
+    if drawn.before:
+        draw_label(wanted, f"({drawn.before})", SENSE_ICONS[drawn.sense])
+    elif row.figure.rule is None:
         wanted.label(text="" if row.wanted is None else f"of {row.wanted:.0f}", translate=False)
     else:
-        draw_wanted(wanted, scene, row)
+        draw_wanted(wanted, context.scene, row)
     if row.met is not None:
         wanted.label(text="", icon=MET_ICONS[row.met])
 

@@ -182,9 +182,10 @@ def draw_list(
     below = column.column(align=True)
     below.enabled = getattr(settings, INDEX_OF[name]) < len(getattr(settings, name))
     below.operator("pe.remove_row", text="", icon="REMOVE").rows = name
-    if rows.copy is not None:
+    if rows.copy is not None and not is_simple(settings.id_data):
         below.operator("pe.copy_row", text="", icon="DUPLICATE").rows = name
-    for step, icon in ((-1, "TRIA_UP"), (1, "TRIA_DOWN")) if rows.is_ordered else ():
+    is_moved = rows.is_ordered and not is_simple(settings.id_data)
+    for step, icon in ((-1, "TRIA_UP"), (1, "TRIA_DOWN")) if is_moved else ():
         move = below.operator("pe.move_row", text="", icon=icon)
         move.rows = name
         move.step = step
@@ -218,14 +219,18 @@ def columns(layout: UILayout, factor: float, align: bool = False) -> tuple[UILay
 
 def wrapped(context: Context, text: str, beside_px: float = 0.0) -> tuple[str, ...]:
     """Return a sentence in lines that fit the sidebar, measured in its font."""
-    return wrapped_lines(text, *_room(context, beside_px))
+    return wrapped_lines(text, *room_px(context, BESIDE_PX + beside_px))
 
 
 def fitted(context: Context, text: str, beside_px: float, share: float) -> str:
-    """Return a text that fits that share of the sidebar: its middle is left out where there is no
-    room, as names differ at their ends."""
-    room, size = _room(context, beside_px, share)
-    blf.size(FONT, size)
+    """Return a text that fits that share of the sidebar: see `shortened_to`."""
+    return shortened_to(context, text, room_px(context, BESIDE_PX + beside_px, share)[0])
+
+
+def shortened_to(context: Context, text: str, room: float) -> str:
+    """Return a text that fits a room [px]: its middle is left out where there is none, as names
+    differ at their ends."""
+    blf.size(FONT, room_px(context, 0.0)[1])
     shorter = text
     half = (len(text) + 1) // 2
     while half > 1 and _width(shorter) > room:
@@ -234,12 +239,18 @@ def fitted(context: Context, text: str, beside_px: float, share: float) -> str:
     return shorter
 
 
-def _room(context: Context, beside_px: float, share: float = 1.0) -> tuple[float, float]:
-    """Return the room for a text, and the size of its font [px]."""
+def text_px(text: str, size_px: float) -> float:
+    """Return the width of a text in that size of the font [px]."""
+    blf.size(FONT, size_px)
+    return _width(text)
+
+
+def room_px(context: Context, beside_px: float, share: float = 1.0) -> tuple[float, float]:
+    """Return the room in the sidebar beside something, and the size of the font [px]."""
     scale = _scale(context)
     is_popup = getattr(context.region, "type", "UI") != "UI"  # its own width is not known
     width = POPUP_PX * scale if is_popup else context.region.width
-    room = (width - (BESIDE_PX + beside_px) * scale) * share
+    room = (width - beside_px * scale) * share
     points = context.preferences.ui_styles[0].widget.points
     return max(room, MIN_ROOM_PX * scale), points * scale
 
@@ -285,8 +296,10 @@ def draw_sentence(
     icon: str = "NONE",
     beside_px: float = 0.0,
     sense: int = SAME,
+    room_of: str = "",
 ) -> None:
-    """Draw a sentence in as many lines as it needs; the icon is before the first. A gain or a loss
+    """Draw a sentence in as many lines as it needs; the icon is before the first. It takes the
+    room of `room_of`, if that is longer: what comes late moves nothing. A gain or a loss
     (`sense`) has its own icon. A sentence that begins with a space continues the one before, and
     has no icon. `beside_px` is the width of what is beside the sentence, at a scale of 1."""
     if text.startswith(" "):
@@ -297,8 +310,11 @@ def draw_sentence(
     icon = icon if sense == SAME else SENSE_ICONS[sense]
     rest = "NONE" if icon == "NONE" else "BLANK1"
     beside_px += 0.0 if icon == "NONE" else ICON_PX
-    for k, line in enumerate(wrapped(context, worded(context.scene, text), beside_px)):
+    lines = wrapped(context, worded(context.scene, text), beside_px)
+    for k, line in enumerate(lines):
         column.label(text=line, icon=rest if k else icon, translate=False)
+    for _ in range(len(lines), len(wrapped(context, room_of)) if room_of else 0):
+        column.label(text="")
 
 
 def draw_warning(layout: UILayout, context: Context, warning: advice.Advice) -> None:

@@ -7,11 +7,15 @@ from .. import where_map
 from ..diagnostics import vehicle_line
 from ..engine import advice
 from ..operators import offers, running_job
-from ..panel_text import draw_label, typeset
+from ..panel_text import draw_label, is_simple, typeset
 from ..sensor_cache import sensors as listed_sensors
-from .dashboard import draw_dashboard
+from .dashboard import draw_dashboard, draw_result
 from .layout import columns, draw_declared, draw_sentence, is_empty, panel
 from .sensor_lists import draw_sensors
+
+LONGEST_LINE = "12.34 x 2.34 x 2.34 m, faces +x, 1,234,567 triangles, 100 parts"
+"""The room that the line of a vehicle has before it is known."""
+FIRST_HINT = "Front at the arrow? Else turn it round. Then add a sensor"
 
 
 def draw_actions(layout: UILayout, settings: PropertyGroup) -> None:
@@ -47,10 +51,10 @@ def draw_vehicle(layout: UILayout, context: Context) -> None:
     draw_label(name, "Vehicle")
     field.prop(settings, "vehicle", text="")
     row.operator("pe.turn_round", text="", icon="FILE_REFRESH")
-    if settings.vehicle is not None and (line := vehicle_line(context.scene)):
-        draw_sentence(layout, context, line)
+    if settings.vehicle is not None:
+        draw_sentence(layout, context, vehicle_line(context.scene), room_of=LONGEST_LINE)
     if settings.vehicle is not None and not listed_sensors(context.scene):
-        draw_label(layout, "Front at the arrow? Else turn it round. Then add a sensor", "FORWARD")
+        draw_sentence(layout, context, FIRST_HINT, icon="FORWARD")
 
 
 @panel("Perception Entropy", closed=False, simple=True, always=True)
@@ -59,16 +63,18 @@ def main(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     if is_empty(context.scene):
         draw_empty(layout)
         return
-    draw_actions(layout, settings)  # first: nothing that comes late moves them
+    draw_actions(layout, settings)  # buttons first: nothing that comes late moves them
     draw_vehicle(layout, context)
+    draw_add(layout, settings, simple=is_simple(context.scene))
     draw_dashboard(layout, context)
-    draw_add(layout, settings)
     draw_sensors(layout, context)
     layout.row().prop(settings, "panels", expand=True)
+    draw_result(layout, context)
 
 
-def draw_add(layout: UILayout, settings: PropertyGroup) -> None:
-    """Draw a row: the kind; add its usual sensor, place it by pointing, or search all."""
+def draw_add(layout: UILayout, settings: PropertyGroup, *, simple: bool) -> None:
+    """Draw a row: the kind; add its usual sensor, place it by pointing, or (not in *Simple*) search
+    all."""
     by_kind = {offer.kind: offer for offer in offers()}  # a plugin's kind may have gone
     offer = by_kind.get(settings.kind_to_add) or next(iter(by_kind.values()))
     row = layout.row(align=True)
@@ -76,7 +82,8 @@ def draw_add(layout: UILayout, settings: PropertyGroup) -> None:
     row.operator("pe.add_sensor", text="Add", icon="ADD").model = offer.usual
     button = row.operator("pe.place_sensor", text="Place", icon="RESTRICT_SELECT_OFF")
     button.model = offer.usual
-    row.operator("pe.search_sensor", text="", icon="VIEWZOOM").kind = offer.kind
+    if not simple:
+        row.operator("pe.search_sensor", text="", icon="VIEWZOOM").kind = offer.kind
     row = layout.row(align=True)
     row.operator("pe.where", icon="SURFACE_DATA").model = offer.usual
     if settings.id_data.name in where_map.maps:
@@ -99,10 +106,13 @@ def draw_built(layout: UILayout, context: Context) -> None:
 @panel("Export and Import", simple=True)
 def export(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """Files to take away, and rigs of other programs"""
+    layout.operator("pe.export_review", icon="DOCUMENTS")
     layout.operator("pe.export_study", icon="EXPORT")
+    if is_simple(context.scene):
+        layout.operator("pe.export_rig", icon="FILE_TICK")
+        return
     layout.operator("pe.import_study", icon="IMPORT")
     layout.operator("pe.render_review", icon="RENDER_STILL")
-    layout.operator("pe.export_review", icon="DOCUMENTS")
     row = layout.row(align=True)
     row.operator("pe.export_rig", text="Export Rig", icon="FILE_TICK")
     row.operator("pe.import_rig", text="Import Rig", icon="FILE_FOLDER")

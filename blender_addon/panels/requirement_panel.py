@@ -6,10 +6,9 @@ from bpy.types import Context, PropertyGroup, UILayout
 
 from ..bridge import after_of, full_table
 from ..operators import shown_verdicts
-from ..panel_text import draw_label
+from ..panel_text import draw_label, is_simple
 from ..properties.requirement import BODIES_ASKED, OF_GROUND
 from .layout import (
-    columns,
     draw_declared,
     draw_list,
     draw_properties,
@@ -28,7 +27,7 @@ ICONS = {True: "CHECKMARK", False: "CANCEL", None: "QUESTION"}
 
 @row_list("PE_UL_requirements")
 def requirements_rows(context: Context, layout: UILayout, _settings: Any, item: Any) -> None:
-    """The requirements: verdict and name, and below them the regulation and the margin"""
+    """The requirements: verdict and name; below them the margin, or at first the regulation"""
     verdict = shown_verdicts(context.scene).get(item.name)
     lines = layout.column(align=True)
     row = lines.row(align=True)
@@ -40,11 +39,9 @@ def requirements_rows(context: Context, layout: UILayout, _settings: Any, item: 
     name.prop(item, "name", text="", emboss=False, icon=icon)
     below = lines.row(align=True)
     below.scale_y = BELOW_SCALE
-    after, margin = columns(below, 0.5)
-    after.active = False
-    after.label(text=after_of(item), icon="BLANK1", translate=False)
-    margin.alignment = "RIGHT"
-    draw_label(margin, "" if verdict is None else verdict.margin)
+    below.active = verdict is not None
+    told = verdict.margin if verdict is not None and verdict.margin else after_of(item)
+    draw_label(below, told, "BLANK1")
 
 
 def _requirements_header(layout: UILayout, context: Context) -> None:
@@ -80,6 +77,8 @@ def draw_requirement(layout: UILayout, context: Context, row: PropertyGroup) -> 
         draw_offers(layout, context, row.name)
     if row.problem:
         draw_sentence(layout, context, row.problem, icon="ERROR")
+    if is_simple(context.scene):
+        return
     if not (table := full_table(row)):
         draw_sentence(layout, context, "The stored table is damaged: remove the requirement")
         return

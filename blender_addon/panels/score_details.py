@@ -24,10 +24,9 @@ def _warning_count(layout: UILayout, context: Context) -> None:
 @panel("Explain", closed=False, simple=True, preset=_warning_count)
 def explain(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """Warnings with buttons that fix them; the score in words, by sensor, zone and class"""
-    # Below the selected sensor's panel: warnings come late, and would move what is below them.
-    draw_warnings(layout, settings, context)
-    layout.operator("pe.ask_place", icon="EYEDROPPER")
+    layout.operator("pe.ask_place", icon="EYEDROPPER")  # warnings come late: it stays in its place
     draw_answer(layout, context)
+    draw_warnings(layout, settings, context)
     draw_words(layout, settings, context)
     if settings.has_result:
         draw_sensor_table(layout, context)

@@ -6,7 +6,7 @@ from bpy.types import Context, PropertyGroup, UILayout
 
 from ..choices import BY_GROUP, BY_MESH, BY_PARTS, EXPECTED_AP, OBJECTS, ON_SLOTS, RANDOM
 from ..engine import advice
-from ..live import latest_figures
+from ..live import shown_score
 from ..panel_text import is_simple
 from .dashboard import draw_limits
 from .layout import (
@@ -27,9 +27,12 @@ SLOTS_ICON = "OUTLINER_COLLECTION"
 
 
 @panel("Search", simple=True)
-def search(layout: UILayout, settings: PropertyGroup, _context: Context) -> None:
+def search(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """How to search"""
     draw_properties(layout, settings, ("objective",))
+    if is_simple(context.scene):
+        draw_properties(layout, settings, ("evaluations",))
+        return
     layout.row(align=True).prop(settings, "method", expand=True)
     own = ("candidates",) if settings.method == RANDOM else ()
     draw_properties(layout, settings, (*own, "evaluations", "seed"))
@@ -74,10 +77,11 @@ def draw_mount(layout: UILayout, mount: PropertyGroup) -> None:
     draw_declared(layout, mount, "optimize.mount")
 
 
-@panel("Limits", simple=True, parent="PE_PT_search")
+@panel("Limits", parent="PE_PT_search")
 def limits(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """What placements of a search keep to, tolerate and trade off, and when it ends"""
-    figures = latest_figures(context.scene)
+    shown = shown_score(context.scene)
+    figures = () if shown is None else shown.figures[-1:]
     draw_limits(layout, settings, figures[-1] if figures else None)
     for line in advice.built_lines(figures) if figures else ():
         draw_sentence(layout, context, line)
@@ -87,10 +91,9 @@ def limits(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     if obj is not None and not obj.perception_entropy.is_sensor:
         layout.label(text=f"{obj.name}:", translate=False)
         draw_properties(layout, obj.perception_entropy, ("is_no_go",))
-    if not is_simple(context.scene):
-        draw_grid(layout.column(), settings)
-        draw_tolerance(layout.column(), settings)
-        draw_goals(layout.column(), settings, context)
+    draw_grid(layout.column(), settings)
+    draw_tolerance(layout.column(), settings)
+    draw_goals(layout.column(), settings, context)
 
 
 def draw_tolerance(layout: UILayout, settings: PropertyGroup) -> None:

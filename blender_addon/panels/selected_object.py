@@ -33,15 +33,17 @@ def sensor(layout: UILayout, _settings: PropertyGroup, context: Context) -> None
     row.operator_context = "INVOKE_DEFAULT"
     row.operator("pe.place_sensor", text="Drag Along Surface", icon="VIEW_PAN").sensor = obj.name
     draw_region(layout, context, obj)
-    draw_mirror(layout, obj)
+    draw_mirror(layout, obj, simple=is_simple(context.scene))
     split = layout.split(factor=0.4)
     draw_label(split, "Mounted on")
     mount_name = settings.mount or "Box of Coordinates"
     split.operator_menu_enum("pe.mount_sensor", "mount", text=mount_name, translate=False)
     if not is_simple(context.scene):
         layout.prop(settings, "rack")
-    draw_label(layout, f"The search may change, for {obj.name}:")
     layout.prop(settings, "stays")
+    if is_simple(context.scene):
+        return
+    draw_label(layout, f"The search may change, for {obj.name}:")
     column = layout.column()
     column.active = not settings.stays
     row = column.row(align=True)
@@ -52,8 +54,6 @@ def sensor(layout: UILayout, _settings: PropertyGroup, context: Context) -> None
     inside = section(layout, "bounds", "Bounds")
     if inside is not None:
         draw_bounds(inside, settings)
-    if is_simple(context.scene):
-        return
     draw_own_curve(layout, settings)
     inside = section(layout, "data_sheet", "Data Sheet")
     if inside is not None:
@@ -97,15 +97,17 @@ def draw_region(layout: UILayout, context: Context, obj: Object) -> None:
         draw_sentence(layout, context, part)
 
 
-def draw_mirror(layout: UILayout, obj: Object) -> None:
-    """Draw the buttons that mirror a sensor; of a linked sensor, its partner."""
+def draw_mirror(layout: UILayout, obj: Object, *, simple: bool) -> None:
+    """Draw the buttons that mirror a sensor, in *Simple* as a linked pair alone; of a linked
+    sensor, its partner."""
     row = layout.row(align=True)
     other = obj.perception_entropy.mirror_of
     if other:
         draw_label(row, f"Linked to {other}", "MOD_MIRROR")
         row.operator("pe.unlink_mirror", text="", icon="UNLINKED").name = obj.name
         return
-    row.operator("pe.mirror_sensor", icon="MOD_MIRROR").name = obj.name
+    if not simple:
+        row.operator("pe.mirror_sensor", icon="MOD_MIRROR").name = obj.name
     linked = row.operator("pe.mirror_sensor", text="Mirror Linked", icon="LINKED")
     linked.name = obj.name
     linked.linked = True

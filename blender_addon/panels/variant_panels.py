@@ -7,7 +7,7 @@ from bpy.types import Context, Object, PropertyGroup, UILayout
 
 from ..choices import RANDOM
 from ..operators import menu_of_rigs
-from ..panel_text import draw_label
+from ..panel_text import draw_label, is_simple
 from .layout import (
     columns,
     draw_declared,
@@ -46,7 +46,7 @@ def variants(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
     if not settings.variants:
         layout.operator("pe.save_variant", icon="ADD")
         layout.menu(PE_MT_known_rigs.bl_idname, icon="AUTO")
-        draw_text(layout)
+        draw_text(layout, context)
         return
     draw_list(layout, variants_rows, settings, "variants", height=4, add="pe.save_variant")
     draw_state(layout, settings)
@@ -58,12 +58,14 @@ def variants(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
         name, menu = columns(layout, 0.4)
         draw_label(name, "Compare Live With")
         menu.prop(settings.live, "reference", text="")
-    draw_text(layout)
+    draw_text(layout, context)
     layout.prop(selected(settings), "note", text="", icon="TEXT", placeholder="Note")
 
 
-def draw_text(layout: UILayout) -> None:
-    """Draw the buttons of a rig as a line of text."""
+def draw_text(layout: UILayout, context: Context) -> None:
+    """Draw the buttons of a rig as a line of text; not in *Simple*."""
+    if is_simple(context.scene):
+        return
     row = layout.row(align=True)
     row.operator("pe.copy_rig", icon="COPYDOWN")
     row.operator("pe.paste_rig", icon="PASTEDOWN")

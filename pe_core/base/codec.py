@@ -7,6 +7,8 @@ a part, or by the type. What has its default is left out. An error names the key
 ``requirement[2].zone.step``.
 
 A type whose data no walk can know, such as a model that is a name of the catalogue, has a `Hook`.
+
+Results are not read by users' hands: `record` writes all of their fields, `read_record` reads them.
 """
 
 import functools
@@ -196,6 +198,47 @@ def write_fields(instance: Any, base: Any = None) -> dict[str, Any]:
         elif value is not None and (default is REQUIRED or value != default):
             data[each.key] = _written(each, value)
     return data
+
+
+def record(result: Any) -> Any:
+    """Return a result as plain data: all fields of dataclasses and named tuples, also None; without
+    those that are `AtTimes`, while they are None."""
+    if hasattr(result, "_asdict"):
+        return {key: record(value) for key, value in result._asdict().items()}
+    if is_dataclass(result):
+        data: dict[str, Any] = {}
+        for each in fields_of(type(result)):  # type: ignore[arg-type]
+            value = getattr(result, each.name)
+            if each.part.inline:
+                data |= record(value)
+            elif value is not None or not each.part.at_times:
+                data[each.key] = record(value)
+        return data
+    if isinstance(result, Mapping):
+        return {str(key): record(value) for key, value in result.items()}
+    return [record(each) for each in result] if isinstance(result, list | tuple) else result
+
+
+def read_record(hint: Any, data: Any) -> Any:
+    """Return the result of a type from the plain data of `record`."""
+    if data is None or hint is Any:
+        return data
+    if is_dataclass(hint):
+        cls = typing.cast(Any, hint)
+        known = [each for each in fields_of(cls) if each.key in data]
+        return cls(**{each.name: read_record(each.hint, data[each.key]) for each in known})
+    origin = typing.get_origin(hint)
+    inner = typing.get_args(hint)
+    if origin in (types.UnionType, typing.Union):
+        (hint,) = (each for each in inner if each is not type(None))
+        return read_record(hint, data)
+    if origin is None:
+        return data
+    if issubclass(origin, Mapping):
+        return {inner[0](key): read_record(inner[1], each) for key, each in data.items()}
+    hints = [inner[0]] * len(data) if len(inner) == 1 or inner[-1] is Ellipsis else inner
+    rows = (read_record(each, value) for each, value in zip(hints, data, strict=True))
+    return list(rows) if issubclass(origin, list) else tuple(rows)
 
 
 def declared(

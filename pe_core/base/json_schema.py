@@ -1,4 +1,5 @@
-"""The JSON schema of a tree of dataclasses, by the declarations that the codec reads."""
+"""The JSON schema of a tree of dataclasses, by the declarations that the codec reads: of documents,
+and of results (`codec.record`)."""
 
 import json
 import math
@@ -12,6 +13,10 @@ from .codec import BY_TYPE, DocumentField, Schema, classes_in, fields_of, hook_o
 from .setting import REQUIRED, OneOf, Pair, Setting, Several, Texts, Toggle, Triple, value_in_file
 from .values import Angle, Name, Number, Whole
 
+TYPES = {bool: "boolean", int: "integer", float: "number", str: "string"}
+"""Names of plain types in a schema."""
+NULL = {"type": "null"}
+
 
 def schema_of(cls: type) -> Schema:
     """Return the JSON schema of the plain data of a class."""
@@ -19,6 +24,77 @@ def schema_of(cls: type) -> Schema:
     found: Schema = {"type": "object", "properties": properties}
     found |= {} if is_open else {"additionalProperties": False}
     return found | ({"required": required} if required else {})
+
+
+def schema_of_record(cls: type) -> Schema:
+    """Return the JSON schema of the data that `codec.record` writes of a class; other classes are
+    in ``$defs``. Keys may be added in a later version."""
+    known: dict[str, Schema] = {}
+    return _record_table(cls, known) | {"$defs": dict(sorted(known.items()))}
+
+
+def schemas_of_records(hints: Mapping[str, Any]) -> Schema:
+    """Return the JSON schema of a table whose keys are names, with the data of a type each."""
+    known: dict[str, Schema] = {}
+    properties = {name: _record(hint, known) for name, hint in hints.items()}
+    return {"type": "object", "properties": properties, "$defs": dict(sorted(known.items()))}
+
+
+def _record_table(cls: Any, known: dict[str, Schema]) -> Schema:
+    properties: dict[str, Schema] = {}
+    required: list[str] = []
+    for each in fields_of(cls):
+        if each.part.inline:
+            inner = _record_table(each.hint, known) if is_dataclass(each.hint) else {}
+            properties |= inner.get("properties", {})
+            required += inner.get("required", [])
+            continue
+        own = _record(each.hint, known)
+        about = {"description": each.part.about} if each.part.about else {}
+        if each.part.at_times:
+            own = _without_null(own)
+        else:
+            required.append(each.key)
+        properties[each.key] = {**own, **about}
+    return {"type": "object", "properties": properties, "required": required}
+
+
+def _without_null(schema: Schema) -> Schema:
+    if "anyOf" not in schema:
+        return schema
+    some = [each for each in schema["anyOf"] if each != NULL]
+    return some[0] if len(some) == 1 else {"anyOf": some}
+
+
+def _record(hint: Any, known: dict[str, Schema]) -> Schema:
+    if hint is Any:
+        return {}
+    if hint is type(None):
+        return NULL
+    if hint in BY_TYPE:
+        return {"type": TYPES[hint]}
+    if hasattr(hint, "_fields"):
+        hints = typing.get_type_hints(hint)
+        keys = {name: _record(hints[name], known) for name in hint._fields}
+        return {"type": "object", "properties": keys, "required": list(keys)}
+    if is_dataclass(hint):
+        name = typing.cast(type, hint).__name__
+        if name not in known:
+            known[name] = {}  # before: it may refer to itself
+            known[name] = _record_table(hint, known)
+        return {"$ref": f"#/$defs/{name}"}
+    origin = typing.get_origin(hint)
+    inner = typing.get_args(hint)
+    if origin is typing.Literal:
+        return {"enum": list(inner)}
+    if origin in (types.UnionType, typing.Union):
+        return {"anyOf": [_record(each, known) for each in inner]}
+    if issubclass(origin, Mapping):
+        return {"type": "object", "additionalProperties": _record(inner[1], known)}
+    if len(inner) == 1 or inner[-1] is Ellipsis:
+        return {"type": "array", "items": _record(inner[0], known)}
+    items = [_record(each, known) for each in inner]
+    return {"type": "array", "prefixItems": items, "minItems": len(items), "maxItems": len(items)}
 
 
 def schema_of_setting(setting: Setting) -> Schema:

@@ -32,6 +32,8 @@ SHIPPED = {
     "page.review": "pe_tools.page:review_studies",
     "page.search": "pe_tools.page:write_search_page",
     "page.front": "pe_tools.page:write_front_page",
+    "page.verification": "pe_tools.page:verification_page",
+    "verify.engine": "pe_tools.verify.kit:verify_engine",
 }
 """Plugins of this distribution: module and attribute, by the plugin's name."""
 EXTRAS = {

@@ -250,6 +250,8 @@ class Part:
     `inline`: Whether its keys stand in the table of its class, without a table of its own.
     `by_name`: Whether a mapping of names is an array of tables, each with its `name`.
     `stored`: Whether a document has it.
+    `at_times`: Whether the data of a result leave it out while it is None.
+    `about`: Its meaning, in the schema of a result.
     """
 
     key: str = ""
@@ -257,7 +259,13 @@ class Part:
     inline: bool = False
     by_name: bool = False
     stored: bool = True
+    at_times: bool = False
+    about: str = ""
 
 
+NotStored = Part(stored=False)
+"""Of what a document, or the data of a result, does not have."""
+AtTimes = Part(at_times=True)
+"""Of what the data of a result have only at times."""
 Named = Annotated[str, Part(rule=A_NAME)]
 """The name of what a table describes."""

@@ -200,9 +200,10 @@ def inline(value: object) -> str:
     raise TypeError(f"no TOML for {type(value).__name__}")
 
 
-def dump_json(data: Any) -> str:
-    """Return JSON text; floats round-trip exactly. Infinity and NaN are refused (see `finite`)."""
-    return json.dumps(data, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+def dump_json(data: Any, indent: int | None = 2) -> str:
+    """Return JSON text, in one line without `indent`; floats round-trip exactly. Infinity and NaN
+    are refused (see `finite`)."""
+    return json.dumps(data, indent=indent, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def finite(value: Any) -> Any:

@@ -9,14 +9,16 @@ same sample are subtracted by batch (paired); on different samples, their square
 import hashlib
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
-from typing import Any, Protocol
+from dataclasses import dataclass, field
+from typing import Annotated, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arrays import Floats, read_only
+from ..base.codec import read_record, record
 from ..base.notebook import ShortRepr, Tabular
+from ..base.setting import AtTimes, NotStored
 from ..base.values import DECIMALS, error_text, rounded, shown_share
 from ..geometry.grids import PerceptionSpace
 from ..scene.rig import Rig
@@ -146,10 +148,6 @@ class FoundClass:
     points: Mapping[int, float]
     reach: Mapping[str, float]
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the score as plain JSON data."""
-        return {**asdict(self), "points": {str(n): s for n, s in self.points.items()}}
-
 
 @dataclass(frozen=True, slots=True)
 class TrafficAp:
@@ -166,7 +164,7 @@ class TrafficAp:
     stderr: float
     scenes: int
     rings: Mapping[str, tuple[float, float]]
-    scatter: Scatter | None = field(default=None, compare=False, repr=False)
+    scatter: Annotated[Scatter | None, NotStored] = field(default=None, compare=False, repr=False)
 
     def error_from(self, other: "TrafficAp", ring: str = "") -> float:
         """Return the standard error of the difference from another rig's AP, of a ring or of all:
@@ -210,19 +208,9 @@ class ObjectScore(Tabular):
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "ObjectScore":
-        """Return the score from the data of `to_dict`."""
-        per_class = {name: _found(class_data) for name, class_data in data["per_class"].items()}
-        return cls(**{**data, "per_class": per_class})
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the score as plain JSON data."""
-        per_class = {name: class_score.to_dict() for name, class_score in self.per_class.items()}
-        return {**asdict(self), "per_class": per_class}
-
-
-def _found(data: Mapping[str, Any]) -> FoundClass:
-    points = {int(number): share for number, share in data["points"].items()}
-    return FoundClass(**{**data, "points": points})
+        """Return the score from the data of `codec.record`."""
+        found: ObjectScore = read_record(cls, data)
+        return found
 
 
 def zone_masks(x: NDArray[np.float64], y: NDArray[np.float64]) -> dict[str, NDArray[np.bool_]]:
@@ -363,10 +351,10 @@ class Score(Tabular):
     per_zone: dict[str, PartScore]
     per_sensor: dict[str, SensorScore]
     voxels: int
-    ground_map: GroundMap | None = None
-    objects: ObjectScore | None = None
-    scatter: Scatter | None = None
-    ap: float | None = None
+    ground_map: Annotated[GroundMap | None, NotStored] = None
+    objects: Annotated[ObjectScore | None, AtTimes] = None
+    scatter: Annotated[Scatter | None, NotStored] = None
+    ap: Annotated[float | None, NotStored] = None
 
     def _caption(self) -> str:
         error = f" ± {error_text(self.stderr)}" if self.stderr else ""
@@ -391,16 +379,8 @@ class Score(Tabular):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the score as plain JSON data, without ground map and scatter."""
-        return {
-            "entropy": self.entropy,
-            "coverage": self.coverage,
-            "stderr": self.stderr,
-            "voxels": self.voxels,
-            "per_class": {name: asdict(part) for name, part in self.per_class.items()},
-            "per_zone": {name: asdict(part) for name, part in self.per_zone.items()},
-            "per_sensor": {name: asdict(own) for name, own in self.per_sensor.items()},
-            **({} if self.objects is None else {"objects": self.objects.to_dict()}),
-        }
+        data: dict[str, Any] = record(self)
+        return data
 
 
 def sensor_score(entropy: float, coverage: float, lost: float, occlusion: Occlusion) -> SensorScore:

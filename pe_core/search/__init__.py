@@ -15,10 +15,11 @@ from .figure import HIGHER, LOWER, NO_FIGURE, Figure
 from .figures import ENTROPY, FIGURES, KEPT, ON_FRONT, REQUIREMENTS, figure_of
 from .goals import Front, Goals, Start, Stop
 from .journal import EvaluatedRig, Journal, checked_entries
-from .key_figures import KeyFigures, Reading, dashboard
+from .key_figures import KeyFigures, Reading, ReadingRow, dashboard
 from .limit import Limit, LimitRule
 from .limits import LIMITED, NUMBERED, Limits
 from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_method
+from .methods.portfolio import default_budget
 from .mounting_grid import GridWalk, MountingGrid, OnGrid
 from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .objective import NO_VALUE, FeasibilityRule, Objective, Value, as_objective, violation_sum

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from ..base.codec import read_record, record
 from ..base.values import rounded
 from ..scene.rig import Rig
 from ..scoring.score import TrafficAp
@@ -46,14 +47,14 @@ class KeyFigures:
     reach: Mapping[str, tuple[float, bool]] = field(default_factory=dict)
     over_frames: float | None = None
     margins: Mapping[str, float | None] = field(default_factory=dict)
-    unknown: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    unknown: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @classmethod
     def of_rig(cls, sight: Sight, rig: Rig) -> KeyFigures:
         """Return the key figures of a rig; `InputError` where the ground is not in the space."""
         view = RigView(sight, rig)
         found = {key: row.worst(row.values(view)) for key, row in FIGURES.items()}
-        unknown = {key: list(row.lacking(view.placement)) for key, row in BUILD_FIGURES.items()}
+        unknown = {key: tuple(row.lacking(view.placement)) for key, row in BUILD_FIGURES.items()}
         return cls(
             view.traffic,
             view.sectors,
@@ -67,11 +68,7 @@ class KeyFigures:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the figures as plain JSON data."""
-        data = {**asdict(self), "sectors": [asdict(sector) for sector in self.sectors]}
-        data["reach"] = {name: list(found) for name, found in self.reach.items()}
-        if self.traffic is not None:
-            data["traffic"]["rings"] = {n: list(ap) for n, ap in self.traffic.rings.items()}
-            del data["traffic"]["scatter"]
+        data: dict[str, Any] = record(self)
         return data
 
     def errors_from(self, other: KeyFigures) -> dict[str, float]:
@@ -89,13 +86,20 @@ class KeyFigures:
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> KeyFigures:
         """Return the figures from the data of `to_dict`."""
-        traffic = data["traffic"]
-        if traffic is not None:
-            rings = {name: (ap, error) for name, (ap, error) in traffic["rings"].items()}
-            traffic = TrafficAp(**{**traffic, "rings": rings})
-        sectors = tuple(BlindSector(**each) for each in data["sectors"])
-        reach = {name: (metres, more) for name, (metres, more) in data["reach"].items()}
-        return cls(**{**data, "traffic": traffic, "sectors": sectors, "reach": reach})
+        found: KeyFigures = read_record(cls, data)
+        return found
+
+
+@dataclass(frozen=True, slots=True)
+class ReadingRow:
+    """A row of the dashboard as plain data: `figure` is a name of `FIGURES`."""
+
+    value: float | None
+    wanted: float | None
+    met: bool | None
+    kept: bool
+    figure: str
+    unit: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,10 +134,17 @@ class Reading:
         found = "met" if self.met else f"not met, off by {off}"
         return f"{told} ({found}: wanted {sign} {row.text(self.wanted)})"
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the row as plain JSON data."""
-        found = {"value": self.value, "wanted": self.wanted, "met": self.met, "kept": self.kept}
-        return {"figure": self.figure.key, "unit": self.figure.unit, **found}
+    @property
+    def row(self) -> ReadingRow:
+        """The row as plain data."""
+        return ReadingRow(
+            value=self.value,
+            wanted=self.wanted,
+            met=self.met,
+            kept=self.kept,
+            figure=self.figure.key,
+            unit=self.figure.unit,
+        )
 
 
 def dashboard(

@@ -4,13 +4,11 @@ Our own processes get it by their initializer, the workers of a Dask client by a
 it comes with every task. Each worker unpickles it once.
 """
 
-import ctypes
 import hashlib
 import io
 import pickle
 from collections.abc import Iterable
 from concurrent.futures import Executor
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -27,9 +25,6 @@ _INITIAL: dict[str, bytes] = {}
 """In a worker: the payloads that came before their tasks, by key."""
 MAX_PAYLOADS = 4
 """How many of them a worker of a cluster keeps: several searches may share it."""
-KEPT_BYTES = {-1: 1 << 28, -3: 1 << 25}
-"""glibc's M_TRIM_THRESHOLD and M_MMAP_THRESHOLD of a worker: the pages of each array are not made
-anew, which takes a tenth of a search's time; with the thresholds that Dask sets, half [bytes]."""
 
 
 class Unreadable(TypeError):
@@ -112,7 +107,7 @@ def _plugin(packed: PackedPayload) -> Any:
 
         def setup(self, worker: Any) -> None:
             """Called in each worker, before its first task if it joins later."""
-            keep_freed_memory()
+            threads().keep_freed_memory()
             receive(packed.key, packed.data)
 
     return PayloadPlugin()
@@ -130,15 +125,6 @@ def _worker() -> Any:
     """Return the payload that this worker has unpickled, and its key. Threads share none of it, so
     that no thread waits for another."""
     return threads().local()
-
-
-@cache
-def keep_freed_memory() -> bool:
-    """Have this process keep freed memory; False where its C library is not glibc."""
-    with suppress(AttributeError, OSError, TypeError):
-        mallopt = ctypes.CDLL(None).mallopt
-        return all([mallopt(parameter, size) == 1 for parameter, size in KEPT_BYTES.items()])
-    return False
 
 
 def unpickled(packed: PackedPayload, content: bytes) -> Any:

@@ -17,7 +17,7 @@ from ..base.spawning import (
     starting_processes,
     without_main,
 )
-from .payload import Unreadable, keep_freed_memory, receive, send_payload
+from .payload import Unreadable, receive, send_payload
 
 T = TypeVar("T")
 
@@ -153,5 +153,5 @@ class LazyProcesses:
 def begin_worker(key: str = "", data: bytes = b"") -> None:
     """In a worker: keep the payload, leave signals to the parent process, and end with it."""
     receive(key, data)
-    keep_freed_memory()
+    threads().keep_freed_memory()
     belong_to_parent()

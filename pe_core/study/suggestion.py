@@ -4,8 +4,9 @@ For each requirement that is not met, `suggestions` looks for the nearest placem
 One design variable of the search is changed at a time, by small steps first; then one sensor (or
 linked pair) is put elsewhere within its range, the nearest places first. What is enough is made
 smaller as long as it stays enough, to `FINEST_STEP`. `mended` looks for one
-more sensor, too, of the models that the rig has: it stands all over the vehicle's surface and looks
-to where the requirement fails. `with_blind_spot` makes a requirement of a place on the ground.
+more sensor, too, of the models that the rig has: it stands all over the vehicle's surface, not too
+low and hardly occluded, and looks to where the requirement fails. `with_blind_spot` makes a
+requirement of a place on the ground.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from ..base.lazy_threads import threads
 from ..base.recent_cache import RecentCache
 from ..scene.data_sheet import DataSheet
 from ..scene.rig import Rig, Sensor, SensorModel
+from ..scene.vehicle import Vehicle
 from ..scoring.requirements import Criterion, Requirement, RequirementChecker, Zone, checkable
 from ..scoring.sampling import SEARCHED
 from ..scoring.score import SURE, RigEvaluator, ScoreStopped, standard_error
@@ -55,6 +57,11 @@ HELP_PLACES = 40
 ADD_PLACES = 80
 ADD_COMPARED = 4
 """Places of one more sensor of each model, and of those that are enough so many are scored."""
+MAX_OCCLUDED = 0.10
+MIN_HEIGHT_M = 0.4
+OCCLUSION_RAYS = 4096
+"""Of one more sensor: the largest share of its rays that the vehicle may occlude, and its smallest
+height: lower it is hit by stones and splashed. That share is one of so many rays at most."""
 SAMPLES = 2048
 """Voxels on which entropies are compared: their difference is that of one sample."""
 SPOT_M = 0.25  # Half the side of the square that a blind spot is
@@ -298,6 +305,8 @@ class _Mender:
                 rig = places.with_sensor(place.pose)
                 if place.reason or checker.shortfalls(rig)[0]:
                     continue
+                if not self._is_acceptable(rig.sensors[-1]):
+                    continue
                 if self._is_met_mounted(requirement, rig):
                     found = self._searching.entropy(rig), rig
                     best[name] = min(best.get(name, found), found, key=lambda pair: pair[0])
@@ -305,6 +314,13 @@ class _Mender:
                         break
         for name, (_, rig) in best.items():
             self.added[name] = self._suggestion(rig, [rig.sensors[-1].name], added=True)
+
+    def _is_acceptable(self, sensor: Sensor) -> bool:
+        """Whether one would mount an added sensor so: high enough, hardly occluded."""
+        if sensor.pose.position[2] < MIN_HEIGHT_M:
+            return False
+        vehicle = self._study.vehicle
+        return vehicle is None or occluded_share(sensor, vehicle) <= MAX_OCCLUDED
 
     def _checker_of(self, wanted: tuple[Requirement, ...]) -> RequirementChecker:
         return replace(self._study, requirements=wanted).checker()
@@ -361,6 +377,14 @@ class _Mender:
         with suppress(InputError):  # the ground is not in the space
             blind = RigView(self._sight, rig).blind_m2
         return Effect(self._evaluator.entropy(rig), blind)
+
+
+def occluded_share(sensor: Sensor, vehicle: Vehicle) -> float:
+    """Return the share of a sensor's rays that a vehicle occludes, 0 to 1."""
+    rays = kind_of(sensor).rays(sensor, OCCLUSION_RAYS)
+    hits = vehicle.first_hit(sensor.pose.position, rays, sensor.model.sees_through_glass)
+    reach = getattr(sensor.model, "max_range", math.inf)
+    return float(np.mean(hits.distance < reach)) if len(rays) else 0.0
 
 
 def _takes(model: SensorModel) -> str:

@@ -18,7 +18,7 @@ from .kriging import Kriging
 from .location import AskedPlace, SensorAtPlace, ask_place
 from .mount_checks import check_mirror_image, occluded_shares
 from .mountable import Consensus, Rounding, SensorSpread, consensus_of
-from .ranking import costs_nothing, disagreement, gain_sentence, ranking, search_cost
+from .ranking import costs_nothing, disagreement, gain_sentence, moved_words, ranking, search_cost
 from .score_comparison import OTHER_HARDWARE, TRAFFIC, ComparedRow, compare
 from .score_comparison import compare_figures, difference_error, hardware_note
 from .summary import WHERE, Outlook, class_of, lone_reach, object_words, objects_looked_at, outlook

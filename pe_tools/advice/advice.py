@@ -1,9 +1,10 @@
 """The warning record, and warnings about a placement as a whole."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any
 
+from pe_core.base.codec import record
 from pe_core.scoring.score import SURE
 from pe_core.search import Reading
 from pe_core.study.suggestion import Suggestion
@@ -62,7 +63,8 @@ class Advice:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the warning as plain JSON data."""
-        return {**asdict(self), "amount": list(self.amount)}
+        data: dict[str, Any] = record(self)
+        return data
 
 
 def fragile(

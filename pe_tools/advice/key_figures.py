@@ -110,7 +110,7 @@ def built_lines(figures: Sequence[KeyFigures]) -> list[str]:
     for key, row in BUILD_FIGURES.items():
         if found := dict.fromkeys(row.text(f.values[key]) for f in figures if key in f.values):
             texts.append(f"{row.name} {' -> '.join(found)}")
-        elif (lacking := last.unknown.get(key, [ALONE])) != [ALONE] and key != PRICE:
+        elif (lacking := last.unknown.get(key, (ALONE,))) != (ALONE,) and key != PRICE:
             by_sensors.setdefault(", ".join(lacking), []).append(row.name)
     named = [f"{', '.join(labels)} ({who})" for who, labels in by_sensors.items()]
     lines = {"to build": ", ".join(texts), "unknown": "; ".join(named)}

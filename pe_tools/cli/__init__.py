@@ -1,6 +1,6 @@
 """The command ``pe``, and the parts that all command lines of the project share."""
 
-from ..sweep import read_changes
+from .answers import FilesAnswer, VerifyAnswer
 from .check_verb import check, check_study
 from .command import Parser, as_typed, run
 from .explain_verbs import found_built, refuse_different, scored
@@ -9,7 +9,17 @@ from .options import whole
 from .region_verb import found_region
 from .run_job import More, drive
 from .story_text import chosen_stories, story_names
-from .study_source import NONE, ONE, PERHAPS, SOME, StudyFiles, with_changes, with_options
-from .terminal import BAD_INPUT, DONE, USAGE, Answer, open_missing_streams, show, tell
+from .study_source import NONE, ONE, PERHAPS, SOME, StudyFiles
+from .terminal import (
+    BAD_INPUT,
+    DONE,
+    NOT_MET,
+    USAGE,
+    Answer,
+    answered,
+    open_missing_streams,
+    show,
+    tell,
+)
 from .verbs import VERBS, Verb, answer, command_parser
 from .where_verb import where

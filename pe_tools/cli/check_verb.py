@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from pe_core.base import dump_json
+from pe_core.base import dump_json, record
 from pe_core.base.errors import InputError
 from pe_core.base.files import csv_text
 from pe_core.base.table_reader import finite
@@ -19,11 +19,12 @@ from pe_core.study.suggestion import Suggestion
 from ..advice import curve_note
 from ..jobs import CheckJob, SuggestJob
 from ..wording import aligned, margin_text, percent, reason_text, unseen_text
+from .answers import CheckAnswer, PresetsAnswer
 from .interrupts import stop_at_first
 from .run_job import drive, output_file, print_vehicle, save_text
 from .story_text import chosen_stories, story_lines, story_names
 from .study_source import StudyFiles
-from .terminal import DONE, NOT_MET, Answer, tell
+from .terminal import DONE, NOT_MET, Answer, answered, tell
 
 STOPPED = "stopped before"  # Why a requirement has no verdict after Ctrl-C
 ALL = "all"
@@ -57,17 +58,16 @@ def list_checks(args: argparse.Namespace) -> Answer:
     """List the requirement presets and the shipped stories, or show one preset with its source."""
     chosen = [preset(args.list, "check", "--list")] if args.list else list(presets().values())
     shipped = {} if args.list else stories()
-    if args.json:
-        rows = [{"id": p.id, "confidence": p.confidence, **p.table} for p in chosen]
-        told = {name: {"title": s.title, "source": s.source} for name, s in shipped.items()}
-        return dump_json({"requirements": rows, "stories": told}), DONE
+    rows = tuple({"id": p.id, "confidence": p.confidence, **p.table} for p in chosen)
+    told = {name: {"title": s.title, "source": s.source} for name, s in shipped.items()}
+    data = PresetsAnswer(rows, told)
     if args.list:
-        return "\n".join(_preset_lines(chosen[0])), DONE
+        return answered(args, data, _preset_lines(chosen[0])), DONE
     width = max(len(each.id) for each in chosen)
     lines = [f"{each.id:{width}}  {each.confidence}  {each.check}: {each.name}" for each in chosen]
     lines += [f"{letter}: {meaning}" for letter, meaning in CONFIDENCE.items()]
     lines += ["", *aligned([[name, s.title, s.source] for name, s in shipped.items()])]
-    return "\n".join(lines), DONE
+    return answered(args, data, lines), DONE
 
 
 def check_study(study: Study, args: argparse.Namespace) -> Answer:
@@ -96,15 +96,15 @@ def check_study(study: Study, args: argparse.Namespace) -> Answer:
     unchecked |= dict.fromkeys(job.missing, STOPPED)
     wanted = args.suggest and status == NOT_MET
     suggested = suggested_for(SuggestJob(study)) if wanted else {}
-    data = {
-        "met": sum(v.met for v in verdicts),
-        "requirements": [v.to_dict() for v in verdicts],
-        "unchecked": unchecked,
-        "suggestions": {n: [each.to_dict() for each in own] for n, own in suggested.items()},
-        "stories": [each.to_dict() for each in driven],
-        "limits": [each.to_dict() for each in job.limits],
-    }
-    text = dump_json(finite(data))
+    data = CheckAnswer(
+        met=sum(v.met for v in verdicts),
+        requirements=tuple(v.row for v in verdicts),
+        unchecked=unchecked,
+        suggestions={n: tuple(each.to_dict() for each in own) for n, own in suggested.items()},
+        stories=tuple(each.to_dict() for each in driven),
+        limits=tuple(each.row for each in job.limits),
+    )
+    text = dump_json(finite(record(data)))
     is_table = output is not None and output.suffix == CSV
     status = save_text(output, verdicts_csv(verdicts) if is_table else text) or status
     if args.json:

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import Any, NoReturn, TextIO
 
+from pe_core.base import dump_json
 from pe_core.base.errors import InputError, one_of
 from pe_core.base.files import named_path, quoted, reason_of
 from pe_core.base.input_files import noting_inputs
@@ -24,10 +25,21 @@ PATHS = ("STUDY", "FILE", "MESH", "PATH", "TABLE", "DIR")
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser whose messages are printable text, and whose printing never fails."""
+    """A parser whose messages are printable text, and whose printing never fails. `described`
+    returns what ``--help --json`` prints; None: as ``--help``."""
+
+    described: Callable[[], dict[str, Any]] | None = None
+    _in_json = False
+
+    def format_help(self) -> str:
+        """Return the help; with ``--json`` as data."""
+        if self._in_json and self.described is not None:
+            return dump_json(self.described())
+        return super().format_help()
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Parse arguments; raise `InputError` for a path that no file can have."""
+        self._in_json = "--json" in (args or ())
         found, rest = super().parse_known_args(args, namespace)
         for word in rest if self.get_default("function") else ():  # a verb has all of its options
             if word.startswith("-"):
@@ -81,6 +93,10 @@ def run(main: Callable[[], Answer], out: TextIO | None = None) -> int:
         tell(str(error))
         return BAD_INPUT
     except OSError as error:  # from a question to the system about a file
-        where = error.filename or "system"
-        tell(str(InputError(where, "file", "one that can be used", reason_of(error))))
+        tell(str(file_error(error)))
         return BAD_INPUT
+
+
+def file_error(error: OSError) -> InputError:
+    """Return the line about a file that the system refuses."""
+    return InputError(error.filename or "system", "file", "one that can be used", reason_of(error))

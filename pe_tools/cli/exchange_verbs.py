@@ -23,10 +23,11 @@ from ..exchange import (
 from ..formats import read_mesh
 from ..jobs import export_study, prepare_folder
 from ..outputs import OF_EXAMPLE, export_scene, output_files, scene_output, scene_outputs
+from .answers import FilesAnswer
 from .options import LINE, ranged_outputs
 from .run_job import output_file, save_text
 from .study_source import StudyFiles
-from .terminal import DONE, Answer, tell
+from .terminal import DONE, Answer, answered, tell
 
 FILE_NAMES = {**FILES, **output_files()}
 WHEELS = "wheels"  # Asks for the rear axle of the parts that are named as wheels
@@ -39,14 +40,18 @@ def export(source: StudyFiles, args: argparse.Namespace) -> Answer:
     study = source.study(args)
     if args.to == LINE:
         line = rig_line(study.rig)
-        return line, save_text(output_file(args.output, args), line)
+        path = output_file(args.output, args)
+        status = save_text(path, line)
+        is_written = path is not None and status == DONE
+        line_file = (str(path),) if is_written else ()
+        return answered(args, FilesAnswer(written=line_file, line=line), [line]), status
     if args.output is None and args.into is None:
         args.usage_error("expected -o PATH, a file to write, or --into PATH, one to change")
     output = Path(args.into if args.output is None else args.output)
     if args.to is None and args.into is None and not output.suffix:
         path = prepare_folder(output) / STUDY
         export_study(study, path)
-        return str(path), DONE
+        return answered(args, FilesAnswer(written=(str(path),)), [str(path)]), DONE
     if args.to in OF_EXAMPLE:
         scene_output(args.to)  # refuses it without its plugin
     asked = args.to
@@ -72,7 +77,8 @@ def export(source: StudyFiles, args: argparse.Namespace) -> Answer:
         )
     for line in lines:
         tell(line)
-    return "\n".join(f"wrote {path}" for path in paths), DONE
+    files = tuple(map(str, paths))
+    return answered(args, FilesAnswer(written=files), (f"wrote {path}" for path in files)), DONE
 
 
 def import_study(_: StudyFiles, args: argparse.Namespace) -> Answer:
@@ -93,7 +99,7 @@ def import_study(_: StudyFiles, args: argparse.Namespace) -> Answer:
     save_study(study, output)
     for line in found.lines:
         tell(line)
-    return wrote(output, study), DONE
+    return wrote(output, study, args), DONE
 
 
 def asked_origin(args: argparse.Namespace) -> Pose | None:
@@ -101,9 +107,10 @@ def asked_origin(args: argparse.Namespace) -> Pose | None:
     return None if args.at is None else Pose.from_degrees(args.at[:3], args.at[3:])
 
 
-def wrote(output: Path, study: Study) -> str:
-    """Return the line about a study that was written."""
-    return f"wrote {output}: {plural(len(study.rig), 'sensor')}"
+def wrote(output: Path, study: Study, args: argparse.Namespace) -> str:
+    """Return what is printed of a study that was written."""
+    line = f"wrote {output}: {plural(len(study.rig), 'sensor')}"
+    return answered(args, FilesAnswer(written=(str(output),)), [line])
 
 
 def asked_reference(

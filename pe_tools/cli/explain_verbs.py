@@ -4,15 +4,13 @@ import argparse
 import math
 import signal
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from pe_core import catalog
-from pe_core.base import dump_json
 from pe_core.base.errors import InputError
-from pe_core.base.table_reader import finite
 from pe_core.base.values import error_text
 from pe_core.scene import Vehicle
 from pe_core.search import FIGURES
@@ -24,12 +22,13 @@ from ..exchange import import_rig
 from ..jobs import BuiltJob, Outcome, ScoreJob, SuggestJob
 from ..sweep import read_changes
 from ..wording import aligned
+from .answers import BuiltAnswer, CompareAnswer, ExplainAnswer
 from .check_verb import suggested_for, suggestion_lines
 from .exchange_verbs import asked_origin, asked_reference
 from .interrupts import Interrupted, stop_at_first
 from .run_job import drive, print_vehicle
 from .study_source import StudyFiles
-from .terminal import DONE, NOT_MET, Answer, warned, with_error
+from .terminal import DONE, NOT_MET, Answer, answered, warned, with_error
 
 BEST = "*"
 TOML = ".toml"
@@ -88,37 +87,38 @@ def explain(source: StudyFiles, args: argparse.Namespace) -> Answer:
         standing = advice.StandingBody(args.body, at, args.heading or 0.0)
         (body,) = advice.see_bodies(study.rig, study.vehicle, (standing,), study.model)
         print_vehicle(study)
-        return _answer({"body": body.to_dict()}, list(body.text), args.json)
+        return answered(args, ExplainAnswer(outlook={}, body=body.to_dict()), body.text), DONE
     if at is not None:
         place = advice.ask_place(
             study.rig, study.space, study.prior, study.vehicle, point=at, model=study.model
         )
         print_vehicle(study)
         told = list(place.text)
-        answer = dict[str, Any](place=place.to_dict())
+        answer = ExplainAnswer(outlook={}, place=place.to_dict())
         if args.suggest:
             suggested = suggested_for(SuggestJob(study, spot=(at[0], at[1])))
-            answer["suggestions"] = [each.to_dict() for own in suggested.values() for each in own]
+            mended = tuple(each.to_dict() for own in suggested.values() for each in own)
+            answer = replace(answer, suggestions=mended)
             mends = [line for each in suggested.items() for line in suggestion_lines(*each)]
             told += mends or [NOT_BLIND] * (not place.in_vehicle)
-        return _answer(answer, told, args.json)
+        return answered(args, answer, told), DONE
     name = advice.class_of(study.prior, args.class_name)
     outcome = scored(study, args.workers)
     seen = advice.outlook(study.sight(), study.rig, name)
     rows = advice.sensor_rows(outcome.after, study.rig, study.vehicle, seen)
     of_rig = advice.rig_words(outcome.after, seen, study.rig, outcome.warnings)
-    data = {
-        "score": outcome.after.to_dict(),
-        **seen.to_dict(),
-        "sensors": [row.to_dict() for row in rows],
-        "words": list(of_rig),
-        "warnings": [each.to_dict() for each in outcome.warnings],
-    }
+    data = ExplainAnswer(
+        score=outcome.after,
+        outlook=seen.to_dict(),
+        sensors=tuple(row.to_dict() for row in rows),
+        words=tuple(of_rig),
+        warnings=outcome.warnings,
+    )
     score = outcome.after
     what = "perception" if score.objects is None else "object"
     first = f"{what} entropy {with_error(score.entropy, score.stderr)}; lower is better"
     lines = [first, *of_rig, *advice.sensor_table(rows), *warned(outcome)]
-    return _answer(data, lines, args.json)
+    return answered(args, data, lines), DONE
 
 
 def _same_body(one: Vehicle | None, other: Vehicle | None) -> bool:
@@ -142,18 +142,12 @@ def compare(source: StudyFiles, args: argparse.Namespace) -> Answer:
     figure_rows = advice.compare_figures(figures)
     first, *others = (study.vehicle for study in studies.values())
     alike = all(_same_body(first, other) for other in others)
-    data = {
-        "scores": {name: score.to_dict() for name, score in scores.items()},
-        "figures": {name: own.to_dict() for name, own in figures.items()},
-        "rows": [row.to_dict() for row in (*rows, *figure_rows)],
-        "same_vehicle": alike,
-    }
     names = list(scores)
     models = ([sensor.model for sensor in study.rig] for study in studies.values())
     curves = advice.curve_note(studies.values())
-    data["notes"] = notes = [note for note in (advice.hardware_note(models), curves) if note]
+    notes = [note for note in (advice.hardware_note(models), curves) if note]
     apart = advice.disagreement(names, [*rows, *figure_rows])
-    data["words"] = said = [*[apart] * bool(apart), *advice.ranking(names, rows)]
+    said = [*[apart] * bool(apart), *advice.ranking(names, rows)]
     lines = [*comparison(names, [*rows, *figure_rows]), *said]
     lines += [] if alike else ["their vehicles differ"]
     if error := max(score.stderr for score in scores.values()):
@@ -161,7 +155,15 @@ def compare(source: StudyFiles, args: argparse.Namespace) -> Answer:
             f"on samples: entropies have a standard error of up to {error_text(error)} nats; "
             "+- is that of a difference, smaller on a shared sample"
         )
-    return _answer(data, [*lines, *notes], args.json)
+    data = CompareAnswer(
+        scores=scores,
+        figures=figures,
+        rows=tuple(row.to_dict() for row in (*rows, *figure_rows)),
+        same_vehicle=alike,
+        notes=tuple(notes),
+        words=tuple(said),
+    )
+    return answered(args, data, [*lines, *notes]), DONE
 
 
 def _built_file(args: argparse.Namespace) -> str | None:
@@ -183,8 +185,8 @@ def compare_built(source: StudyFiles, args: argparse.Namespace, file: str) -> An
     table = advice.built_table(built)
     text = [*aligned(table, range(2, len(table[0]))), *advice.built_sensor_lines(built), ""]
     text += comparison(["design", "built"], built.of_rigs)
-    answer, status = _answer({"as_built": built.to_dict()}, text, args.json)
-    return answer, NOT_MET if built.fallen else status
+    answer = answered(args, BuiltAnswer(as_built=built.to_dict()), text)
+    return answer, NOT_MET if built.fallen else DONE
 
 
 def found_built(study: Study, args: argparse.Namespace, file: str) -> AsBuilt:
@@ -231,7 +233,3 @@ def refuse_different(studies: Mapping[str, Study]) -> None:
                 field = "AP curves and fusion" if field == "model" else field
                 expected = f"the same as in {first[0]}, to be compared with it"
                 raise InputError(name, field, expected, "another")
-
-
-def _answer(data: dict[str, Any], lines: list[str] | tuple[str, ...], as_json: bool) -> Answer:
-    return (dump_json(finite(data)) if as_json else "\n".join(lines)), DONE

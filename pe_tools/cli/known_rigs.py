@@ -3,6 +3,7 @@
 import argparse
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from pe_core import catalog
 from pe_core.base.files import require_new
@@ -14,10 +15,11 @@ from pe_core.study import Study, read_rig_line, save_study
 from ..formats import MeshAxes
 from ..graphics import place_tints
 from ..wording import aligned
+from .answers import RigsAnswer
 from .exchange_verbs import wrote
 from .found_vehicle import OF_MESH, FoundVehicle, asked_keys, find_vehicle
 from .options import PLACEMENTS
-from .terminal import DONE, Answer, tell
+from .terminal import DONE, Answer, answered, tell
 
 PUBLISHED, STRETCHED, PLACES = PLACEMENTS
 STANDS = {
@@ -26,6 +28,8 @@ STANDS = {
     PLACES: "on named places of this vehicle",
 }
 """How a rig stands, in words, by placement."""
+OF_TEMPLATE = ("place", "model", "yaw_deg", "pitch_deg")
+"""Of a sensor of a template."""
 
 
 def new_of_rig(args: argparse.Namespace) -> Answer:
@@ -34,7 +38,9 @@ def new_of_rig(args: argparse.Namespace) -> Answer:
     if args.output is None:
         if is_line:
             args.usage_error("expected -o STUDY, the study to write")
-        return "\n".join(_described(catalog.rig_named(args.rig)) if args.rig else _listed()), DONE
+        chosen = [catalog.rig_named(args.rig)] if args.rig else _all()
+        shown = RigsAnswer(rigs=tuple(map(_table, chosen)))
+        return answered(args, shown, _described(chosen[0]) if args.rig else _listed()), DONE
     if not args.rig:
         args.usage_error("expected --rig NAME, a rig to write")
     asked = asked_keys(args, OF_MESH)
@@ -51,7 +57,7 @@ def new_of_rig(args: argparse.Namespace) -> Answer:
         axes=MeshAxes() if found is None else found.axes,
     )
     save_study(study, output)
-    return wrote(output, study), DONE
+    return wrote(output, study, args), DONE
 
 
 def _placed(rig: KnownRig | RigTemplate, found: FoundVehicle | None, placement: str | None) -> Rig:
@@ -67,6 +73,27 @@ def _placed(rig: KnownRig | RigTemplate, found: FoundVehicle | None, placement: 
     stands = STRETCHED if on_it is not None and rig.size is not None else PUBLISHED
     tell(f"{rig.title}: {STANDS[stands if places is None else PLACES]}. {rig.note}")
     return catalog.rig_on(rig, on_it, places)
+
+
+def _all() -> list[KnownRig | RigTemplate]:
+    """Return known rigs, then templates."""
+    return [*catalog.known_rigs().values(), *catalog.templates().values()]
+
+
+def _table(rig: KnownRig | RigTemplate) -> dict[str, Any]:
+    """Return a rig as plain data: poses in m and degrees, of a template its places."""
+    if isinstance(rig, RigTemplate):
+        rows = [dict(zip(OF_TEMPLATE, row, strict=True)) for row in rig.sensors]
+        return {"name": rig.key, "title": rig.title, "note": rig.note, "sensors": rows}
+    rows = [
+        {"name": each.name, "model": each.model}
+        | {"position": each.pose.position, "rotation": each.pose.rotation_deg}
+        for each in rig.sensors
+    ]
+    own = {
+        key: getattr(rig, key) for key in ("title", "vehicle", "size", "origin", "source", "note")
+    }
+    return {"name": rig.key, **own, "sensors": rows}
 
 
 def _listed() -> list[str]:

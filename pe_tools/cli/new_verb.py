@@ -18,11 +18,12 @@ from pe_core.study import Study
 
 from ..advice import warnings
 from ..formats import Mesh, axes_in_text, write_mesh
+from .answers import FilesAnswer
 from .found_vehicle import OF_MESH, FoundVehicle, asked_keys, find_vehicle
 from .known_rigs import new_of_rig
 from .roof import MOUNT, RoofSensor, find_roof, roof_sensor
 from .study_source import StudyFiles
-from .terminal import DONE, Answer, tell
+from .terminal import DONE, Answer, answered, tell
 
 MODEL = "Pandar64"
 TEMPLATE = Path(__file__).with_name("first_study.toml.j2")
@@ -71,7 +72,7 @@ def new_of_mesh(args: argparse.Namespace) -> Answer:
         tell(f"warning: {each.line}")  # sunk into the ground, far from the origin, odd sizes
     lines = [f"wrote {path}" for path in written]
     lines += [f"next: pe score {file}", f"      pe optimize {file} -o results"]
-    return "\n".join(lines), DONE
+    return answered(args, FilesAnswer(written=tuple(map(str, written))), lines), DONE
 
 
 @dataclass(frozen=True)

@@ -15,9 +15,10 @@ from pe_core.study import Study
 from ..advice import FreeRegion, region_lines
 from ..formats.meshes import MESH_FORMATS, write_mesh
 from ..jobs import RegionJob, export_study, study_on_region
+from .answers import RegionAnswer
 from .interrupts import Interrupted, stop_at_first
 from .run_job import drive, output_file, print_vehicle, written
-from .terminal import BAD_INPUT, DONE, Answer, tell
+from .terminal import BAD_INPUT, DONE, Answer, answered, tell
 
 JSON = ".json"
 STUDY = ".toml"
@@ -38,7 +39,7 @@ def region(study: Study, args: argparse.Namespace) -> Answer:
         workers=args.workers,
     )
     found, status = _driven(job)
-    text = dump_json(finite(found.to_dict())) if args.json else "\n".join(region_lines(found))
+    text = answered(args, RegionAnswer(**found.to_dict()), region_lines(found))
     unwritten = _save(path, study, found)
     return text, unwritten or status
 

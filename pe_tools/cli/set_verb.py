@@ -14,8 +14,9 @@ from pe_core.base.input_files import not_noting_inputs
 from pe_core.base.table_reader import dotted, inline, load_toml
 
 from ..sweep import KeyChange, TomlPath, named_study, read_changes, set_value
+from .answers import ChangedKey, KeysAnswer
 from .study_source import StudyFiles
-from .terminal import DONE, Answer
+from .terminal import DONE, Answer, answered
 
 ARRAY = "[["
 BEFORE = re.compile(r"""\s*(?:"[^"]*"|'[^']*'|[^"'=])*=\s*""")
@@ -29,15 +30,22 @@ def set_keys(_: StudyFiles, args: argparse.Namespace) -> Answer:
     change it."""
     path = Path(args.study)
     old = read_bytes(path)
-    text, lines = changed_text(decode_text(old), read_changes(args.changes), path)
+    text, changes = changed_text(decode_text(old), read_changes(args.changes), path)
     write_bytes(path, encode_like(text, old))
-    return "\n".join(lines), DONE
+    return answered(args, KeysAnswer(str(path), tuple(changes)), _lines(path, changes)), DONE
 
 
-def changed_text(text: str, changes: Sequence[KeyChange], path: Path) -> tuple[str, list[str]]:
-    """Return the text of a study file with changes, and a line about each. `InputError` as
-    above."""
-    lines: list[str] = []
+def _lines(path: Path, changes: Sequence[ChangedKey]) -> Iterator[str]:
+    for each in changes:
+        before = "no value" if each.before is None else inline(each.before)
+        yield f"{path}: {each.key}: {before} -> {inline(each.after)}"
+
+
+def changed_text(
+    text: str, changes: Sequence[KeyChange], path: Path
+) -> tuple[str, list[ChangedKey]]:
+    """Return the text of a study file with changes, and each of them. `InputError` as above."""
+    changed: list[ChangedKey] = []
     made: dict[TomlPath, KeyChange] = {}
     for change in changes:
         wanted = load_toml(path, "study", text)
@@ -49,11 +57,10 @@ def changed_text(text: str, changes: Sequence[KeyChange], path: Path) -> tuple[s
             if is_rows or isinstance(known, dict):
                 raise InputError(path, change.key, "a key of this table", inline(change.value))
             raise InputError(path, change.key, "a key in a line of its own", "another form")
-        before = "no value" if placed.before is None else inline(placed.before)
-        lines.append(f"{path}: {change.key}: {before} -> {inline(change.value)}")
+        changed.append(ChangedKey(change.key, placed.before, change.value))
         made[placed.path] = change
     named_study(load_toml(path, "study", text), made, str(path), path.parent)
-    return text, lines
+    return text, changed
 
 
 class _Statement(NamedTuple):

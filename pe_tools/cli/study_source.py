@@ -2,18 +2,22 @@
 
 import argparse
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import TextIO
 
 from pe_core.base.errors import InputError, require_name, shown
+from pe_core.base.files import read_bytes
 from pe_core.base.input_files import not_noting_inputs
+from pe_core.base.table_reader import parse_json
 from pe_core.search.goals import Start
-from pe_core.study import STUDY, StateInWeather, Study, load_study, load_study_data
+from pe_core.study import RESULT, STUDY, StateInWeather, Study, load_study, load_study_data
 
 from ..advice import Advice
 from ..jobs import export_study, read_search
+from ..known_defects import mended_since
 from ..sweep import KeyChange, changed_study, read_changes
 from .run_job import More
 from .terminal import tell
@@ -40,6 +44,8 @@ class StudyFiles:
 
     versions: dict[str, str] | None = None
     """Versions of the program around the engine."""
+    out: TextIO | None = None
+    """Where the replies of a session go; None: to stdout."""
 
     def add_arguments(self, verb: argparse.ArgumentParser, takes: str) -> None:
         """Add what names the studies to the parser of a verb."""
@@ -58,8 +64,7 @@ class StudyFiles:
             return self._read(args.study, changes, args)
         if getattr(args, "resume", None) is None:
             args.usage_error("expected STUDY")
-        study = with_changes(read_search(args.resume).study, changes, args.resume)
-        return with_options(study, args)
+        return self.changed(read_search(args.resume).study, args, args.resume)
 
     def studies(self, args: argparse.Namespace) -> dict[str, Study]:
         """Return the studies of a command line by name, with the changes of its options."""
@@ -71,15 +76,25 @@ class StudyFiles:
         data = load_study_data(Path(path))
         anywhere = getattr(args, "snap", False)
         folder = Path(path).parent
+        tell_mended_defects(folder)
         study = changed_study(data, changes, path, folder, starts_anywhere=anywhere)
-        with _naming(path):
+        with naming_study(path):
             return with_options(study, args)
 
     @contextmanager
     def naming(self, args: argparse.Namespace) -> Iterator[None]:
         """Have errors of the study name its file, within."""
-        with _naming(getattr(args, "study", None)):
+        with naming_study(getattr(args, "study", None)):
             yield
+
+    def opened(self) -> Study:
+        """Return the study that a session begins with; `InputError` where there is none."""
+        expected = 'one that was loaded: {"do": "load", "study": "study.toml"}'
+        raise InputError("session", "study", expected, "none")
+
+    def changed(self, study: Study, args: argparse.Namespace, source: str) -> Study:
+        """Return a study in memory with the changes of a command line; errors name the source."""
+        return with_options(with_changes(study, read_changes(args.set), source), args)
 
     def artifacts(self, study: Study, *, searches: bool) -> Sequence[More]:
         """Return further files of a run; `InputError` where a result could not be kept."""
@@ -88,6 +103,17 @@ class StudyFiles:
     def notes(self) -> tuple[Advice, ...]:
         """Return warnings about the source."""
         return ()
+
+
+@not_noting_inputs()
+def tell_mended_defects(folder: Path) -> None:
+    """Print which defects the result in a study's folder may have that were mended since."""
+    path = folder / RESULT
+    if path.is_file():
+        with suppress(InputError):  # another program's file of that name
+            data = parse_json(path, read_bytes(path))
+            for line in mended_since(data if isinstance(data, dict) else {}):
+                tell(f"{path}: {line}")
 
 
 def with_options(study: Study, args: argparse.Namespace) -> Study:
@@ -107,7 +133,7 @@ def with_options(study: Study, args: argparse.Namespace) -> Study:
 
 
 @contextmanager
-def _naming(path: str | None) -> Iterator[None]:
+def naming_study(path: str | None) -> Iterator[None]:
     """Have errors of a study name its file, within."""
     try:
         yield

@@ -7,7 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pe_core.base import dump_json
 from pe_core.base.errors import InputError
 from pe_core.base.input_files import refuse_input
 from pe_core.study import SEARCH, STUDY
@@ -19,6 +18,7 @@ from ..sweep import sweep_table as table
 from ..sweep.sweep_table import BEGUN, DONE, UNWRITTEN, WAITING, SweepRow
 from ..wording import percent
 from . import terminal
+from .answers import SweepAnswer
 from .executors import workplace
 from .interrupts import Interrupted, Received, stop_at_first
 from .progress_line import Reporter
@@ -51,7 +51,7 @@ def sweep(_: StudyFiles, args: argparse.Namespace) -> terminal.Answer:
     missing = [row for row in rows if row.status == UNWRITTEN]
     where = (f"{row.run.name}: {row.status}: {row.message}" for row in missing)
     lines = [*table.table_lines(rows, kind), *where, *filter(None, notes)]
-    text = dump_json(work.data) if args.json else "\n".join(lines)
+    text = terminal.answered(args, SweepAnswer(**work.data), lines)
     whole = work.count(DONE) == len(rows) and not work.failed_to_write
     return text, terminal.DONE if whole else terminal.BAD_INPUT
 

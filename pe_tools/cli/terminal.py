@@ -1,12 +1,15 @@
 """Output of the command line: safe printing, messages, exit statuses, an outcome in a few lines."""
 
+import argparse
 import os
 import sys
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from typing import TextIO
+from typing import Any, TextIO
 
+from pe_core.base import dump_json, record
+from pe_core.base.table_reader import finite
 from pe_core.base.values import error_text
 from pe_core.search.figures import AP, ENTROPY, REQUIREMENTS
 from pe_core.sensors import kind_of
@@ -31,7 +34,7 @@ EXIT_STATUSES = {
     DONE: "done",
     BAD_INPUT: "bad input, or a result that could not be written",
     USAGE: "wrong usage",
-    NOT_MET: "a requirement or a story is not met",
+    NOT_MET: "a requirement or a story is not met, or a case of verify is wrong",
     INTERRUPTED: "interrupted: 128 plus the signal's number",
 }
 """What each exit status means."""
@@ -104,6 +107,11 @@ def _shown(character: str, encoding: str) -> str:
     # Beyond 16 bits these are two.
     units = character.encode("utf-16-be", "surrogatepass")
     return "".join(f"\\u{units[i]:02x}{units[i + 1]:02x}" for i in range(0, len(units), 2))
+
+
+def answered(args: argparse.Namespace, data: Any, lines: Iterable[str]) -> str:
+    """Return what a verb prints: lines; with ``--json`` its data (`answers`)."""
+    return dump_json(finite(record(data))) if args.json else "\n".join(lines)
 
 
 def summary(outcome: Outcome) -> str:

@@ -4,23 +4,45 @@ open scene as the source of studies."""
 import argparse
 import sys
 from collections.abc import Callable, Sequence
+from functools import partial
 from importlib.metadata import EntryPoint
 from typing import Any, NamedTuple
 
 from pe_core.base.errors import InputError
+from pe_core.base.lazy_threads import threads
 from pe_core.base.plugins import call_plugin, find_plugins, load_plugin, plugin_name, shipped
-from pe_core.search.payload import keep_freed_memory
 
+from ..jobs import FrontRecord, ResultRecord
 from ..versions import versions_text
+from .answers import (
+    BuiltAnswer,
+    CatalogAnswer,
+    CheckAnswer,
+    CompareAnswer,
+    CurvesAnswer,
+    ExplainAnswer,
+    FilesAnswer,
+    KeysAnswer,
+    PresetsAnswer,
+    RegionAnswer,
+    Reply,
+    RigsAnswer,
+    SensorAnswer,
+    SweepAnswer,
+    VerifyAnswer,
+    WhereAnswer,
+)
 from .catalog_verb import show_sensors
 from .check_verb import check
 from .command import Parser, as_typed, run
+from .description import described
 from .exchange_verbs import export, import_study
 from .explain_verbs import compare, explain
 from .new_verb import new
 from .options import add_options
 from .region_verb import region
 from .run_job import run_study
+from .serve_verb import serve
 from .set_verb import set_keys
 from .study_source import FILE, FILES, NONE, ONE, PERHAPS, SOME, StudyFiles
 from .sweep_verb import sweep
@@ -41,7 +63,8 @@ SEARCH = "evaluations seed method"
 
 class Verb(NamedTuple):
     """A verb: its name, its group in the help, its meaning; what it takes (`study_source`), the
-    names of its rows in `options`, what it does."""
+    names of its rows in `options`, beside ``--json``, what it does, and the type of what it prints
+    as JSON (`answers`)."""
 
     name: str
     group: str
@@ -49,15 +72,17 @@ class Verb(NamedTuple):
     takes: str
     options: str
     function: VerbFunction
+    answer: Any
 
-    def add(self, verbs: Any, source: StudyFiles) -> None:
-        """Add the verb to the parser of a command."""
-        parser = verbs.add_parser(self.name, help=self.about)
+    def add(self, verbs: Any, source: StudyFiles) -> Parser:
+        """Add the verb to the parser of a command; return its own parser."""
+        parser: Parser = verbs.add_parser(self.name, help=self.about)
         source.add_arguments(parser, self.takes)
-        add_options(parser, self.options)
+        add_options(parser, f"{self.options} json")
         parser.set_defaults(
             function=self.function, kind=self.name, source=source, usage_error=parser.error
         )
+        return parser
 
 
 class _InGroups(argparse.HelpFormatter):
@@ -77,7 +102,7 @@ class _InGroups(argparse.HelpFormatter):
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command and return its exit status (`terminal.EXIT_STATUSES`)."""
     open_missing_streams()
-    keep_freed_memory()
+    threads().keep_freed_memory()
     given = sys.argv[1:] if argv is None else argv
     return run(lambda: answer(parser().parse_args(given), "pe", given))
 
@@ -107,7 +132,7 @@ def command_parser(
 ) -> tuple[argparse.ArgumentParser, Any]:
     """Return the parser of a command with these verbs, and its action that takes further ones."""
     statuses = "; ".join(f"{number} {meaning}" for number, meaning in EXIT_STATUSES.items())
-    top: argparse.ArgumentParser = Parser(
+    top = Parser(
         prog=prog,
         description="Perception entropy of vehicle sensors.",
         formatter_class=_InGroups,
@@ -115,8 +140,10 @@ def command_parser(
     )
     top.add_argument("--version", action="version", version=version)
     verbs = top.add_subparsers(required=True, metavar="VERB")
-    for verb in rows:
-        verb.add(verbs, source)
+    parsers = [(verb, verb.add(verbs, source)) for verb in rows]
+    for pair in parsers:
+        pair[1].described = partial(described, prog, version, [pair])
+    top.described = partial(described, prog, version, parsers)
     return top, verbs
 
 
@@ -139,8 +166,17 @@ def _review(source: StudyFiles, args: argparse.Namespace) -> Answer:
     return page
 
 
+def _verify(source: StudyFiles, args: argparse.Namespace) -> Answer:
+    found: Answer = shipped("verify.engine")(args, source.versions)
+    return found
+
+
 def _job(source: StudyFiles, args: argparse.Namespace) -> Answer:
     return run_study(source.study(args), source, args)
+
+
+def _serve(source: StudyFiles, _: argparse.Namespace) -> Answer:
+    return serve(source, VERBS)
 
 
 def _where(source: StudyFiles, args: argparse.Namespace) -> Answer:
@@ -159,6 +195,7 @@ VERBS = (
         NONE,
         options="mesh_file rig placement set_found study_file replace",
         function=new,
+        answer=FilesAnswer | RigsAnswer,
     ),
     Verb(
         "set",
@@ -167,6 +204,7 @@ VERBS = (
         FILE,
         options="changes",
         function=set_keys,
+        answer=KeysAnswer,
     ),
     Verb(
         "import",
@@ -175,6 +213,7 @@ VERBS = (
         NONE,
         options="foreign_file from models origin mesh rear_axle study_file replace",
         function=import_study,
+        answer=FilesAnswer,
     ),
     Verb(
         "sensors",
@@ -183,62 +222,70 @@ VERBS = (
         NONE,
         options="sensor_name curves",
         function=show_sensors,
+        answer=CatalogAnswer | SensorAnswer | CurvesAnswer,
     ),
     Verb(
         "score",
         SCORE,
         "score a study's rig",
         ONE,
-        options=f"{COMMON} workers folder json",
+        options=f"{COMMON} workers folder",
         function=_job,
+        answer=ResultRecord,
     ),
     Verb(
         "explain",
         SCORE,
         "a study's score in words, or one place of it",
         ONE,
-        options=f"at body heading suggest class {COMMON} workers json",
+        options=f"at body heading suggest class {COMMON} workers",
         function=explain,
+        answer=ExplainAnswer,
     ),
     Verb(
         "check",
         SCORE,
         "hold a study to its requirements; 3: some are not met",
         PERHAPS,
-        options="preset stories list suggest set file json replace",
+        options="preset stories list suggest set file replace",
         function=check,
+        answer=CheckAnswer | PresetsAnswer,
     ),
     Verb(
         "compare",
         SCORE,
         "score several studies and put them side by side, or a built rig and its design",
         SOME,
-        options=f"beside built from rear_axle origin {COMMON} workers json",
+        options=f"beside built from rear_axle origin {COMMON} workers",
         function=compare,
+        answer=CompareAnswer | BuiltAnswer,
     ),
     Verb(
         "where",
         PLACE,
         "score one more sensor all over the vehicle's surface",
         ONE,
-        options="model of_part|mount figure places set workers file json replace",
+        options="model of_part|mount figure places set workers file replace",
         function=_where,
+        answer=WhereAnswer,
     ),
     Verb(
         "region",
         PLACE,
         "tell where a sensor may go while a figure loses little",
         ONE,
-        options="sensor figure loss others places set snap workers region_file json replace",
+        options="sensor figure loss others places set snap workers region_file replace",
         function=_region,
+        answer=RegionAnswer,
     ),
     Verb(
         "optimize",
         PLACE,
         "search for a better placement",
         PERHAPS,
-        options=f"{COMMON} {SEARCH} start snap workers executor folder|resume no_review json",
+        options=f"{COMMON} {SEARCH} start snap workers executor folder|resume no_review",
         function=_job,
+        answer=ResultRecord | FrontRecord,
     ),
     Verb(
         "sweep",
@@ -246,8 +293,9 @@ VERBS = (
         "run many studies, or one with many changes",
         FILES,
         options="try samples condition evaluations seed method optimize part workers executor "
-        "required_folder json",
+        "required_folder",
         function=sweep,
+        answer=SweepAnswer,
     ),
     Verb(
         "review",
@@ -257,6 +305,7 @@ VERBS = (
         options=f"title author date revision regions built from rear_axle origin {COMMON} "
         "workers required_folder replace",
         function=_review,
+        answer=FilesAnswer,
     ),
     Verb(
         "export",
@@ -265,5 +314,24 @@ VERBS = (
         ONE,
         options="to range origin rear_axle set path into replace",
         function=export,
+        answer=FilesAnswer,
+    ),
+    Verb(
+        "serve",
+        SHOW,
+        "answer requests of another program: JSON lines on standard input and output",
+        NONE,
+        options="",
+        function=_serve,
+        answer=Reply,
+    ),
+    Verb(
+        "verify",
+        MORE,
+        "hold the engine as it is installed to its golden cases; 3: some fail",
+        NONE,
+        options="folder",
+        function=_verify,
+        answer=VerifyAnswer,
     ),
 )

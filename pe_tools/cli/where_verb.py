@@ -3,19 +3,18 @@
 import argparse
 
 from pe_core import catalog
-from pe_core.base import dump_json
 from pe_core.base.errors import plural
 from pe_core.base.files import csv_text
-from pe_core.base.table_reader import finite
 from pe_core.scene.rig import Sensor
 from pe_core.sensors import kind_of
 from pe_core.study import Study
 
 from ..jobs import APART_M, BEST, PlaceMap, WhereJob
 from ..wording import aligned
+from .answers import WhereAnswer
 from .interrupts import Interrupted, stop_at_first
 from .run_job import drive, output_file, print_vehicle, save_text
-from .terminal import DONE, Answer
+from .terminal import DONE, Answer, answered
 
 
 def where(study: Study, args: argparse.Namespace) -> Answer:
@@ -40,7 +39,8 @@ def where(study: Study, args: argparse.Namespace) -> Answer:
     rows = found.rows()
     cells = ([v if v is not None else "" for v in row.values()] for row in rows)
     unwritten = save_text(table, csv_text([[*rows[0]], *cells]))
-    text = dump_json(finite(found.to_dict())) if args.json else "\n".join(place_lines(found))
+    places = WhereAnswer(**found.to_dict())
+    text = answered(args, places, place_lines(found))
     return text, unwritten or received.status(DONE)
 
 

@@ -9,7 +9,8 @@ from .front_files import FRONT_JSON, FRONT_NAMES, FRONT_PAGE, front_dict, write_
 from .front_job import FrontJob, FrontJournals, has_front
 from .job import HistoryRow, Job, Outcome, Progress, StartEnd, best_so_far
 from .region_job import RegionJob, region_mount, study_on_region
-from .results import SearchState, add_to_result, condition_lines, placements
+from .result_record import FrontRecord, OpenTable, PlacedSensors, ResultRecord, placements
+from .results import SearchState, add_to_result, condition_lines
 from .results import result_dict, result_names, write_outcome
 from .score_and_optimize import OptimizeJob, ScoreJob
 from .searched_figure import SearchedFigure, searched_figure, searched_on

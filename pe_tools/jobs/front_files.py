@@ -5,13 +5,15 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from pe_core.base.codec import record
 from pe_core.base.files import csv_text, file_stem
 from pe_core.base.table_reader import dump_json, finite
 from pe_core.study.file_names import STUDY
 from pe_core.study.study_file import study_to_dict
 
 from .folder import FileSet, Write, our_files, prepare_folder
-from .results import placements, run_dict
+from .result_record import FrontRecord, placements
+from .results import run_record
 from .study_export import study_writers
 from .trade_off import Design, TradeOff
 
@@ -29,24 +31,26 @@ def front_dict(chosen: TradeOff, host: Mapping[str, str] | None = None) -> dict[
     has versions of the host program by name."""
     files = {name: f"{DESIGNS}/{file}" for name, file in design_files(chosen).items()}
     selection = chosen.study.selection
-    data = {
-        "schema": FRONT_SCHEMA,
-        "kind": "front",
-        "seed": chosen.study.search.seed,
-        "currency": selection.currency,
-        "objectives": list(chosen.objectives),
-        "looked_at": len(chosen.designs) + len(chosen.refused),
-        "searched": chosen.searched,
-        "all_designs_looked_at": chosen.is_complete,
-        "stopped": chosen.stopped,
-        "front": [design.name for design in chosen.front],
-        "designs": [_design_dict(d, d in chosen.front, files.get(d.name)) for d in chosen.designs],
-        "refused": chosen.refused,
-        "notes": chosen.notes,
-        "inputs": {"study": study_to_dict(chosen.study)},
-        "run": run_dict(chosen.seconds, host or {}),
-    }
-    return finite(data)
+    made = FrontRecord(
+        schema=FRONT_SCHEMA,
+        kind="front",
+        seed=chosen.study.search.seed,
+        currency=selection.currency,
+        objectives=tuple(chosen.objectives),
+        looked_at=len(chosen.designs) + len(chosen.refused),
+        searched=chosen.searched,
+        all_designs_looked_at=chosen.is_complete,
+        stopped=chosen.stopped,
+        front=tuple(design.name for design in chosen.front),
+        designs=tuple(
+            _design_dict(d, d in chosen.front, files.get(d.name)) for d in chosen.designs
+        ),
+        refused=chosen.refused,
+        notes=chosen.notes,
+        inputs={"study": study_to_dict(chosen.study)},
+        run=run_record(chosen.seconds, host or {}),
+    )
+    return finite(record(made))  # type: ignore[no-any-return]
 
 
 def write_front(
@@ -129,7 +133,7 @@ def _design_dict(design: Design, on_front: bool, file: str | None) -> dict[str, 
         "stderr": None if score is None else score.stderr,
         "searched": score is not None,
         "models": {n: None if model is None else model.name for n, model in design.models.items()},
-        "placements": placements(design.study.rig),
+        "placements": record(placements(design.study.rig)),
         "warnings": [warning.to_dict() for warning in design.warnings],
         "study": file,
         "figures": {} if design.is_led_in else dict(design.figures),

@@ -6,14 +6,13 @@ import platform
 from collections.abc import Collection, Iterable, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
-from pe_core.base.codec import write
+from pe_core.base.codec import record, write
 from pe_core.base.files import csv_text
 from pe_core.base.table_reader import dump_json, finite
-from pe_core.scene.rig import Rig
 from pe_core.search import AXES, EvaluatedRig, Value
 from pe_core.study.condition_table import ConditionScore, ConditionTable
 from pe_core.study.file_names import (
@@ -35,9 +34,11 @@ from pe_core.version import __version__
 from ..wording import percent
 from .folder import PROGRAM, FileSet, Write, prepare_folder
 from .job import HistoryRow, Outcome
+from .result_record import End, InputsRecord, ResultRecord, RunRecord, placements
 from .searched_figure import IN_NATS, SearchedFigure
 from .study_export import fingerprint, inputs_of, study_text, study_writers
 
+T = TypeVar("T")
 VIOLATION = "violation"
 EntriesOfSearches = Mapping[str, Iterable[EvaluatedRig]]
 """Entries of journals by the names of their searches; empty: that of a job with one search."""
@@ -62,70 +63,70 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
     """
     start = outcome.start
     study = outcome.study
-    before = outcome.before
-    after = outcome.after
     is_search = outcome.kind == "optimize"
+    own = outcome.own
+    of_own = None if own is None else own.figure.key
+    objective = of_own if outcome.in_traffic is None else EXPECTED_AP
+    robustness = outcome.robustness
+    conditions = outcome.conditions
+    flatness = outcome.flatness
+    rounding = outcome.rounding
+    agreed = outcome.consensus
     figure = outcome.figure
-    data: dict[str, Any] = {
-        "schema": SCHEMA,
-        "kind": outcome.kind,
-        "seed": study.search.seed,
-        "entropy": after.entropy,
-        "coverage": after.coverage,
-        "before": before.to_dict(),
-        "after": after.to_dict(),
-        "placements": {"before": placements(start.rig), "after": placements(study.rig)},
-        "mounts": mounts_table(study.rig, study.search.mounting),
-    }
-    if outcome.robustness is not None:
-        data["robustness"] = outcome.robustness.to_dict()
-    if outcome.verdicts:
-        data["requirements"] = [each.to_dict() for each in outcome.verdicts]
-    if outcome.conditions is not None:
-        data["conditions"] = outcome.conditions.to_dict()
-    data["method"] = start.search.method if is_search else None
-    data["level_samples"] = list(start.level_samples) if is_search else []
-    if outcome.in_traffic is not None:
-        first, last = (each.to_dict() for each in outcome.in_traffic)
-        data |= {"objective": EXPECTED_AP, EXPECTED_AP: {"before": first, "after": last}}
-    if (own := outcome.own) is not None:
-        data |= {"objective": own.figure.key, "value": {"before": own.before, "after": own.after}}
-    if outcome.figures is not None:
-        first, last = (each.to_dict() for each in outcome.figures)
-        data["figures"] = {"before": first, "after": last}
-    data["dashboard"] = [each.to_dict() for each in outcome.dashboard]
-    if is_search:
-        data["gain"] = outcome.gain
-        data["cost"] = outcome.cost
-        data["change_stderr"] = outcome.change_errors
-    data["ap_model"] = study.model.model
-    data["returns"] = study.returns
-    if is_search:
-        flat = outcome.flatness
-        data["flatness"] = None if flat is None else flat.to_dict()
-        rounding = outcome.rounding
-        data["rounding"] = None if rounding is None else rounding.to_dict()
-        agreed = outcome.consensus
-        data["consensus"] = None if agreed is None else agreed.to_dict()
-        data["starts"] = [
+    made = ResultRecord(
+        schema=SCHEMA,
+        kind=outcome.kind,  # type: ignore[arg-type]
+        seed=study.search.seed,
+        entropy=outcome.after.entropy,
+        coverage=outcome.after.coverage,
+        before=outcome.before,
+        after=outcome.after,
+        placements={"before": placements(start.rig), "after": placements(study.rig)},
+        mounts=mounts_table(study.rig, study.search.mounting),
+        robustness=None if robustness is None else robustness.to_dict(),
+        requirements=tuple(each.row for each in outcome.verdicts) or None,
+        conditions=None if conditions is None else conditions.to_dict(),
+        method=start.search.method if is_search else None,
+        level_samples=tuple(start.level_samples) if is_search else (),
+        objective=objective,
+        expected_ap=_ends(outcome.in_traffic),
+        value=None if own is None else {"before": own.before, "after": own.after},
+        figures=_ends(outcome.figures),
+        dashboard=tuple(each.row for each in outcome.dashboard),
+        gain=outcome.gain if is_search else None,
+        cost=outcome.cost if is_search else None,
+        change_stderr=outcome.change_errors if is_search else None,
+        ap_model=study.model.model,
+        returns=study.returns,
+        flatness=None if flatness is None else flatness.to_dict(),
+        rounding=None if rounding is None else rounding.to_dict(),
+        consensus=None if agreed is None else agreed.to_dict(),
+        starts=tuple(
             {"name": e.name, **_value(figure, e.value), "evaluations": e.evaluations}
             for e in outcome.starts
-        ]
-        data["stop_reason"] = outcome.stop_reason or None
-        data["seed_scatter"] = outcome.seed_scatter
-    data |= {
-        "evaluations": outcome.evaluations,
-        "stopped": outcome.stopped,
-        "warnings": [each.to_dict() for each in outcome.warnings],
-        "history": [
-            {"evaluation": row.evaluation, "round": row.round}
-            | {**_value(figure, row.value), "placements": placements(row.rig)}
+        ),
+        stop_reason=outcome.stop_reason or None,
+        seed_scatter=outcome.seed_scatter,
+        evaluations=outcome.evaluations,
+        stopped=outcome.stopped,
+        warnings=outcome.warnings,
+        history=tuple(
+            {
+                "evaluation": row.evaluation,
+                "round": row.round,
+                **_value(figure, row.value),
+                "placements": placements(row.rig),
+            }
             for row in outcome.history
-        ],
-        "inputs": outcome.inputs or inputs_of(start),
-        "run": run_dict(outcome.seconds, host or {}),
-    }
-    return finite(data)  # type: ignore[no-any-return]
+        ),
+        inputs=InputsRecord(**(outcome.inputs or inputs_of(start))),
+        run=run_record(outcome.seconds, host or {}),
+    )
+    return finite(record(made))  # type: ignore[no-any-return]
+
+
+def _ends(both: tuple[T, T] | None) -> dict[End, T] | None:
+    return None if both is None else {"before": both[0], "after": both[1]}
 
 
 def _value(figure: SearchedFigure, value: Value) -> dict[str, float | None]:
@@ -133,19 +134,11 @@ def _value(figure: SearchedFigure, value: Value) -> dict[str, float | None]:
     return dict(zip((figure.key, VIOLATION), figure.cells(value), strict=True))
 
 
-def run_dict(seconds: float, host: Mapping[str, str]) -> dict[str, Any]:
+def run_record(seconds: float, host: Mapping[str, str]) -> RunRecord:
     """Return the part of a result about the run: its duration, and versions of the programs."""
     own = {"perception-entropy": __version__, "numpy": np.__version__}
     versions = {**own, "python": platform.python_version(), **host}
-    return {"seconds": round(seconds, 3), "versions": versions}
-
-
-def placements(rig: Rig) -> dict[str, dict[str, list[float]]]:
-    """Return position [m] and roll, pitch, yaw [deg] of every sensor by name."""
-    return {
-        s.name: {"position": list(s.pose.position), "rotation": list(s.pose.rotation_deg)}
-        for s in rig
-    }
+    return RunRecord(round(seconds, 3), versions)
 
 
 def write_outcome(

@@ -19,12 +19,14 @@ if TYPE_CHECKING:
     from .report_context import About as About
     from .report_context import ReportContext as ReportContext
     from .report_context import keyed_contexts as keyed_contexts
+    from .verification import verification_page as verification_page
 
 _MODULES = {
     **dict.fromkeys(("review_studies", "write_front_page", "write_search_page"), "build"),
     **dict.fromkeys(("PAGE", "page_bytes", "write_page"), "document"),
     **dict.fromkeys(("picture_file", "vehicle_picture"), "pictures.vehicle_picture"),
     **dict.fromkeys(("About", "ReportContext", "keyed_contexts"), "report_context"),
+    "verification_page": "verification",
 }
 __all__ = sorted(_MODULES)
 

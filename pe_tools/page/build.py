@@ -45,7 +45,7 @@ def review_studies(
         for name, study in by_name.items()
     ]
     path = write_page(contexts, args.output, replace=args.replace, about=about)
-    return str(path), app.DONE
+    return app.answered(args, app.FilesAnswer(written=(str(path),)), [str(path)]), app.DONE
 
 
 def _asked(study: pe.Study, args: argparse.Namespace) -> dict[str, Any]:

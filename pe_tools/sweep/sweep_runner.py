@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pe_core.base.errors import InputError
+from pe_core.base.lazy_threads import threads
 from pe_core.search import Call, WorkerDied, run_tasks, start_processes
-from pe_core.search.payload import keep_freed_memory
 from pe_core.study import Study
 from pe_core.version import __version__
 
@@ -48,7 +48,7 @@ def run_task(task: RunTask) -> RunResult:
     if task.version != __version__:
         expected = f"{task.version}, the version of the program that sent the study"
         return InputError("worker", "version", expected, __version__)
-    keep_freed_memory()
+    threads().keep_freed_memory()
     save: Callable[[], object] | None = None
     try:
         kind = OptimizeJob if task.optimize else ScoreJob

@@ -15,6 +15,7 @@ import numpy as np
 
 import pe_core as pe
 import pe_tools as pt
+from pe_core.base import record
 from pe_core.metric import H_BLIND
 from pe_core.scoring import VoxelSample, draw
 from pe_tools.formats import fit_ap_curve, read_ap_table
@@ -234,7 +235,7 @@ def search(
         "coverage": outcome.after.coverage,
         "start_entropy": outcome.before.entropy,
         "evaluations": outcome.evaluations,
-        "placements": placements(outcome.study.rig),
+        "placements": record(placements(outcome.study.rig)),
     }
 
 

@@ -56,7 +56,8 @@ body_query: analysis_calls bridge choices engine engine_process sensor_cache veh
 where_map: bridge engine signals
 housing: engine sensor_cache sensor_kinds
 library:
-preferences_panel: library own_catalog panel_text properties signals
+verification: engine engine_process signals
+preferences_panel: library own_catalog panel_text properties signals verification
 live: analysis_calls bridge change_events choices engine engine_calls engine_process panel_text
     sensor_cache signals vehicle_cache viewport
 best_so_far: engine
@@ -72,7 +73,7 @@ overlay.draw_handler: body_query bridge engine engine_process overlay overlay.sc
 operators: best_so_far body_query bridge choices diagnostics engine engine_calls engine_process
     english film housing library live location_query overlay overlay.scheduler
     overlay.surroundings own_jobs panel_text properties result_staleness sensor_cache sensor_kinds
-    signals variant_pictures vehicle_cache view_settings viewport where_map
+    signals variant_pictures vehicle_cache verification view_settings viewport where_map
 panels: body_query bridge choices diagnostics engine live location_query operators panel_text
     properties sensor_cache sensor_kinds where_map
 commands: bridge engine film result_staleness

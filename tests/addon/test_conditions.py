@@ -9,7 +9,7 @@ import pytest
 
 import pe_core as pe
 from blender_addon import bridge, result_staleness, vehicle_cache
-from blender_addon.live import state
+from blender_addon.live import shown_score, state
 from tests.addon import scenes
 from tests.engine import shapes
 
@@ -178,10 +178,10 @@ def test_the_stored_score_is_not_shown_as_that_of_another_state(car):
         entropy=2.5, coverage=0.5, stderr=0.01, per_class={}, per_zone={}, per_sensor={}, voxels=10
     )
     live.put(state.LiveScore(summary, baseline=None, exact=True, rig=None, number=live.requests))
-    assert state.shown_score(car).stored
+    assert shown_score(car).stored
     car.frame_set(OPEN_FRAME)
     idle()
     live.put(state.LiveScore(summary, baseline=None, exact=True, rig=None, number=live.requests))
-    found = state.shown_score(car)
+    found = shown_score(car)
     assert (found.entropy, found.stored, found.state) == (2.5, False, "door open")
     assert not settings.result_stale

@@ -120,6 +120,17 @@ def test_simple_has_eight_headers_at_most_and_no_terms(car):
     assert json.loads(car.perception_entropy.result_json)["dashboard"]
 
 
+def test_simple_has_few_panels_fields_and_buttons(car):
+    """What no designer presses in the first hour is in *All*."""
+    bpy.ops.pe.add_row(rows="requirements", kind="ncap26_reverse_static")
+    bpy.ops.pe.save_variant()
+    bpy.ops.pe.score()
+    notes = [n for cls in panels(car) for n in layouts.drawn(cls, **vars(window(car))).notes]
+    drawn = [kind for kind, *_ in notes]
+    assert len(panels(car)) <= 8
+    assert drawn.count("prop") <= 30 and drawn.count("operator") <= 30
+
+
 def test_all_panels_are_drawn_before_there_is_a_score(car):
     car.perception_entropy.panels = "ALL"
     for cls in panels(car):

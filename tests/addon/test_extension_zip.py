@@ -2,6 +2,7 @@
 
 import ast
 import os
+import re
 import subprocess
 import sys
 import tomllib
@@ -126,6 +127,17 @@ def test_the_code_takes_no_network_and_runs_no_text_and_the_add_on_has_no_thread
         calls = (node.func for node in ast.walk(tree) if isinstance(node, ast.Call))
         offenders += [(name, f.id) for f in calls if isinstance(f, ast.Name) and f.id in RUNS_TEXT]
     assert offenders == []
+
+
+def test_threads_c_and_the_search_path_are_where_the_notes_for_reviewers_say(contents):
+    notes = (ROOT / "docs/installing.md").read_text("utf-8").partition("## Notes for who")[2]
+    found = set()
+    for name, data in contents.items():
+        if name.endswith(".py"):
+            imports = set(imported_by(ast.parse(data)))
+            if imports & {"threading", "_thread", "ctypes"} or b"sys.path." in data:
+                found.add(name)
+    assert found == set(re.findall(r"`(pe_\w+/[\w/]+\.py)`", notes.partition("\n## ")[0]))
 
 
 def test_the_zip_is_small_and_has_no_file_that_is_not_ours(contents, archive):

@@ -16,9 +16,23 @@ from blender_addon import (
     signals,
 )
 from blender_addon.engine import advice
-from blender_addon.live import readout, readout_text, session, state, told_figures
+from blender_addon.live import (
+    AT_REST,
+    MOVING,
+    OUT_OF_DATE,
+    PENDING,
+    STORED,
+    readout,
+    readout_text,
+    session,
+    shown_score,
+    state,
+)
+from blender_addon.overlay import snapshot
+from blender_addon.panels import main
+from blender_addon.panels.dashboard import HEADS
 from pe_core.sensors.kernels import DefinedSample
-from tests.addon import scenes
+from tests.addon import layouts, scenes
 
 SAMPLES = 4096
 
@@ -158,18 +172,18 @@ def test_one_score_is_shown_at_a_time(live, monkeypatch):
     """Panel and read-out take theirs from here: live, or stored where that is of the scene."""
     bpy.ops.pe.score()
     rest()
-    score = state.shown_score(live)
+    score = shown_score(live)
     settings = live.perception_entropy
     assert score.stored and score.exact and score.entropy == settings.result.entropy
     drag(live.objects["roof"])
     now = reading(live).summary
-    assert state.shown_score(live)[:5] == (now.entropy, now.coverage, now.stderr, False, False)
-    rest()
+    assert (shown_score(live).now, shown_score(live).phase) == (now, MOVING)
     result_staleness.update_result()
+    rest()
     now = reading(live).summary
-    assert state.shown_score(live)[:5] == (now.entropy, now.coverage, now.stderr, True, False)
+    assert (shown_score(live).now, shown_score(live).phase) == (now, AT_REST)
     settings.live.on = False
-    assert state.shown_score(live) is None, "the panel draws the stored result, which is marked"
+    assert shown_score(live).phase == OUT_OF_DATE and shown_score(live).pair is None
 
 
 def test_after_undo_and_redo_the_result_that_came_back_is_shown(live):
@@ -184,31 +198,31 @@ def test_after_undo_and_redo_the_result_that_came_back_is_shown(live):
     bpy.ops.ed.undo_push(message="moved")
     bpy.ops.ed.undo()
     scene = bpy.context.scene
-    shown = state.shown_score(scene)
+    shown = shown_score(scene)
     assert shown.stored and shown.entropy == scene.perception_entropy.result.entropy != moved
     assert state.live_state(scene.name).note == ""
-    rows = readout.rows_of(reading(scene), "", shown)
+    rows = readout.rows_of(shown)
     assert rows[0].words[0][0] == f"{shown.entropy:.3f} nats"
     bpy.ops.ed.redo()
-    assert state.shown_score(bpy.context.scene) is None, "it was stale: nothing is known yet"
+    assert shown_score(bpy.context.scene).phase == OUT_OF_DATE
     rest()
-    assert state.shown_score(bpy.context.scene).entropy == moved
+    assert shown_score(bpy.context.scene).entropy == moved
 
 
 def test_the_figures_are_the_engine_s_and_of_before_while_it_moves(live, monkeypatch):
     live.perception_entropy.live.figures = True
     looking = scenes.study().sight()
     first = advice.KeyFigures.of_rig(looking, reading(live).rig)
-    assert told_figures(live, live=True)[-1] == first
+    assert shown_score(live).figures[-1] == first
     monkeypatch.setattr(session, "_moving_operator", lambda: 4711)
     drag(live.objects["roof"], 0.6)
-    assert told_figures(live, live=True) == [first], "of before this move"
+    assert shown_score(live).figures == (first,), "of before this move"
     rest()
     second = advice.KeyFigures.of_rig(looking, reading(live).rig)
-    assert second != first and told_figures(live, live=True) == [first, second]
+    assert second != first and shown_score(live).figures == (first, second)
     live.perception_entropy.targets = "objects"
     rest()
-    assert told_figures(live, live=True)[-1].reach == {}, "reaches are in the score"
+    assert shown_score(live).figures[-1].reach == {}, "reaches are in the score"
 
 
 def test_only_what_moved_is_measured_and_the_vehicle_is_not_read(live, monkeypatch):
@@ -290,16 +304,55 @@ def test_without_a_window_nothing_follows(car):
     assert reading(car) is None
 
 
-def test_a_search_s_gain_is_that_of_its_result(live):
-    bpy.ops.pe.score()
+def both(scene):
+    """What panel and read-out say: entropies, and whether these are of a scene at rest."""
+    shown = shown_score(scene)
+    text = readout_text.readout_of(shown)
+    drawn = layouts.drawn(main.main, **vars(layouts.Window(scene, scene.objects["roof"])))
+    labels = drawn.texts("label")
+    now = f"{shown.entropy:.3f}"
+    before = shown.before("entropy")
+    assert now in labels and text.headline.startswith(now)
+    assert HEADS[shown.phase][0] in " ".join(labels)
+    assert shown.phase in readout_text.state_of(shown)
+    assert f"({before:.3f})" in labels if text.sense else text.change in ("", "no change")
+    if shown.label:
+        scene.perception_entropy.view.ground_difference = True
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        request = snapshot.SnapshotReader().request(scene, depsgraph, moving=False)
+        assert request.compared_name == shown.label
+    return text, shown
+
+
+def test_panel_and_read_out_say_the_same_in_a_drag_after_undo_and_after_a_search(live, monkeypatch):
+    """After a search and Esc its gain stood above zones of the drag before it."""
     settings = live.perception_entropy
-    data = json.loads(settings.result_json)
-    data["before"]["entropy"] = data["entropy"] + 0.25
-    data["kind"] = "optimize"
-    settings.result_json = json.dumps(data)
+    bpy.ops.pe.score()
     rest()
-    text = readout_text.readout_of(reading(live), state.shown_score(live))
+    assert both(live)[1].phase == STORED and both(live)[0].against == ""
+    drag(live.objects["roof"], 0.6)
+    monkeypatch.setattr(engine_process, "ask", lambda *_, **__: None)  # a machine that is busy
+    assert both(live)[1].phase == MOVING and both(live)[0].against
+    result_staleness.update_result()
+    rest()
+    assert both(live)[1].phase == PENDING
+    monkeypatch.undo()
+    monkeypatch.setattr(engine_calls, "SAMPLES", SAMPLES)
+    for module in (change_events, session):
+        monkeypatch.setattr(module, "bpy", Window)
+    rest()
+    text, shown = both(live)
+    assert (shown.phase, text.against) == (AT_REST, "compared with before this move")
+    assert shown.before("entropy") == shown.pair[0].entropy != shown.entropy
+
+    bpy.ops.pe.score()
+    rest()
+    data = json.loads(settings.result_json)
+    data["before"] = {**data["before"], "entropy": data["entropy"] + 0.25}
+    settings.result_json = json.dumps({**data, "kind": "optimize"})
+    text, shown = both(live)
     assert (text.change, text.against) == ("0.250 better", "compared with before the search")
+    assert not [line for line in text.lines if line[0].text.startswith(("Better", "Worse"))]
     assert bpy.ops.pe.save_variant() == {"FINISHED"}
-    live.perception_entropy.live.reference = str(live.perception_entropy.variants[0].key)
-    assert state.shown_score(live).before is None, "compared with something else"
+    settings.live.reference = str(settings.variants[0].key)
+    assert both(live)[0].against == f"compared with {settings.variants[0].name}"

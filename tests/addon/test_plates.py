@@ -4,7 +4,7 @@ import pytest
 
 from blender_addon import viewport
 from blender_addon.engine import graphics
-from blender_addon.overlay.labels import arranged
+from blender_addon.overlay.labels import Surroundings, arranged, folded
 
 READOUT = (20.0, 40.0, 320.0, 240.0)
 CAR = (500.0, 150.0, 900.0, 560.0)
@@ -47,3 +47,20 @@ def test_in_a_narrow_view_no_legend_is_lost_or_over_the_car(readout):
         assert not any(graphics.boxes_overlap(box, other) for other in others)
         if not readout:
             assert not graphics.boxes_overlap(box, CAR)
+
+
+@pytest.mark.parametrize("area", [1e9, 60_000.0])
+@pytest.mark.parametrize("car", [CAR, (150.0, 40.0, 1000.0, 560.0), None])
+def test_plates_fold_before_they_cover_the_car_or_a_quarter_of_the_view(car, area):
+    """The last folds first; what is not over the car stays whole."""
+    around = Surroundings(ROOM, [GIZMOS, SIDEBAR], car, 12.0)
+    title = 25.0
+    boxes = folded(LEGENDS, title, around, area)
+    shown = [box for box in boxes if box is not None]
+    assert not any(car and graphics.boxes_overlap(box, car) for box in shown)
+    pairs = zip(boxes, LEGENDS, strict=True)
+    whole = [box is not None and box[3] - box[1] == high for box, (_, high) in pairs]
+    assert whole == sorted(whole, reverse=True), "a later one is whole, an earlier one folded"
+    covered = sum((box[2] - box[0]) * (box[3] - box[1]) for box in shown)
+    assert covered <= area or not any(whole)
+    assert all(whole) == (area == 1e9 and car in (CAR, None))

@@ -8,6 +8,8 @@ OFFERS = (
     "__import__('bl_ext.user_default.perception_entropy.where_map', fromlist=['offers'])"
     ".offers.get(bpy.context.window_manager.windows[0].scene.name)"
 )
+ADDON = "bl_ext.user_default.perception_entropy"
+MODE = f"__import__('{ADDON}.operators.modes', fromlist=['current']).current"
 BLIND = (0.4, 1.7, 0.0)
 PROMISED = f"""
 own = {OFFERS}.found
@@ -58,6 +60,7 @@ def test_save_move_come_back_ask_the_ground_and_mend_what_is_blind_by_clicks(win
     second = window.state["answer"]
     window.point_at_view()
     window.key("Escape")
+    window.wait_until(f"{MODE} is None")
     assert not window.state["running"], "what would mend it waits until it is asked"
     window.press("pe.suggest")
     window.wait_until(f"{OFFERS} and {OFFERS}.found", EFFECT_TIMEOUT_S)

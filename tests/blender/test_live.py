@@ -33,10 +33,26 @@ window.view_layer.objects.active = window.scene.objects["roof_lidar"]
 """
 
 
+RECORD = f"""
+from {NAME}.live import readout
+from {NAME}.panels import dashboard
+def recorded(module, who):
+    plain = module.for_drawing
+    def for_drawing(scene):
+        found = plain(scene)
+        kept[who] = None if found is None else [found.phase, found.label, *found.signature[:2]]
+        return found
+    module.for_drawing = for_drawing
+for who, module in (("panel", dashboard), ("readout", readout)):
+    recorded(module, who)
+"""
+
+
 @pytest.fixture
 def live(stage):
     """A window on the sedan, the live score switched on by its button."""
     stage.do(CALM)
+    stage.do(RECORD)
     _, y = stage.find_button("pe.score")
     sidebar = json.loads((stage.folder / "ready.json").read_text())["sidebar"]
     stage.click(round(sidebar["left"] + LIVE_COLUMN * sidebar["width"]), y)
@@ -65,6 +81,20 @@ def grab_and_move(stage, moves=MOVES):
         stage.rest(0.1)
 
 
+def drawn(stage, phase):
+    """Wait until panel and read-out are drawn in a phase; both then show one state."""
+    both = stage.do("pass", redraw=False)
+
+    def is_drawn():
+        nonlocal both
+        both = stage.do("pass", redraw=False)
+        return [both["panel"][0], both["readout"][0]] == [phase, phase]
+
+    stage.wait_for(is_drawn, EFFECT_TIMEOUT_S, f"panel and read-out {phase}")
+    assert both["panel"] == both["readout"]
+    return both["panel"]
+
+
 def next_exact(stage, after, moved_from=None):
     """Wait for the exact score of what stands there after another reading, and after a move."""
 
@@ -85,6 +115,7 @@ def test_a_drag_is_followed_and_ends_exact_to_the_bit(live, screenshots, install
     live.wait_for(lambda: live.state["live"].get("before") == start, EFFECT_TIMEOUT_S, "a score")
     assert live.state["live"]["entropy"] != start
     live.photograph(screenshots / "window_live_drag.png")
+    assert drawn(live, "at rest")[1] == "before this move"
     held = next_exact(live, begun)  # held still until it is scored
     assert held["before"] == start
     live.mouse("click", 1)
@@ -109,9 +140,11 @@ def test_a_drag_is_followed_and_ends_exact_to_the_bit(live, screenshots, install
     # On a busy machine the end of the move may be scored once more before the key is heeded.
     live.wait_for(lambda: wait_for_rest(live) == end, EFFECT_TIMEOUT_S, "the score from before")
     assert live.state["live"]["before"] == end
+    assert drawn(live, "at rest")[2] == end
 
     live.key("ctrl+z")
     live.wait_for(lambda: wait_for_rest(live) == start, EFFECT_TIMEOUT_S, "the start's score")
+    assert drawn(live, "at rest")[2] == start
     assert "Traceback" not in live.log.read_text()
 
 

@@ -8,6 +8,8 @@ FOUND = (
     "__import__('bl_ext.user_default.perception_entropy.where_map', fromlist=['maps'])"
     ".maps.get(bpy.context.window_manager.windows[0].scene.name)"
 )
+ADDON = "bl_ext.user_default.perception_entropy"
+MODE = f"__import__('{ADDON}.operators.modes', fromlist=['current']).current"
 NEAREST = f"""
 found = {FOUND}
 look = area.spaces.active.region_3d.view_matrix.inverted().translation
@@ -27,7 +29,18 @@ def test_the_body_is_coloured_and_a_click_places_the_sensor(window, screenshots)
     window.wait_until(f"{FOUND} and {FOUND}.error is not None", PLACES_TIMEOUT_S)
     window.screenshot(screenshots / "window_where.png", aside=False)
 
+    window.wait_until(f"{MODE} is None")  # it begins by its button
+    window.press("pe.take_place")
+    window.wait_until(f"{MODE} is not None")
+    window.point_at_view()
+    window.key("g")  # another tool ends it
+    window.wait_until(f"{MODE} is None")
+    window.key("Escape")
+    window.press("pe.take_place")
+    window.wait_until(f"{MODE} is not None")
     near = window.do(NEAREST)
+    window.hover(*window.place_of(tuple(near["point"])))
+    window.screenshot(screenshots / "window_pick_a_place.png", aside=False)
     window.click(*window.place_of(tuple(near["point"])))
     window.wait_for(
         lambda: len(window.state["sensors"]) == len(before) + 1, EFFECT_TIMEOUT_S, "the sensor"
@@ -37,6 +50,7 @@ def test_the_body_is_coloured_and_a_click_places_the_sensor(window, screenshots)
         max(abs(a - b) for a, b in zip(window.state["places"][added], near["at"], strict=True))
         < 0.5
     )
+    window.wait_until(f"{MODE} is None")
     window.point_at_view()
     window.key("ctrl+z")
     window.wait_for(lambda: window.state["sensors"] == before, EFFECT_TIMEOUT_S, "undo")

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from tests.engine import oracle
+from pe_tools.verify import oracle
 
 FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 

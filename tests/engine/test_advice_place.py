@@ -8,7 +8,8 @@ import pytest
 import pe_core as pe
 from pe_core.metric import average_precision, entropy_of, late_fusion, precision_of
 from pe_tools import advice
-from tests.engine import oracle, shapes
+from pe_tools.verify import oracle
+from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused
 from tests.thorough import tries
 

@@ -17,7 +17,8 @@ from pe_core.scoring.sight import Sight, blind_ground
 from pe_core.scoring.sight.blind_ground import body_rectangle
 from pe_core.scoring.sight.ground_cells import GroundCells, dilated, squares_touching, widened
 from pe_tools.graphics import simplified
-from tests.engine import oracle, shapes
+from pe_tools.verify import oracle
+from tests.engine import shapes
 
 ASSETS = Path(__file__).parents[2] / "blend_assets"
 SPACE = pe.PerceptionSpace((-12, 12), (-10, 10), (0, 3), 0.1)

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from tests.engine import oracle, shapes
+from pe_tools.verify import oracle
+from tests.engine import shapes
 from tests.engine.kernels import FLAT, every_voxel, on_grid, on_sample
 from tests.thorough import pairs
 

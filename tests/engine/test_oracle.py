@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from tests.engine import oracle, shapes
+from pe_tools.verify import oracle
+from tests.engine import shapes
 
 SIDE = 0.1
 LIDARS = {

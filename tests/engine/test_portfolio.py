@@ -57,7 +57,7 @@ def test_a_smooth_valley_is_found():
     rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"))
     target = {"x": 0.71, "y": -0.33, "z": 1.9, "pitch": 0.1}
     recorder, steps = searched(distance_to(target), rig, space)
-    assert 0 <= len(recorder.rigs) - portfolio.budget(2) < 50
+    assert 0 <= len(recorder.rigs) - portfolio.default_budget(2) < 50
     assert math.sqrt(steps[-1].entropy) < 0.02 < math.sqrt(steps[0].entropy) / 50
 
 

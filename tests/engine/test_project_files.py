@@ -19,6 +19,8 @@ import fresh_machine
 GITHUB = ROOT / ".github"
 
 
+OPTIONAL = ("distributed", "matplotlib", "pandas", "tqdm", "pyarrow", "pycollada", "usd-core")
+"""Libraries that pe_core and pe_tools take where they are installed."""
 DEBIAN_LIBS = (ROOT / "tools/debian_libs.sh").read_text("utf-8")
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
 
@@ -106,6 +108,29 @@ def test_what_is_pinned_can_be_had_on_debian_12(requirement):
     if found["Version"] != version:
         pytest.skip(f"{requirement} is not installed")
     assert SpecifierSet(found["Requires-Python"] or "").contains("3.11.2")
+
+
+def test_the_policy_of_blender_versions_is_that_of_manifest_and_tests():
+    """Two LTS, both tested as Python modules; the least version is the manifest's, none is last."""
+    manifest = tomllib.loads((ROOT / "blender_addon/blender_manifest.toml").read_text("utf-8"))
+    text = (ROOT / "docs/platforms.md").read_text("utf-8").partition("## Which Blender")[2]
+    lts = re.findall(r"(\d\.\d) LTS", text.partition("\n## ")[0])
+    tested = PYPROJECT["project"]["optional-dependencies"]["blender"]
+    assert [re.search(r"bpy==(\d\.\d)", line)[1] for line in tested] == lts and len(lts) == 2
+    assert f"least version is {manifest['blender_version_min']}" in " ".join(text.split())
+    assert "blender_version_max" not in manifest
+    assert manifest["blender_version_min"].split(".") <= [*lts[0].split("."), "0"]
+
+
+def test_every_extra_is_used_and_every_library_that_may_be_missing_has_one():
+    """An extra is installed by a target of the Makefile, or named where it is needed."""
+    extras = PYPROJECT["project"]["optional-dependencies"]
+    texts = " ".join(instructions_for_people_and_machines().values())
+    named = r"\[(?:[\w,]+,)?{0}(?:,[\w,]+)?\]|make_venv\.sh (?:[\w,]+,)?{0}[, ]|`{0}`"
+    assert [name for name in extras if not re.search(named.format(name), texts)] == []
+    listed = " ".join(chain.from_iterable(extras.values()))
+    assert [name for name in OPTIONAL if name not in listed] == []
+    assert "trimesh>=5.2,<6" in PYPROJECT["project"]["dependencies"]
 
 
 def test_no_address_is_given_out_that_is_not_there_yet():

@@ -14,9 +14,9 @@ from pe_core.scoring.requirements import BODIES, Body, Criterion, sees
 from pe_core.sensors.radar import Reflectivity, detection_probability, signal_to_noise, snr_for
 from pe_tools.advice.mount_checks import SensorAtBody, odd_mounting
 from pe_tools.advice.vehicle_checks import Bodywork
+from pe_tools.verify.radar_oracle import expected_detections
 from tests.engine import shapes
 from tests.engine.kernels import every_voxel
-from tests.engine.radar_oracle import expected_detections
 
 ARS = "Continental ARS408-21"
 MODE = {

@@ -18,7 +18,8 @@ from pe_core.scoring.requirements import (
 )
 from pe_core.scoring.requirements.definition import parts_of, visible_share
 from pe_core.sensors import ObjectMeasurementCache, kind_of
-from tests.engine import oracle, shapes
+from pe_tools.verify import oracle
+from tests.engine import shapes
 from tests.engine.requirement_scene import AHEAD, check, rig, van
 from tests.thorough import tries
 

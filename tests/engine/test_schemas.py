@@ -16,7 +16,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 import schemas
 
 MADE = schemas.pages()
-STUDY_SCHEMA, RESULT_SCHEMA = map(json.loads, MADE.values())
+STUDY_SCHEMA, RESULT_SCHEMA, _ = map(json.loads, MADE.values())
 STUDIES = sorted(
     path
     for folder in ("examples", "blend_assets")

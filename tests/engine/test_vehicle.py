@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from tests.engine import oracle, shapes
+from pe_tools.verify import oracle
+from tests.engine import shapes
 
 
 def random_directions(rng, count):

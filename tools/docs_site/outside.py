@@ -13,6 +13,7 @@ PAGES = {
     "ARCHITECTURE.md": "project/architecture.md",
     "CONTRIBUTING.md": "project/contributing.md",
     "SECURITY.md": "project/security.md",
+    "AGENTS.md": "project/agents.md",
     "benchmarks/README.md": "project/benchmarks.md",
     "blend_assets/README.md": "project/vehicles.md",
 }

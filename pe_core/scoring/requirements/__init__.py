@@ -10,6 +10,7 @@ from .verdict import (
     Reason,
     Samples,
     Verdict,
+    VerdictRow,
     VerdictSummary,
     margin_of,
     part_in_the_way,

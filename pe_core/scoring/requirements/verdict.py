@@ -6,15 +6,17 @@ to the safe side: a step is taken off, and they are rounded down to the centimet
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Flags, Floats, Ints
+from ...base.codec import record
 from ...base.notebook import ShortRepr
+from ...base.setting import Part
 from ...scene.rig import Rig, Sensor
 from ...scene.vehicle import Vehicle
 from ...sensors import kind_of
@@ -202,6 +204,31 @@ class VerdictSummary:
     worst: tuple[float, float] | None
 
 
+@dataclass(frozen=True, slots=True)
+class VerdictRow:
+    """A verdict as result.json has it: the summary, and why; other fields are as in `Verdict`.
+
+    `preset`: Name of the requirement's preset, if it is one. `fewest_sensors`, `most_sensors`: that
+    see a body in the zone. `blind_out_m`, `spare_m2`, `spare_out_m`: as in `GroundFigures`.
+    `planes`: How the planes of the vehicle were found.
+    """
+
+    summary: Annotated[VerdictSummary, Part(inline=True)]
+    preset: str | None
+    source: str | None
+    met_whole: bool
+    worst_body: str | None
+    seen_by: tuple[str, ...]
+    unseen_by: Mapping[str, Reason]
+    without: Mapping[str, bool]
+    fewest_sensors: int
+    most_sensors: int
+    blind_out_m: float | None
+    spare_m2: float | None
+    spare_out_m: float | None
+    planes: Mapping[str, Any]
+
+
 @dataclass(frozen=True, eq=False)
 class Verdict(ShortRepr):
     """A verdict on one requirement.
@@ -281,24 +308,31 @@ class Verdict(ShortRepr):
         """Sensors whose loss breaks a requirement that the whole rig meets."""
         return tuple(n for n, met in self.without.items() if not met) if self.met_whole else ()
 
+    @property
+    def row(self) -> VerdictRow:
+        """The verdict in plain values, with why."""
+        ground = self.ground
+        return VerdictRow(
+            summary=self.summary,
+            preset=self.requirement.preset,
+            source=self.requirement.source or None,
+            met_whole=self.met_whole,
+            worst_body=self.body,
+            seen_by=self.seen_by,
+            unseen_by=self.unseen_by,
+            without=self.without,
+            fewest_sensors=self.sensors[0],
+            most_sensors=self.sensors[1],
+            blind_out_m=None if ground is None else ground.blind_out,
+            spare_m2=None if ground is None else ground.spare_m2,
+            spare_out_m=None if ground is None else ground.spare_out,
+            planes=self.samples.zone.planes.found,
+        )
+
     def to_dict(self) -> dict[str, Any]:
         """Return the verdict as plain data, as in result.json."""
-        return {
-            **asdict(self.summary),
-            "preset": self.requirement.preset,
-            "source": self.requirement.source or None,
-            "met_whole": self.met_whole,
-            "worst_body": self.body,
-            "seen_by": list(self.seen_by),
-            "unseen_by": {name: reason._asdict() for name, reason in self.unseen_by.items()},
-            "without": dict(self.without),
-            "fewest_sensors": self.sensors[0],
-            "most_sensors": self.sensors[1],
-            "blind_out_m": self.ground and self.ground.blind_out,
-            "spare_m2": self.ground and self.ground.spare_m2,
-            "spare_out_m": self.ground and self.ground.spare_out,
-            "planes": dict(self.samples.zone.planes.found),
-        }
+        data: dict[str, Any] = record(self.row)
+        return data
 
 
 def body_verdict(

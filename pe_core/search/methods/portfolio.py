@@ -52,12 +52,12 @@ def samples(count: int, evaluations: int, sensors: int) -> tuple[int, ...]:
     third is for large budgets, as a search on a sample overestimates its own result."""
     most = count or BELOW_GRID
     first = max(most // COARSENING, min(MIN_SAMPLES, most))
-    if not count or _runners(evaluations or budget(sensors), sensors) < RACING:
+    if not count or _runners(evaluations or default_budget(sensors), sensors) < RACING:
         return first, count
     return first, count, min(COARSENING * count, MAX_SAMPLES)
 
 
-def budget(sensors: int) -> int:
+def default_budget(sensors: int) -> int:
     """Return how many placements are evaluated where no budget is given."""
     return FEW[sensors] if sensors < len(FEW) else PER_SENSOR * sensors
 
@@ -70,7 +70,7 @@ def _runners(total: int, sensors: int) -> int:
 def ask(given: Given) -> QuestionStream:
     """Survey on few voxels; then descend on all voxels of the search until the budget is spent."""
     sensors = len(given.parametrization.blocks)
-    total = given.evaluations or budget(sensors)
+    total = given.evaluations or default_budget(sensors)
     incumbent = Incumbent(given.start, given.value)
     survey = Survey(given)
     count = max(1, min(SURVEYED, int(SURVEY_SHARE * total / (SURVEYS * sensors))))

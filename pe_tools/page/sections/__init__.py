@@ -33,15 +33,17 @@ class Section:
     the template, too; and title, plain text. `data`: takes a `ReportContext`, or a tuple of all if
     the section is `joint`; returns the values of the template, or None. ``script_data`` is plain
     JSON, the text of ``#data-ANCHOR-KEY``. `joint`: one section for all studies; several studies
-    have the others side by side. `template`: another template. Headings begin at h3; ids end in
-    ``-KEY`` of the `ReportContext`. `scripts`: returns whole JavaScript programs, of which the page
-    contains each once; a program looks for ``[data-section=ANCHOR]``, whose ``data-key`` is KEY."""
+    have the others side by side. `template`: another template. `folded`: closed until it is opened,
+    and not printed. Headings begin at h3; ids end in ``-KEY`` of the `ReportContext`. `scripts`:
+    returns whole JavaScript programs, of which the page contains each once; a program looks for
+    ``[data-section=ANCHOR]``, whose ``data-key`` is KEY."""
 
     anchor: str
     title: str
     data: Callable[..., Mapping[str, Any] | None]
     joint: bool = False
     template: str = ""
+    folded: bool = False
     scripts: Callable[[], Sequence[str]] = tuple
 
     def html(self, contexts: Sequence[ReportContext], data: Mapping[str, Any]) -> Markup:
@@ -56,19 +58,19 @@ SECTIONS = (
     Section("view", "3-D view", scene3d.view, scripts=scene3d.scripts),
     Section("requirements", "Requirements", requirement_verdicts),
     Section("drive-by", "Seen in time", drive_by, scripts=strip_script),
-    Section("conditions", "Conditions", conditions),
+    Section("conditions", "Conditions", conditions, folded=True),
     Section("maps", "Visibility", visibility),
     Section("region", "Where sensors may go", free_regions),
     Section("built", "As built", as_built),
-    Section("parts", "By class and zone", by_class_and_zone),
-    Section("objects", "Objects", objects),
+    Section("parts", "By class and zone", by_class_and_zone, folded=True),
+    Section("objects", "Objects", objects, folded=True),
     Section("sensors", "Sensors", sensor_details),
-    Section("sensor-loss", "Loss of one sensor", sensor_loss),
-    Section("search", "Search", search_history),
-    Section("flatness", "How flat the optimum is", flatness),
-    Section("advice", "Warnings", warnings_and_text),
-    Section("again", "Reproduction", reproduction, scripts=copy_script),
-    Section("basis", "Assumptions", assumptions, True),
+    Section("sensor-loss", "Loss of one sensor", sensor_loss, folded=True),
+    Section("search", "Search", search_history, folded=True),
+    Section("flatness", "How flat the optimum is", flatness, folded=True),
+    Section("advice", "Warnings", warnings_and_text, folded=True),
+    Section("again", "Reproduction", reproduction, scripts=copy_script, folded=True),
+    Section("basis", "Assumptions", assumptions, joint=True, folded=True),
 )
 
 __all__ = ["SECTIONS", "Section"]

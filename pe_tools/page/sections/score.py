@@ -1,5 +1,5 @@
 """The results of a study: the overview at the top of its page, its parts, and its search. The
-overview has three sentences (question, result, notes), key figures and a picture."""
+overview is what one decides by, key figures and a picture."""
 
 import math
 from dataclasses import replace
@@ -9,9 +9,6 @@ from markupsafe import Markup
 
 from pe_core import metric, scene
 from pe_core import sensors as kinds
-from pe_core.scoring.sight import SECTOR_RADIUS_M
-from pe_core.search import FIGURES, Figure, KeyFigures
-from pe_core.search.figures import AP_RINGS, BLIND_SECTOR
 from pe_core.study.condition_table import ConditionTable
 
 from ... import advice, jobs
@@ -19,8 +16,10 @@ from ..markup import capitalized, escaped, joined, macros, number
 from ..pictures.charts import step_curve
 from ..pictures.vehicle_picture import labelled_picture
 from ..report_context import ReportContext
+from .decision import decision
 
 SIDES = {"front": "ahead", "rear": "behind", "left": "on the left", "right": "on the right"}
+WARNINGS_SHOWN = 3  # At the top; all are in a section of their own
 # Colours of the lowest and of the highest entropy
 PALE = (255, 255, 255)
 DARK = (242, 165, 120)
@@ -41,26 +40,18 @@ def overview(contexts: tuple[ReportContext, ...]) -> dict[str, Any] | None:
     blind = context.outlook.blind
     return {
         "sensors": joined(counts),
-        "moved": sum(a.pose != b.pose for a, b in zip(context.start.rig, context.rig, strict=True)),
+        **decision(context),
+        "warnings_shown": WARNINGS_SHOWN,
         "zones": sorted(scores.per_zone, key=lambda zone: scores.per_zone[zone].entropy),
         "costs_nothing": advice.costs_nothing(context.outcome.cost),
         "hidden": [Markup(capitalized(line)) for line in hidden_sensor_lines(context)],
         "blind": blind,
         "sides": SIDES,
-        "sector_radius": SECTOR_RADIUS_M,
-        "seen_figures": _seen_figures(context.outcome.figures_after),
         "worst": max(scores.per_sensor, key=lambda name: scores.per_sensor[name].lost),
         "picture": labelled_picture(context, f"The vehicle with {joined(counts)}"),
         "unseen_nats": metric.H_BLIND,
         "best_nats": metric.H_BEST,
     }
-
-
-def _seen_figures(known: KeyFigures | None) -> list[Figure]:
-    """Return the figures of the rig's sight that are known and have no tile of their own."""
-    of_tiles = {BLIND_SECTOR, *AP_RINGS}
-    rows = (row for row in FIGURES.values() if row.is_seen and row.key not in of_tiles)
-    return [row for row in rows if row.value(known) is not None]
 
 
 def hidden_sensor_lines(context: ReportContext) -> list[str]:
@@ -179,6 +170,8 @@ def _curve(context: ReportContext, figure: jobs.SearchedFigure) -> tuple[Markup 
     found = jobs.best_so_far(context.outcome.history)
     by_ap = figure.higher_is_better
     is_broken = not found[-1][1].is_feasible
+    if not is_broken:  # what breaks a constraint has no figure
+        found = tuple(each for each in found if each[1].is_feasible)
     points = [(n, v.violation if is_broken else figure.to_figure(v)) for n, v in found]
     first, last = (number(points[k][1], 3 if by_ap or is_broken else 2) for k in (0, -1))
     own = context.outcome.own is not None

@@ -6,14 +6,19 @@ image (Sutherland and Hodgman). Slow, and meant to be.
 """
 
 import math
+from collections.abc import Callable, Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+Floats = NDArray[np.float64]
+Pixel = tuple[float, float]
 IN_FRONT = 1e-6
 """In sides; a corner nearer to a camera's plane is behind it."""
 
 
-def rotation(roll, pitch, yaw):
+def rotation(roll: float, pitch: float, yaw: float) -> Floats:
+    """Return the rotation (3, 3), ground from sensor, of roll, pitch and yaw [rad]."""
     cr, sr, cp, sp, cy, sy = (f(a) for a in (roll, pitch, yaw) for f in (math.cos, math.sin))
     rx = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
     ry = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
@@ -21,8 +26,8 @@ def rotation(roll, pitch, yaw):
     return rz @ ry @ rx
 
 
-def beam_directions(elevations, azimuths, rpy):
-    """(C * A, 3) ground-frame directions; azimuths (C, A)."""
+def beam_directions(elevations: ArrayLike, azimuths: Floats, rpy: Sequence[float]) -> Floats:
+    """Return directions (C * A, 3), ground frame, of elevations (C,) and azimuths (C, A) [rad]."""
     e = np.asarray(elevations)[:, None]
     local = np.stack(
         [np.cos(e) * np.cos(azimuths), np.cos(e) * np.sin(azimuths), np.sin(e) + 0 * azimuths], -1
@@ -30,8 +35,10 @@ def beam_directions(elevations, azimuths, rpy):
     return local.reshape(-1, 3) @ rotation(*rpy).T
 
 
-def first_hits(origin, directions, triangles):
-    """(B,) distance to the nearest triangle, inf for a miss; and (B,) its index, -1."""
+def first_hits(
+    origin: Floats, directions: Floats, triangles: Floats
+) -> tuple[Floats, NDArray[np.int_]]:
+    """Return distances (B,) to the nearest triangle, inf for a miss, and its index (B,), -1."""
     best = np.full(len(directions), np.inf)
     which = np.full(len(directions), -1)
     for index, (a, b, c) in enumerate(triangles):
@@ -52,8 +59,10 @@ def first_hits(origin, directions, triangles):
     return best, which
 
 
-def count_beams(origin, directions, ends, center, side):
-    """Beams whose segment [0, end] meets the cube."""
+def count_beams(
+    origin: Floats, directions: Floats, ends: Floats, center: Floats, side: float
+) -> int:
+    """Return how many beams meet the cube before their ends [m]."""
     low = center - side / 2 - origin
     high = center + side / 2 - origin
     t0 = np.zeros(len(directions))
@@ -71,8 +80,15 @@ def count_beams(origin, directions, ends, center, side):
     return int((alive & (t0 <= t1) & (t0 <= ends)).sum())
 
 
-def pixel_area(camera_size, hfov, origin, rpy, center, side):
-    """Area of the clipped convex hull of the cube's eight projected corners."""
+def pixel_area(
+    camera_size: tuple[int, int],
+    hfov: float,
+    origin: ArrayLike,
+    rpy: Sequence[float],
+    center: Floats,
+    side: float,
+) -> float:
+    """Return the area of the clipped convex hull of the cube's eight projected corners [px]."""
     width, height = camera_size
     focal = width / (2 * math.tan(hfov / 2))
     points = []
@@ -85,25 +101,25 @@ def pixel_area(camera_size, hfov, origin, rpy, center, side):
     return outline_area(points, width, height)
 
 
-def outline_area(points, width, height):
-    """Area of the convex hull of places, clipped to the picture."""
+def outline_area(points: Sequence[Pixel], width: float, height: float) -> float:
+    """Return the area of the convex hull of points, clipped to the picture [px]."""
     return _area(_clip(_hull(points), width, height))
 
 
-def hidden(origin, center, side, triangles):
-    """Whether a triangle stands before a voxel: its centre, a little nearer along each axis."""
+def hidden(origin: Floats, center: Floats, side: float, triangles: Floats) -> bool:
+    """Whether a triangle is before a voxel: its centre, a little nearer along each axis."""
     nudge = [1e-8 * side * math.sqrt(n) for n in (5, 11, 26)]
     ray = center - origin
     ray = np.array([w + n if w < -1e-9 else w - n for w, n in zip(ray, nudge, strict=True)])
     distance = math.sqrt(sum(w * w for w in ray))
-    return first_hits(origin, ray[None] / distance, triangles)[0][0] < distance
+    return bool(first_hits(origin, ray[None] / distance, triangles)[0][0] < distance)
 
 
-def _hull(points):
+def _hull(points: Sequence[Pixel]) -> list[Pixel]:
     points = sorted(set(points))
     chains = []
     for ordered in (points, points[::-1]):
-        chain = []
+        chain: list[Pixel] = []
         for p in ordered:
             while len(chain) > 1 and _turn(chain[-2], chain[-1], p) <= 0:
                 chain.pop()
@@ -112,12 +128,12 @@ def _hull(points):
     return chains[0] + chains[1]
 
 
-def _turn(a, b, c):
+def _turn(a: Pixel, b: Pixel, c: Pixel) -> float:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
-def _clip(polygon, width, height):
-    sides = [
+def _clip(polygon: list[Pixel], width: float, height: float) -> list[Pixel]:
+    sides: list[tuple[Callable[[Pixel], float], float, int]] = [
         (lambda p: p[0], 0.0, 1),
         (lambda p: p[0], width, -1),
         (lambda p: p[1], 0.0, 1),
@@ -138,7 +154,7 @@ def _clip(polygon, width, height):
     return polygon
 
 
-def _area(polygon):
+def _area(polygon: list[Pixel]) -> float:
     total = sum(
         p[0] * q[1] - q[0] * p[1] for p, q in zip(polygon, polygon[1:] + polygon[:1], strict=True)
     )

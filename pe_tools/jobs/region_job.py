@@ -452,7 +452,8 @@ def paired_noise(measure: Any, rigs: Sequence[Rig]) -> float:
 
 def held_now(study: Study) -> tuple[Study, tuple[str, ...]]:
     """Return a study with those of its requirements and limits that its rig keeps, all of them
-    kept by a search; and what it breaks, in words."""
+    kept by a search; and what it breaks, in words. Limits without a number on what a rig sees are
+    left out: no worse than now in every figure would leave no place but this one."""
     broken: list[str] = []
     limits = study.limits
     if study.requirements:
@@ -462,10 +463,12 @@ def held_now(study: Study) -> tuple[Study, tuple[str, ...]]:
         kept = tuple(requirement for requirement, lack in both if not lack)
         study = replace(study, requirements=kept)
         limits = limits.changed(**{REQUIREMENTS: Limit()})
-    figures = study.key_figures() if any(key in KEPT for key, _ in limits) else None
-    for key, limit in limits:
-        if key not in KEPT or limit.value is None:
-            continue
+    seen = [(key, limit) for key, limit in limits if key in KEPT]
+    limits = limits.changed(**{key: None for key, limit in seen if limit.value is None})
+    numbered = [(key, limit) for key, limit in seen if limit.value is not None]
+    figures = study.key_figures() if numbered else None
+    for key, limit in numbered:
+        assert limit.value is not None
         value = FIGURES[key].value(figures)
         if value is not None and FIGURES[key].is_met(value, limit.value):
             limits = limits.changed(**{key: replace(limit, kept=True)})

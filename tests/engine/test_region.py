@@ -151,20 +151,17 @@ def test_the_patch_is_a_mount_of_the_next_study(study, found, tmp_path):
     assert step.allowed(after.rig)
 
 
-def test_the_verb_writes_patch_and_data(study, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("pe_tools.jobs.region_job.PLACES", 30)
+def test_the_verb_writes_patch_and_data(study, tmp_path, capsys):
     file = tmp_path / "study.toml"
     pt.export_study(study, file)
-    for name in ("patch.stl", "patch.glb", "data.json", "next.toml"):
-        given = ["region", str(file), ROOF, "--loss", "0.2", "--places", "30", "--workers", "1"]
-        assert main([*given, "-o", str(tmp_path / name)]) == 0
+    given = ["region", str(file), ROOF, "--loss", "400", "--figure", "blind_sector"]
+    for name in ("patch.stl", "data.json"):
+        options = ["--places", "8", "--workers", "1", "-o", str(tmp_path / name)]
+        assert main([*given, *options]) == 0
     assert "m2" in capsys.readouterr().out
     data = json.loads((tmp_path / "data.json").read_text())
-    assert data["sensor"] == ROOF and data["allowed_loss"] == 0.2
-    areas = [
-        area_of(pt.read_mesh(tmp_path / name, pe.MeshAxes("+x", "+z")).triangles)
-        for name in ("patch.stl",)
-    ]
-    assert areas[0] == pytest.approx(data["area_m2"], rel=1e-4)
+    assert data["sensor"] == ROOF and data["allowed_loss"] == 400.0
+    patch = pt.read_mesh(tmp_path / "patch.stl", pe.MeshAxes("+x", "+z"))
+    assert area_of(patch.triangles) == pytest.approx(data["area_m2"], rel=1e-4)
     assert main(["region", str(file), "nobody"]) == 1
     assert "'nobody'" in capsys.readouterr().err

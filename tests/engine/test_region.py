@@ -161,7 +161,7 @@ def test_the_verb_writes_patch_and_data(study, tmp_path, capsys):
     assert "m2" in capsys.readouterr().out
     data = json.loads((tmp_path / "data.json").read_text())
     assert data["sensor"] == ROOF and data["allowed_loss"] == 400.0
-    patch = pt.read_mesh(tmp_path / "patch.stl", pe.MeshAxes("+x", "+z"))
+    patch = pt.read_mesh(tmp_path / "patch.stl", pe.MeshAxes(up="+z", forward="+x"))
     assert area_of(patch.triangles) == pytest.approx(data["area_m2"], rel=1e-4)
     assert main(["region", str(file), "nobody"]) == 1
     assert "'nobody'" in capsys.readouterr().err

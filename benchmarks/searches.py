@@ -3,7 +3,7 @@
 All methods have the same evaluator and the same number of evaluations: the problem's own, which is
 small, or with ``--budgets default`` that of a study that names none. Every run leaves a JSON file
 of its own; what is there, or in the summary that is kept with the project, is not run again. Then
-come the summary, its table (benchmarks/searches.md) and the plot of docs/optimize.md.
+come the summary and its page (benchmarks/searches.md).
 
 The other libraries come with the extra "bench". `--problems`, `--methods` and `--seeds` select, and
 `--again METHOD` forgets the runs of a method that has changed. `--only run` leaves the summary
@@ -17,7 +17,7 @@ import hashlib
 import os
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -35,11 +35,7 @@ RUNS = Path(__file__).resolve().parent.parent / "build" / "search_problems"
 SUMMARY = Path(__file__).with_name("searches.json")
 OURS = pe.METHODS
 METHODS = (*OURS, *YARDSTICKS)
-MARKS = 16
-"""Points of a curve, at most."""
 Json = dict[str, Any]
-EvaluatedRow = tuple[float, pe.Rig]
-"""Processor time [s], and the best placement so far."""
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -91,7 +87,7 @@ def evaluations_of(problem: SearchProblem, budget_name: str) -> int:
 
 
 def run(problem: str, method: str, budget: str, seed: int, samples: int | None = None) -> Json:
-    """Search; return the entropy that was found on the grid, and the curve of the best. Candidates
+    """Search; return the entropy that was found on the grid, and what the search did. Candidates
     are evaluated on so many samples, the problem's own by default."""
     study = PROBLEMS[problem].make()
     if samples is not None:
@@ -102,7 +98,7 @@ def run(problem: str, method: str, budget: str, seed: int, samples: int | None =
     begun = time.process_time()
     found = search(study, evaluator, method, seed, evaluations=evaluations)
     seconds = time.process_time() - begun
-    best = found.rows[-1][1]
+    best = found.bests[-1]
     return {
         "problem": problem,
         "method": method,
@@ -117,17 +113,14 @@ def run(problem: str, method: str, budget: str, seed: int, samples: int | None =
         "asked": evaluations,
         "broken": found.broken,
         "chosen": found.chosen,
-        "path": _digest_of(found.rows),
-        "curve": [
-            [round(at - begun, 3), evaluator.entropy(rig)] for at, rig in _marked(found.rows)
-        ],
+        "path": _digest_of(found.bests),
     }
 
 
-def _digest_of(rows: Sequence[EvaluatedRow]) -> str:
+def _digest_of(bests: Sequence[pe.Rig]) -> str:
     """Return a digest of the placements that were the best one after the other: that two seeds
     searched alike is seen by it."""
-    poses = [[(each.pose.position, each.pose.rpy) for each in rig] for _, rig in rows]
+    poses = [[(each.pose.position, each.pose.rpy) for each in rig] for rig in bests]
     return hashlib.sha256(repr(poses).encode()).hexdigest()[:12]
 
 
@@ -136,7 +129,7 @@ class RunRecord:
     """What a search did: each placement that was the best so far, placements evaluated, those that
     broke a rule instead (None: not counted), and the method that a method chose."""
 
-    rows: list[EvaluatedRow]
+    bests: list[pe.Rig]
     evaluations: int
     broken: int | None
     chosen: str
@@ -156,7 +149,7 @@ def _ours(
     if method == "random":
         rounds = len(pe.Schedule().scales)
         schedule = pe.Schedule(candidates=max(1, evaluations // rounds))
-    rows = list[EvaluatedRow]()
+    bests = list[pe.Rig]()
     count = 0
     for step in pe.optimize(
         objectives,
@@ -168,16 +161,16 @@ def _ours(
         evaluations=evaluations,
     ):
         count = step.evaluations
-        if step.improved or not rows:
-            rows.append((time.process_time(), step.best))
-    return RunRecord(rows, count, None, method)
+        if step.improved or not bests:
+            bests.append(step.best)
+    return RunRecord(bests, count, None, method)
 
 
 def _theirs(
     study: pe.Study, evaluator: pe.RigEvaluator, method: str, seed: int, evaluations: int
 ) -> RunRecord:
     """Search by a method of another library."""
-    rows = list[EvaluatedRow]()
+    bests = list[pe.Rig]()
     lowest = float("inf")
     count = 0
 
@@ -186,24 +179,11 @@ def _theirs(
         count += 1
         if entropy < lowest:
             lowest = entropy
-            rows.append((time.process_time(), rig))
+            bests.append(rig)
 
     landscape = Landscape(study, evaluator, evaluations, told)
     chosen = search_by(method, landscape, seed, evaluations)
-    return RunRecord(rows, count, landscape.broken, chosen)
-
-
-def _marked(rows: list[EvaluatedRow]) -> Iterator[EvaluatedRow]:
-    """Yield the last row in each of `MARKS` spans of time, each 1.5 times the one before."""
-    first = rows[0][0]
-    last = rows[-1][0]
-    ends = [first + (last - first) / 1.5**k for k in reversed(range(MARKS))]
-    number = -1
-    for end in ends:
-        at = sum(time_s <= end for time_s, _ in rows) - 1
-        if at > number:
-            number = at
-            yield rows[at]
+    return RunRecord(bests, count, landscape.broken, chosen)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What the runs of `searches` say: a summary, a table, and a plot of the best so far."""
+"""What the runs of `searches` say: a summary, and a page of tables."""
 
 from __future__ import annotations
 
@@ -10,12 +10,9 @@ from typing import Any
 import pe_core as pe
 
 from .run_files import summarise
-from .search_curves import draw_curve, save_with_legend
 from .search_problems import BUDGETS, PROBLEMS
 from .yardstick_searches import YARDSTICKS
 
-ROOT = Path(__file__).resolve().parent.parent
-PLOT = ROOT / "docs" / "images" / "search_problems.png"
 TABLE = Path(__file__).with_name("searches.md")
 OPTIMUM = Path(__file__).with_name("slot_optimum.json")
 NAMES = {
@@ -42,19 +39,17 @@ search_problems.py says what each problem is.
 
 Constraints: a placement that breaks a rule is not evaluated and counts nothing. CMA-ES draws it
 anew; the others are told a penalty, the worst entropy so far plus the number of broken rules."""
-COLUMNS = 4
 SEEDS = 5
 
 Json = dict[str, Any]
 
 
 def write_summary(runs: Path, path: Path) -> None:
-    """Put all runs of a folder into one file, one a line; write the table and the plot."""
+    """Put all runs of a folder into one file, one a line; write the page."""
     found = summarise(runs, path)
     lines = table(found)
     print("\n".join(lines))
     TABLE.write_text("\n".join(lines) + "\n", "utf-8")
-    plot([run for run in found if run["budget"] == BUDGETS[0]], PLOT)
 
 
 def methods_of(runs: list[Json]) -> list[str]:
@@ -176,35 +171,3 @@ def _notes(runs: list[Json]) -> list[str]:
     loads = [r["load"] for r in runs]
     lines.append(f"- Load of the two processors: {min(loads):.0f} to {max(loads):.0f}; nice 15.")
     return lines
-
-
-def plot(runs: list[Json], path: Path) -> None:
-    """Draw the best so far against processor time: a panel for each problem."""
-    from studies import plotting
-
-    methods = methods_of(runs)
-    looks = dict(zip(methods, plotting.PALETTE, strict=False))
-
-    @plotting.styled
-    def draw() -> None:
-        shown = {n: p for n, p in PROBLEMS.items() if any(r["problem"] == n for r in runs)}
-        rows = -(-len(shown) // COLUMNS)
-        figure, grid = plotting.pyplot().subplots(
-            rows, COLUMNS, squeeze=False, figsize=(10.4, 2.3 * rows)
-        )
-        for axis, (name, problem) in zip(grid.flat, shown.items(), strict=False):
-            for method in methods:
-                some = [r for r in runs if (r["problem"], r["method"]) == (name, method)]
-                if some:
-                    draw_curve(axis, some, looks[method], NAMES.get(method, method))
-            axis.set(xscale="log", title=name + (f" ({problem.mark})" if problem.mark else ""))
-            plotting.remove_frame(axis)
-        for axis in grid.flat[len(shown) :]:
-            axis.set_axis_off()
-        for axis in grid[-1]:
-            axis.set_xlabel("processor time [s]")
-        for axis in grid[:, 0]:
-            axis.set_ylabel("entropy [nats]")
-        save_with_legend(figure, path, 0.05)
-
-    draw()

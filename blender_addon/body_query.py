@@ -56,7 +56,7 @@ def query(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
         _seen.pop(name, None)
 
     with contextlib.suppress(pe.InputError):
-        model = bridge.perception_of(scene.perception_entropy)
+        model = bridge.document_of(scene.perception_entropy, *bridge.SCORED).perception
         given = pe.Rig(sensors), vehicle, tuple(bodies.values()), model
         engine_process.ask(
             TOPIC,

@@ -24,7 +24,6 @@ ON_SLOTS = "SLOTS"
 """Kinds of mounts."""
 BY_PARTS = "PARTS"
 BY_GROUP = "GROUP"
-BY_MESH = "MESH"
 """Which faces a surface is made of."""
 
 PRIORS = (

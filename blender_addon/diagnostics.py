@@ -75,7 +75,7 @@ def run_checks() -> None:
     vehicle = vehicle_cache.shared.read(scene, depsgraph).vehicle
     sensors = bridge.possible_sensors(sensor_cache.sensors(scene), depsgraph)
     try:
-        space = bridge.space_of(scene.perception_entropy)
+        space = bridge.document_of(scene.perception_entropy, "space").space
     except pe.InputError:  # a score reports it
         space = pe.PerceptionSpace()
 

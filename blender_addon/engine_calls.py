@@ -93,8 +93,8 @@ class Gain(NamedTuple):
         if self.before is None:
             return f"{self.after:.3f} nats, {seen}"
         change = self.after - self.before
-        if abs(change) <= scoring.SURE * self.stderr:
-            return f"{self.after:.3f} nats, no change, {seen}"
+        if scoring.is_noise(change, self.stderr):
+            return f"{self.after:.3f} nats, {scoring.NO_DIFFERENCE}, {seen}"
         return f"{self.before:.3f} to {self.after:.3f} nats ({change:+.3f}), {seen}"
 
 

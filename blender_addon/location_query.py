@@ -34,8 +34,9 @@ def query(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, point: Queried
     sensors = bridge.possible_sensors(sensor_cache.sensors(scene), depsgraph)
     settings = scene.perception_entropy
     try:
-        space = bridge.space_of(settings)
-        model = bridge.perception_of(settings)
+        document = bridge.document_of(settings, *bridge.SCORED)
+        space = document.space
+        model = document.perception
         prior = bridge.prior_from_scene(scene)
         rig = pe.Rig(sensors)
     except pe.InputError as error:

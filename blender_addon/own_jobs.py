@@ -105,6 +105,32 @@ def _write_scene(
     return WrittenFiles(tuple(paths), tuple(lines))
 
 
+def rig_job(study: pe.Study, name: str, path: Path, into: str | None, replace: bool) -> ExportJob:
+    """Return the job that scores a study and writes its rig in a format that has the figures."""
+    stage = f"exporting {exchange.rig_format(name).title}"
+    write = partial(write_rig, study, name, path, into, replace)
+    return ExportJob(study, stage, _facts, write, scored=True)
+
+
+def _facts(outcome: jobs.Outcome, _watch: OnProgress) -> exchange.SceneFacts:
+    return exchange.SceneFacts(outcome.study.vehicle, jobs.score_facts(outcome))
+
+
+def write_rig(
+    study: pe.Study,
+    name: str,
+    path: Path,
+    into: str | None,
+    replace: bool,
+    facts: exchange.SceneFacts | None = None,
+) -> WrittenFiles:
+    """Write a study's rig in another program's format; `facts` are for those that have them."""
+    paths, lines = exchange.export_rig(
+        study.rig, name, path, study.reference, into=into, replace=replace, facts=facts
+    )
+    return WrittenFiles(tuple(paths), tuple(lines))
+
+
 def picture_job(study: pe.Study, path: Path) -> ExportJob:
     """Return the job that scores a study and writes a picture of its rig."""
     return ExportJob(study, "picture", _picture, partial(_write_one, path), scored=True)

@@ -53,7 +53,7 @@ class VehicleCache:
         collection = scene.perception_entropy.vehicle
         members = () if collection is None else counted_members(collection, depsgraph)
         of = "" if collection is None else collection.name_full
-        clearance = bridge.clearance_of(scene)
+        clearance = bridge.as_typed(scene.perception_entropy.clearance)
         motions = bridge.shown_motions(scene)
         key = (scene.name, of, self._version, members, clearance, motions)
         cached = self._vehicles.get(scene.name, NO_VEHICLE)

@@ -228,12 +228,14 @@ def partial_rho(score: Floats, ap: Floats, given: Floats, members: Sequence[Ints
     parts = []
     for index in members:
         x, y, z = (standard_ranks(w[..., index]) for w in (score, ap, given))
-        xy = (x * y).sum(axis=-1)
-        xz = (x * z).sum(axis=-1)
-        yz = (y * z).sum(axis=-1)
-        free = np.sqrt(np.maximum((1.0 - xz**2) * (1.0 - yz**2), 0.0))
-        parts.append(np.where(free > SAME, (xy - xz * yz) / np.maximum(free, SAME), 0.0))
+        parts.append(_partial((x * y).sum(axis=-1), (x * z).sum(axis=-1), (y * z).sum(axis=-1)))
     return np.mean(parts, axis=0)
+
+
+def _partial(xy: Floats, xz: Floats, yz: Floats) -> Floats:
+    """Return the partial correlation of x and y given z; 0 where z leaves nothing of one."""
+    free = np.sqrt(np.maximum((1.0 - xz**2) * (1.0 - yz**2), 0.0))
+    return np.where(free > SAME, (xy - xz * yz) / np.maximum(free, SAME), 0.0)
 
 
 def rho_statistic(
@@ -255,14 +257,17 @@ def permutation_p_beyond(
     """Return the two-sided p of the partial rho, given a third, as `permutation_p`."""
     observed = abs(float(rho_statistic(score, samples, given)(samples.whole)))
     rng = np.random.default_rng([seed, 2])
+    ranks = [
+        tuple(standard_ranks(w[k]) for w in (score, samples.ap, given)) for k in samples.members
+    ]
     extreme = 0
     for block in blocks(rule.permutations, PERMUTED_AT_ONCE):
         count = block.stop - block.start
-        ap = np.tile(samples.ap, (count, 1))
-        for index in samples.members:
-            ap[:, index] = rng.permuted(ap[:, index], axis=1)
-        x, z = (np.broadcast_to(w, ap.shape) for w in (score, given))
-        found = partial_rho(x, ap, z, samples.members)
+        parts = []
+        for x, y, z in ranks:
+            drawn = rng.permuted(np.tile(y, (count, 1)), axis=1)
+            parts.append(_partial(drawn @ x, np.asarray(x @ z), drawn @ z))
+        found = np.mean(parts, axis=0)
         extreme += int((np.abs(found) >= observed - SAME).sum())
     return (1 + extreme) / (1 + rule.permutations)
 

@@ -7,7 +7,6 @@ relative: an extension may not add packages to the top level. The same sources g
 """
 
 import ast
-import base64
 import hashlib
 import importlib.util
 import re
@@ -17,7 +16,6 @@ import sys
 import tempfile
 import tomllib
 import zipfile
-from importlib.metadata import distribution
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -26,11 +24,20 @@ ENGINE = ROOT / "pe_core"
 TOOLS = ROOT / "pe_tools"
 MANIFEST = ADDON / "blender_manifest.toml"
 PACKED = (ENGINE.name, TOOLS.name)
-BUNDLED = ("jinja2", "markupsafe", "ruamel.yaml", "trimesh")
-"""Libraries of the engine and the tools that Blender does not have, as wheels in the extension."""
-OPTIONAL = "_speedups"
-"""Start of the names of compiled modules that are left out: the same is there in Python."""
-WHEEL = b"Wheel-Version: 1.0\nGenerator: build\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
+BUNDLED = ROOT / "tools" / "extension_wheels.txt"
+"""Libraries of the tools that Blender does not have: official wheels, by hash."""
+KEPT_WHEELS = Path(sys.prefix) / "extension_wheels"
+"""Where they are kept once they were downloaded: in the environment."""
+FOR_ANY = (
+    "--platform",
+    "any",
+    "--implementation",
+    "py",
+    "--abi",
+    "none",
+    "--python-version",
+    "3.11",
+)
 EXAMPLE = "assets/examples/sedan.blend"
 """What the button *Open an Example* opens; a copy of that in `blend_assets`."""
 FROM_PACKED = re.compile(r"^(\s*)from ((?:pe_core|pe_tools)\b[\w.]*) import", re.MULTILINE)
@@ -80,7 +87,8 @@ def stage(target: Path) -> None:
         shutil.copytree(package, target / package.name, ignore=LEFT_OUT)
     for name in ("LICENSE", "CHANGELOG.md"):
         shutil.copy(ROOT / name, target / name)
-    wheels = [add_wheel(target / "wheels", name) for name in BUNDLED]
+    (target / "wheels").mkdir(exist_ok=True)
+    wheels = [Path(shutil.copy(wheel, target / "wheels")) for wheel in official_wheels()]
     listed = ", ".join(f'"./wheels/{wheel.name}"' for wheel in wheels)
     manifest = read(MANIFEST).replace("[permissions]", f"wheels = [{listed}]\n\n[permissions]", 1)
     (target / MANIFEST.name).write_text(manifest, "utf-8")
@@ -93,30 +101,34 @@ def stage(target: Path) -> None:
             path.write_text(relative, "utf-8")
 
 
-def add_wheel(folder: Path, name: str) -> Path:
-    """Pack the installed files of a library in pure Python as a wheel again; return its path."""
-    library = distribution(name)
-    files = [f for f in library.files or () if "__pycache__" not in f.parts and ".." not in f.parts]
-    left_out = ("INSTALLER", "REQUESTED", "RECORD", "WHEEL")
-    packed = [f for f in files if f.name not in left_out and not f.name.startswith(OPTIONAL)]
-    if not packed or any(file.suffix in (".so", ".pyd") for file in packed):
-        raise BuildError(f"{name} is not installed in pure Python")
-    info = next(file.parent for file in files if file.name == "WHEEL").name
-    contents = {file.as_posix(): file.read_binary() for file in packed}
-    contents[f"{info}/WHEEL"] = WHEEL
-    record = [f"{path},sha256={record_hash(data)},{len(data)}" for path, data in contents.items()]
-    contents[f"{info}/RECORD"] = "\n".join([*record, f"{info}/RECORD,,", ""]).encode()
-    folder.mkdir(exist_ok=True)
-    path = folder / f"{info.removesuffix('.dist-info')}-py3-none-any.whl"
-    with zipfile.ZipFile(path, "w") as wheel:
-        for file_name in sorted(contents):
-            wheel.writestr(zip_entry(file_name), contents[file_name], zipfile.ZIP_DEFLATED)
-    return path
+def official_wheels() -> list[Path]:
+    """Return the wheels of the extension, which pip downloads where they are not kept yet."""
+    wanted = re.findall(r"sha256:([0-9a-f]{64})", BUNDLED.read_text("utf-8"))
+    kept = kept_wheels()
+    if missing := [digest for digest in wanted if digest not in kept]:
+        download = (
+            "-m",
+            "pip",
+            "download",
+            "--quiet",
+            "--no-deps",
+            "--only-binary=:all:",
+            *FOR_ANY,
+        )
+        where = ("--require-hashes", f"--requirement={BUNDLED}", f"--dest={KEPT_WHEELS}")
+        answer = subprocess.run([sys.executable, *download, *where], capture_output=True, text=True)
+        kept = kept_wheels()
+        missing = [digest for digest in wanted if digest not in kept]
+        if answer.returncode != 0 or missing:
+            sys.stderr.write(answer.stderr)
+            raise BuildError(f"pip could not download the wheels of {BUNDLED.relative_to(ROOT)}")
+    return [kept[digest] for digest in wanted]
 
 
-def record_hash(data: bytes) -> str:
-    """Return a file's digest as a wheel's RECORD has it."""
-    return base64.urlsafe_b64encode(hashlib.sha256(data).digest()).decode().rstrip("=")
+def kept_wheels() -> dict[str, Path]:
+    """Return the wheels that are kept, by the SHA-256 of their bytes."""
+    paths = sorted(KEPT_WHEELS.glob("*.whl"))
+    return {hashlib.sha256(path.read_bytes()).hexdigest(): path for path in paths}
 
 
 def with_relative_imports(source: str, dots: int) -> str:

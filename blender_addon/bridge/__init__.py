@@ -6,8 +6,8 @@ What is imported here is what other modules of the add-on take from it.
 from .apply_variant import apply_records, shown_collection
 from .conditions import as_drawn, conditions_of, read_states, shown_motions, shown_state, with_drawn
 from .fingerprint import Fingerprint, fingerprint
-from .limits import NONE, keep_property, limit_property, limits_of
-from .loading import load_into, record_of_study, write_mount
+from .limits import NONE, keep_property, limit_of, limit_property, limits_of, put_limit
+from .loading import load_into
 from .mirroring import (
     clear_mirrors,
     follow_mirrors,
@@ -56,14 +56,11 @@ from .rig import (
     pose_from_numbers,
     pose_of,
     pose_of_matrix,
-    possible_sensors,
-    rig_from_objects,
-    sensor_from_object,
     sensor_objects,
     view_layer_of,
 )
 from .scene_diagnostics import check_placeable, missing_data, scene_advice
-from .scene_record import (
+from .scene_study import (
     check_scene,
     study_as_drawn,
     study_from_scene,
@@ -71,37 +68,49 @@ from .scene_record import (
     study_of_rig,
     vehicle_of_scene,
 )
-from .scene_settings import (
-    clearance_of,
-    perception_of,
-    property_value,
-    reference_of,
-    space_of,
-    targets_of,
-    value_of_property,
-    write_reference,
-)
 from .sensor_colors import assign_colors
 from .sensor_records import (
     SensorRecord,
+    possible_sensors,
     records_of,
     records_of_scene,
+    rig_from_objects,
     rig_of,
     same_sensors,
+    sensor_from_object,
     write_records,
+)
+from .study_table import (
+    REFERENCE,
+    SCORED,
+    Keys,
+    TableData,
+    as_typed,
+    curve_table,
+    document_of,
+    has_axles,
+    has_mounting_errors,
+    has_own_curve,
+    in_file,
+    new_table,
+    property_value,
+    put,
+    switch_axles,
+    switch_mounting_errors,
+    switch_own_curve,
+    value_at,
+    value_of_property,
 )
 from .time import (
     body_place,
-    by_name_of,
     clear_stale_stories,
-    confirmation_of,
     frame_rate,
     store_driven,
     story_of,
     story_signatures,
     write_story,
 )
-from .transform_constraints import holder_of
+from .transform_constraints import holder_of, ticked_axes
 from .variant_results import (
     check_choosable,
     copy_scene_score,
@@ -119,6 +128,7 @@ from .variant_results import (
     store_variant_score,
     store_variant_scores,
     stored_outcome,
+    worth_of_differences,
     write_figures,
 )
 from .variants import (

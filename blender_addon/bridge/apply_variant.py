@@ -6,15 +6,16 @@ them. Their settings, housings and animations stay unchanged.
 """
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import bpy
 from bpy.types import Collection, Object, Scene, ViewLayer
 
 from ..engine import graphics
 from .mirroring import SENSORS
-from .rig import color_of, place_poses, put_curve, sensor_objects, view_layer_of
-from .scene_settings import write_values
-from .sensor_records import SensorRecord
+from .rig import color_of, place_poses, sensor_objects, view_layer_of
+from .sensor_records import SensorRecord, object_table
+from .study_table import write_table
 
 PARKED = "Sensors of Other Variants"
 BETWEEN = "\n"
@@ -86,23 +87,10 @@ def _new_sensor(scene: Scene, record: SensorRecord) -> Object:
 def _write_settings(obj: Object, record: SensorRecord) -> None:
     """Write a record to a sensor's object, without the pose."""
     settings = obj.perception_entropy
-    if settings.model != record.model:
-        settings.model = record.model
-    if settings.fusion != record.fusion:
-        settings.fusion = record.fusion
-    put_curve(settings, record.curve)
-    settings.free = record.free
-    settings.bounded = record.bounded
-    settings.bounds_low = record.low
-    settings.bounds_high = record.high
-    settings.rack = record.rack
-    settings.stays = record.stays
-    settings.order = record.order
-    write_values(settings, record.sheet)
-    if record.color is not None and record.color != color_of(obj):
+    color = color_of(obj)
+    write_table(settings, object_table(replace(record, color=color)))
+    if record.color not in (None, color):
         settings.color = graphics.rgb_of(record.color)
-    if settings.mount != record.mount:
-        settings.mount = record.mount
     if not settings.is_sensor:
         settings.is_sensor = True
 

@@ -18,9 +18,10 @@ from bpy.types import PropertyGroup, Scene
 
 from ..engine import geometry, pe, studies
 from .rig import pose_of_matrix, sensor_objects, view_layer_of
-from .scene_settings import as_typed, values_of, write_values
+from .study_table import put, read_row, store_row, value_at
 from .vehicle import vehicle_from_collection
 
+MOVE = ("move",)
 LENGTH_DIGITS = 5
 ANGLE_DIGITS = 4
 """Decimals of a motion: 0.01 mm and 0.0001 degrees."""
@@ -71,7 +72,7 @@ def _shown_row(scene: Scene) -> PropertyGroup | None:
 def shown_motions(scene: Scene) -> str:
     """Return the motions of the state that is shown, as they are stored; empty as drawn."""
     row = _shown_row(scene)
-    return "" if row is None else row.table
+    return "" if row is None else json.dumps(value_at(row.table, MOVE))
 
 
 def with_drawn(scene: Scene, vehicle: pe.Vehicle) -> pe.Vehicle:
@@ -108,44 +109,28 @@ def conditions_of(settings: PropertyGroup) -> pe.Conditions:
 
 def write_conditions(settings: PropertyGroup, conditions: pe.Conditions) -> None:
     """Write conditions to a scene, in place of its own."""
-    settings.states.clear()
-    for state in conditions.states:
-        write_state(settings.states.add(), state)
-    settings.weathers.clear()
-    for weather in conditions.weathers:
-        row = settings.weathers.add()
-        row.name = weather.name
-        write_values(row, weather)
-
-
-def write_state(row: PropertyGroup, state: geometry.State) -> None:
-    """Write a state to a row."""
-    table = studies.write(state)
-    row.name = state.name
-    row.weight = state.weight
-    row.frame = -1 if state.frame is None else state.frame
-    row.table = json.dumps({k: v for k, v in table.items() if k not in ("name", "weight", "frame")})
+    for rows, given in (
+        (settings.states, conditions.states),
+        (settings.weathers, conditions.weathers),
+    ):
+        rows.clear()
+        for each in given:
+            store_row(rows.add(), each)
 
 
 def conditions_signature(settings: PropertyGroup) -> list[object]:
     """Return what a table of conditions depends on; empty without conditions."""
-    states = [(r.name, as_typed(r.weight), r.table) for r in settings.states if r.enabled]
-    weathers = [(r.name, values_of(r, pe.Weather)) for r in settings.weathers if r.enabled]
-    return [states, weathers] if states or weathers else []
+    rows = [*settings.states, None, *settings.weathers]
+    used = [row and (row.name, row.table) for row in rows if row is None or row.enabled]
+    return used if len(used) > 1 else []
 
 
 def _state_of(row: PropertyGroup) -> geometry.State:
-    try:
-        table = json.loads(row.table or "{}")
-    except ValueError:
-        raise pe.InputError("scene", f"state {row.name!r}", "motions", "other text") from None
-    frame = {} if row.frame < 0 else {"frame": row.frame}
-    whole = {**table, "name": row.name, "weight": as_typed(row.weight), **frame}
-    return studies.read(geometry.State, studies.Node(whole, "scene"))
+    return read_row(geometry.State, row, f"state {row.name!r}", name=row.name)
 
 
 def _weather_of(row: PropertyGroup) -> pe.Weather:
-    return pe.Weather(row.name, **values_of(row, pe.Weather))
+    return read_row(pe.Weather, row, f"weather {row.name!r}", name=row.name)
 
 
 def read_states(scene: Scene) -> list[str]:
@@ -162,10 +147,9 @@ def read_states(scene: Scene) -> list[str]:
         drawn = _shown_at(scene, drawn_frame)
         for row in rows:
             moves = _motions(row.name, drawn, _shown_at(scene, row.frame))
-            state = geometry.State(row.name, moves)
-            table = json.dumps({k: v for k, v in studies.write(state).items() if k == "move"})
+            table = row.table
+            put(row, MOVE, studies.write(moves) or None)
             if table != row.table:
-                row.table = table
                 changed.append(row.name)
     finally:
         scene.frame_set(shown)

@@ -12,7 +12,7 @@ from .conditions import conditions_signature
 from .own_sensors import own_sensors_signature
 from .prior import prior_signature
 from .rig import last_written_pose, pose_of_matrix, sensor_objects, view_layer_of
-from .scene_settings import settings_signature, targets_signature
+from .study_table import signature_of, value_at
 
 SensorState = tuple[object, ...]
 """Model, fusion group, pose and its own AP curve or None; empty for a hidden sensor."""
@@ -51,25 +51,23 @@ def fingerprint(
     layer = view_layer_of(scene)
     objects = sensor_objects(scene) if sensors is None else sensors
     states = {obj.name: _sensor_state(obj, obj.visible_get(view_layer=layer)) for obj in objects}
-    more = [*settings_signature(settings), *own_sensors_signature(scene)]
-    more += [*targets_signature(settings), *conditions_signature(settings)]
-    rest = (prior_signature(scene), settings.score_samples, shape, *([more] if more else []))
+    own = [*signature_of(settings), *own_sensors_signature(scene), *conditions_signature(settings)]
+    rest = prior_signature(scene), shape, own
     return Fingerprint(states, repr(rest))
 
 
 def _sensor_state(obj: Object, visible: bool) -> SensorState:
     if not visible:
         return ()
-    settings = obj.perception_entropy
+    own = obj.perception_entropy.table
     placement = np.array(obj.matrix_world, dtype=float)
     try:
         held = last_written_pose(obj, placement)
         where: object = _numbers(pose_of_matrix(placement) if held is None else held)
     except pe.InputError:  # a sensor that cannot be scored has a fingerprint, too
         where = placement.tolist()
-    numbers = settings.curve_a, settings.curve_b, settings.curve_c
-    curve = numbers if settings.own_curve else None
-    return settings.model, settings.fusion, where, curve
+    model, fusion, curve = (value_at(own, (key,)) for key in ("model", "fusion", "ap"))
+    return model, fusion, where, curve
 
 
 def _placed(state: SensorState, pose: pe.Pose) -> SensorState:

@@ -1,9 +1,15 @@
-"""Limits of a scene: a number and a lock for each figure that can have one."""
+"""Limits of a scene: a number and a lock for each figure that can have one, views of its table.
+
+A lock of a figure whose limit has no number stands in the table, too, though it has no effect.
+"""
+
+from collections.abc import Mapping
+from typing import Any
 
 from bpy.types import PropertyGroup
 
 from ..engine import search
-from .scene_settings import as_typed
+from .study_table import document_of, put, value_at
 
 NONE = -100
 """A field with this value or a lower one is no limit: 0 may be one."""
@@ -26,25 +32,26 @@ def can_be_kept_alone(key: str) -> bool:
 
 def limits_of(settings: PropertyGroup) -> search.Limits:
     """Return the limits of a scene."""
-    found = {key: _limit_of(settings, key) for key in search.LIMITED}
-    return search.Limits(**found)
+    return document_of(settings, "limits").limits
 
 
-def _limit_of(settings: PropertyGroup, key: str) -> search.Limit | None:
-    kept = getattr(settings, keep_property(key))
-    number = getattr(settings, limit_property(key), NONE)
-    if number <= NONE:
-        return search.Limit() if kept and can_be_kept_alone(key) else None
-    value = as_typed(number) if isinstance(number, float) else number
-    return search.Limit(value, kept)
+def limit_of(settings: PropertyGroup, key: str) -> tuple[float | None, bool]:
+    """Return the number of a figure's limit, or None, and whether it is locked."""
+    found = value_at(settings.table, ("limits", key))
+    if found is None:
+        return None, not (can_be_kept_alone(key) or key in search.NUMBERED)
+    if isinstance(found, Mapping):
+        return found.get("value"), found.get("kept", True)
+    return (None if found is True else found), True
 
 
-def write_limits(settings: PropertyGroup, limits: search.Limits) -> None:
-    """Write limits to a scene."""
-    for key in search.LIMITED:
-        limit = limits.limit_on(key)
-        is_locked = limit.kept if limit is not None else not can_be_kept_alone(key)
-        setattr(settings, keep_property(key), is_locked)
-        if key != search.REQUIREMENTS:
-            number = None if limit is None else limit.value
-            setattr(settings, limit_property(key), NONE if number is None else number)
+def put_limit(settings: PropertyGroup, key: str, number: float | None, locked: bool) -> None:
+    """Write a figure's limit."""
+    usual = not (can_be_kept_alone(key) or key in search.NUMBERED)
+    entry: Any = {"value": number, "kept": locked}
+    if number is None:
+        entry = None if locked == usual else {"kept": locked}
+        entry = True if locked and can_be_kept_alone(key) else entry
+    elif locked:
+        entry = number
+    put(settings, ("limits", key), entry)

@@ -1,64 +1,73 @@
-"""Load an imported study: convert it to the record of a scene, and write the record to the scene.
+"""Load an imported study: write its table to the scene, and make what Blender holds.
 
 A comparison of the imported study with the study of the scene finds what the scene cannot hold.
 """
 
 import contextlib
-import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
 import bpy
-import numpy as np
 from bpy.types import Collection, Object, PropertyGroup, Scene
 
-from ..choices import BY_GROUP, BY_MESH, BY_PARTS, ON_SLOTS
+from ..choices import BY_GROUP, BY_PARTS, ON_SLOTS
 from ..engine import catalog, kinds, pe, search, studies
 from .apply_variant import apply_records
 from .conditions import write_conditions
-from .limits import write_limits
 from .prior import write_prior
 from .requirements import write_requirements
 from .rig import place_at, view_layer_of
-from .scene_record import (
-    SceneRecord,
-    as_in_study,
-    study_from_scene,
-    vehicle_of_scene,
-    write_options,
-)
-from .scene_settings import write_goals, write_reference, write_values
-from .sensor_records import NO_BOUNDS, ZEROS, ModelOption, SensorRecord
-from .time import write_time
+from .scene_study import study_from_scene, vehicle_of_scene
+from .sensor_records import SensorRecord, record_of_sensor
+from .study_table import TableData, value_at, write_table
+from .time import write_stories
 from .vehicle import make_body, paint_area, same_body
 
 RACK = "rack {}"
 FAR_M = 1e4
+HELD = (
+    *(
+        ("vehicle", key)
+        for key in ("mesh", "glass", "covers", "forward", "up", "scale", "rotation")
+    ),
+    *(("optimize", key) for key in ("mount", "pairs", "groups", "no_go", "fixed")),
+    ("selection", "choice"),
+)
+"""Keys of a study's tables that Blender holds."""
 
 
 def load_into(scene: Scene, study: pe.Study) -> list[str]:
     """Write a study to a scene; return the keys of its file that the scene cannot hold.
 
-    Before them are the sensors that have another name here, as another object has theirs.
+    Before them are the sensors that have another name here, as another object has theirs. If
+    sensors choose their model together, each of them gets the options.
 
     The scene's vehicle is kept if its triangles are equal to the study's to the bit.
 
     `InputError` when the study has no vehicle, or a sensor is of a model that the catalogue does
     not have.
     """
-    record = record_of_study(study)  # an error comes before anything is changed
-    _write_vehicle(scene, record.vehicle)
-    _write_settings(scene.perception_entropy, record)
-    write_prior(scene.perception_entropy, record.prior)
-    write_requirements(scene.perception_entropy, record.requirements)
-    write_conditions(scene.perception_entropy, record.conditions)
-    _write_mounts(scene, record.mounts)
-    _write_constraints(scene, record.constraints)
-    names = apply_records(scene, record.sensors)
-    for sensor in record.sensors:
-        write_options(scene.objects[names[sensor.name]].perception_entropy, sensor)
+    if study.vehicle is None:
+        raise pe.InputError("study", "vehicle.mesh", "a vehicle", "none")
+    sensors = _sensor_records(study)  # an error comes before anything is changed
+    settings = scene.perception_entropy
+    mounting = study.search.mounting
+    write_table(settings, scene_table(study))
+    _write_vehicle(scene, study.vehicle)
+    write_prior(settings, study.prior)
+    write_requirements(settings, study.requirements)
+    write_conditions(settings, study.conditions)
+    write_stories(settings, study.stories)
+    _show_curves(settings)
+    settings.start_variants = False
+    _write_mounts(scene, mounting.mounts)
+    _write_no_go(scene, mounting.constraints.no_go)
+    names = apply_records(scene, sensors)
+    for sensor in sensors:
+        own = scene.objects[names[sensor.name]].perception_entropy
+        _write_options(own, sensor.options)
     layer = view_layer_of(scene)
     layer.update()
     renamed = {name: here for name, here in names.items() if name != here}
@@ -69,28 +78,16 @@ def load_into(scene: Scene, study: pe.Study) -> list[str]:
     return lines + differences(study, study_from_scene(scene, layer.depsgraph), renamed)
 
 
-def record_of_study(study: pe.Study) -> SceneRecord:
-    """Return an imported study as the record of a scene.
-
-    If sensors choose their model together, each of them gets the options. A scene cannot store a
-    limit by kind.
-
-    `InputError` when the study has no vehicle, or a sensor is of a model that the catalogue does
-    not have.
-    """
-    if study.vehicle is None:
-        raise pe.InputError("study", "vehicle.mesh", "a vehicle", "none")
-    mounting = study.search.mounting
-    goals = replace(study.search.goals, fixed=())
-    return SceneRecord(
-        source="study",
-        sensors=_sensor_records(study),
-        search=replace(study.search, free={}, limits={}, mounting=pe.Mounting(), goals=goals),
-        mounts=mounting.mounts,
-        constraints=mounting.constraints,
-        selection=replace(study.selection, choices=()),
-        **as_in_study(study),
-    )
+def scene_table(study: pe.Study) -> TableData:
+    """Return the table of a study's file without what Blender holds: sensors, mesh, prior, and what
+    is a list in the panel."""
+    table = studies.study_to_dict(study)
+    for key in ("sensor", "requirement", "weather", "state", "story", "prior"):
+        table.pop(key, None)
+    for path in HELD:
+        owner = table.get(path[0], {})
+        owner.pop(path[1], None)
+    return {key: value for key, value in table.items() if value != {}}
 
 
 def differences(
@@ -145,24 +142,17 @@ def _sensor_records(study: pe.Study) -> tuple[SensorRecord, ...]:
             field = f"sensor {sensor.name!r}: model"
             raise pe.InputError("study", field, "one of the catalogue's", repr(sensor.model.name))
         name = sensor.name
-        free = study.search.free[sensor.name]
         mount = mounting.on.get(name, "")
         records.append(
-            SensorRecord(
-                name=name,
-                model=sensor.model.name,
-                pose=sensor.pose,
-                fusion=sensor.fusion or "",
-                free=tuple(axis in free for axis in search.AXES),
-                **_bounds(study.search.limits.get(name, {})),
+            replace(
+                record_of_sensor(sensor),
+                free=study.search.free[name],
+                bounds=studies.AxisBounds(**study.search.limits.get(name, {})),
                 mirror_of=linked.get(name, ""),
                 mount=mount,
                 rack=racks.get(name, ""),
-                curve=sensor.curve,
                 stays=name in study.search.goals.fixed,
-                color=sensor.color,
                 order=order,
-                sheet=sensor.sheet,
                 **_options(study.selection, name, mount),
             )
         )
@@ -172,22 +162,8 @@ def _sensor_records(study: pe.Study) -> tuple[SensorRecord, ...]:
 def _options(selection: pe.Selection, name: str, mount: str) -> dict[str, Any]:
     """Return the models that a sensor is offered, and whether it may be left out."""
     choices = [c for c in selection.choices if name in c.sensors or c.mount == mount]
-    options = tuple(ModelOption(o.model.name, o.sheet) for c in choices for o in c.options)
+    options = tuple(studies.write(option) for choice in choices for option in choice.options)
     return {"options": options, "may_be_left_out": bool(choices) and choices[-1].optional}
-
-
-def _bounds(limits: Mapping[str, tuple[float, float]]) -> dict[str, Any]:
-    """Return bounds in the units of a record: metres and degrees."""
-    bounded = list(NO_BOUNDS)
-    low = list(ZEROS)
-    high = list(ZEROS)
-    for number, axis in enumerate(search.AXES):
-        if axis in limits:
-            is_length = axis in search.POSITION_AXES
-            ends = limits[axis] if is_length else tuple(map(math.degrees, limits[axis]))
-            bounded[number] = True
-            low[number], high[number] = ends
-    return {"bounded": tuple(bounded), "low": tuple(low), "high": tuple(high)}
 
 
 def _write_vehicle(scene: Scene, vehicle: pe.Vehicle) -> None:
@@ -196,83 +172,49 @@ def _write_vehicle(scene: Scene, vehicle: pe.Vehicle) -> None:
     present = None
     with contextlib.suppress(pe.InputError):
         present = vehicle_of_scene(scene, layer.depsgraph)
-    write_values(settings, vehicle)
     if not same_body(present, vehicle):
         settings.vehicle = make_body(scene, vehicle)
         layer.update()
 
 
-def _write_settings(settings: PropertyGroup, record: SceneRecord) -> None:
-    """Write the settings of a record to a scene: space, AP curves, score, search and limits.
-    Vehicle, sensors, prior, mounts and constraints are written by others."""
-    own = record.search
-    tolerance = record.search.tolerance
-    instances = (record.space, record.targets, record.model, own, own.schedule, record.selection)
-    for instance in instances:
-        write_values(settings, instance)
-    settings.score_samples = record.samples
-    settings.returns = record.returns
-    settings.method = own.method
-    write_goals(settings, own.goals)
-    write_limits(settings, record.limits)
-    settings.mounting_errors = tolerance.position > 0.0 or tolerance.angle > 0.0
-    settings.on_grid = record.search.grid.is_on
-    if settings.on_grid:
-        write_values(settings, record.search.grid)
-    names = () if settings.mounting_errors else ("failures", "worst")
-    write_values(settings, tolerance, names)  # without errors their fields keep their values
+def _show_curves(settings: PropertyGroup) -> None:
+    """Have a row for each kind of sensor whose curve the table has."""
     settings.curves.clear()
-    default = pe.PerceptionModel()
     for kind in kinds.KINDS:
-        if (curve := record.model.curve(kind)) != default.curve(kind):
-            row = settings.curves.add()
-            row.name = kind
-            row.own = True
-            write_values(row, curve)
-    write_reference(settings, record.reference)
-    write_time(settings, record.frames, record.confirmation, record.stories)
+        if value_at(settings.table, ("ap", kind)):
+            settings.curves.add().name = kind
+
+
+def _write_options(settings: PropertyGroup, options: Sequence[TableData]) -> None:
+    """Write the models that a sensor is offered."""
+    settings.options.clear()
+    for table in options:
+        write_table(settings.options.add(), table)
 
 
 def _write_mounts(scene: Scene, mounts: Mapping[str, search.AnyMount]) -> None:
     settings = scene.perception_entropy
     settings.mounts.clear()
+    members = settings.vehicle.all_objects
     for name, mount in mounts.items():
         row = settings.mounts.add()
         row.name = name
-        write_mount(scene, row, mount)
-
-
-def write_mount(scene: Scene, row: PropertyGroup, mount: search.AnyMount) -> None:
-    """Write a mount to its row. An area that is no faces of the vehicle becomes a mesh beside
-    it."""
-    members = scene.perception_entropy.vehicle.all_objects
-    if isinstance(mount, pe.SlotMount):
-        row.kind = ON_SLOTS
-        row.slots = _slots(scene, row.name, mount)
-        return
-    write_values(row, mount)
-    if mount.area is None:
-        row.faces = BY_PARTS
-        for part in mount.parts:
-            row.parts.add().part = members.get(part)
-        return
-    row.faces = BY_GROUP
-    row.group = row.name
-    if not paint_area(list(members), row.name, mount.area.triangles):
-        row.faces = BY_MESH
-        row.area = _area_object(scene, row.name, mount.area.triangles)
-
-
-def _area_object(scene: Scene, name: str, triangles: np.ndarray) -> Object:
-    """Return a new mesh of faces (F, 3, 3) in the ground frame, drawn as wire and not rendered."""
-    mesh = bpy.data.meshes.new(name)
-    corners = triangles.reshape(-1, 3)
-    mesh.from_pydata(corners.tolist(), [], np.arange(len(corners)).reshape(-1, 3).tolist())
-    obj = bpy.data.objects.new(name, mesh)
-    obj.display_type = "WIRE"
-    obj.hide_render = True
-    scene.collection.objects.link(obj)
-    return obj
+        if isinstance(mount, pe.SlotMount):
+            row.kind = ON_SLOTS
+            row.slots = _slots(scene, name, mount)
+            continue
+        table = studies.write(mount)
+        for key in ("parts", "area"):  # objects, or painted faces
+            table.pop(key, None)
+        write_table(row, table)
+        if mount.area is None:
+            row.faces = BY_PARTS
+            for part in mount.parts:
+                row.parts.add().part = members.get(part)
+        else:
+            row.faces = BY_GROUP
+            row.group = name
+            paint_area(list(members), name, mount.area.triangles)
 
 
 def _slots(scene: Scene, name: str, mount: pe.SlotMount) -> Collection:
@@ -297,12 +239,11 @@ def _empty(name: str) -> Object:
     return bpy.data.objects.new(name, None)
 
 
-def _write_constraints(scene: Scene, constraints: pe.Constraints) -> None:
-    write_values(scene.perception_entropy, constraints)
+def _write_no_go(scene: Scene, areas: Sequence[pe.NoGo]) -> None:
     for obj in scene.objects:
         if obj.perception_entropy.is_no_go:
             obj.perception_entropy.is_no_go = False
-    for area in constraints.no_go:
+    for area in areas:
         obj = _empty(area.name)
         obj.empty_display_type = "CUBE"
         obj.empty_display_size = 1.0

@@ -11,17 +11,16 @@ from typing import TypeAlias
 import numpy as np
 from bpy.types import Collection, Depsgraph, Mesh, Object, PropertyGroup, Scene
 
-from ..choices import BY_MESH, BY_PARTS, ON_SLOTS, ON_SURFACE, LimitBox
+from ..choices import BY_PARTS, ON_SLOTS, ON_SURFACE, LimitBox
 from ..engine import pe, search, studies
 from .rig import pose_of
-from .scene_settings import values_of
-from .sensor_records import SensorRecord, bounds_by_axis
+from .sensor_records import SensorRecord
+from .study_table import TableData, read_row, value_at
 from .transform_constraints import free_axes
 from .vehicle import drawn_meshes, placed_triangles, triangles_of
 
 MountSettings: TypeAlias = PropertyGroup
 CORNERS = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
-AREA_DECIMALS = 5  # A mesh in single precision holds an area exactly to 0.01 mm
 PAINTED = 0.5
 """A vertex with a larger weight counts as painted."""
 
@@ -63,14 +62,15 @@ def mount_of_row(scene: Scene, depsgraph: Depsgraph, row: MountSettings) -> sear
     """Return one mount of a scene. `InputError` when it has no faces, or no slots."""
     if row.kind == ON_SLOTS:
         return pe.SlotMount(_slots(row, depsgraph))
-    own = values_of(row, pe.SurfaceMount)
     if row.faces == BY_PARTS:
-        return pe.SurfaceMount(part_names(row), **own)
-    faces = area_faces(scene, depsgraph, row)
+        return read_row(pe.SurfaceMount, row, f"mount {row.name!r}", parts=part_names(row))
+    vehicle = scene.perception_entropy.vehicle
+    faces = painted_area(vehicle, depsgraph, row)
     if not len(faces):
         raise area_problem(row)
     area = pe.MountArea(faces, studies.AREAS, (row.name,))
-    return pe.SurfaceMount((), **own, area=area)
+    own = read_row(pe.SurfaceMount, row, f"mount {row.name!r}", parts=[row.name])
+    return replace(own, parts=(), area=area)
 
 
 def with_mount(study: pe.Study, scene: Scene, depsgraph: Depsgraph, name: str) -> pe.Study:
@@ -124,12 +124,11 @@ def followers_of(pairs: Sequence[Sequence[str]], groups: Sequence[Sequence[str]]
     return frozenset([p[1] for p in pairs] + [name for group in groups for name in group[1:]])
 
 
-def constraints_of(scene: Scene) -> pe.Constraints:
-    """Return the constraints of a scene's search. `InputError` when a limit or a no-go area is
-    impossible."""
-    values = values_of(scene.perception_entropy, pe.Constraints)
+def constraints_of(scene: Scene, wanted: pe.Mounting) -> pe.Constraints:
+    """Return the constraints of a scene's search, with its no-go areas. `InputError` when one of
+    them is impossible."""
     try:
-        return pe.Constraints(**values, no_go=no_go_of(scene))
+        return replace(wanted.constraints, no_go=no_go_of(scene))
     except pe.InputError as error:
         raise of_scene(error) from None
 
@@ -187,21 +186,6 @@ def painted_area(vehicle: Collection, depsgraph: Depsgraph, mount: PropertyGroup
     return np.concatenate([area for _, area in areas]) if areas else np.empty((0, 3, 3))
 
 
-def area_faces(scene: Scene, depsgraph: Depsgraph, mount: PropertyGroup) -> np.ndarray:
-    """Return the faces (F, 3, 3) of a mount that is no part of the vehicle [m]: painted, or those
-    of a mesh of its own, to 0.01 mm; an empty array where there are none."""
-    if mount.faces != BY_MESH:
-        return painted_area(scene.perception_entropy.vehicle, depsgraph, mount)
-    obj = mount.area
-    if obj is None or obj.type != "MESH":
-        return np.empty((0, 3, 3))
-    own = obj.evaluated_get(depsgraph)
-    mesh = own.to_mesh()
-    triangles = placed_triangles(triangles_of(mesh), np.array(own.matrix_world, dtype=float))
-    own.to_mesh_clear()
-    return np.round(triangles, AREA_DECIMALS) + 0.0
-
-
 def _chosen(obj: Object, mesh: Mesh, mount: PropertyGroup) -> np.ndarray:
     """Return a mask (F,) of the triangles of a mesh that belong to the mount."""
     count = len(mesh.loop_triangles) if mesh.loop_triangles else _triangulated(mesh)
@@ -226,8 +210,6 @@ def _triangulated(mesh: Mesh) -> int:
 
 def area_problem(mount: PropertyGroup) -> pe.InputError:
     """Return the error of a surface that has no faces."""
-    if mount.faces == BY_MESH:
-        return pe.InputError("scene", f"mount {mount.name!r}: mesh", "a mesh with faces", "none")
     field = f"mount {mount.name!r}: vertex group {mount.group!r}"
     expected = "faces of the vehicle that are painted in it, with weights above 0.5"
     return pe.InputError("scene", field, expected, "none")
@@ -237,10 +219,6 @@ def mount_key(row: PropertyGroup) -> Hashable:
     """Return a cache key of a mount's faces, besides the vehicle; None for a list of slots."""
     if row.kind != ON_SURFACE:
         return None
-    if row.faces == BY_MESH:
-        obj = row.area
-        own = () if obj is None else (obj.name, len(obj.data.vertices), str(obj.matrix_world))
-        return row.faces, own
     return row.faces, tuple(part_names(row)) if row.faces == BY_PARTS else row.group
 
 
@@ -251,7 +229,7 @@ def mount_faces(
     if row.faces == BY_PARTS:
         wanted = [n for n, name in enumerate(vehicle.part_names) if name in part_names(row)]
         return vehicle.triangles[np.isin(vehicle.parts, wanted)]
-    return area_faces(scene, depsgraph, row)
+    return painted_area(scene.perception_entropy.vehicle, depsgraph, row)
 
 
 def bounds_box(
@@ -260,8 +238,7 @@ def bounds_box(
     """Return the box of a sensor's own bounds; None for one without any. On a fixed axis the box
     has no extent. On a free axis without bounds it has the default bounds; for a sensor on a
     surface it spans the faces `around` (F, 3, 3) and the sensor."""
-    settings = obj.perception_entropy
-    limits = bounds_by_axis(settings.bounded, settings.bounds_low, settings.bounds_high)
+    limits: TableData = value_at(obj.perception_entropy.table, ("bounds",), {})
     if not set("xyz") & set(limits):
         return None
     usual = search.default_bounds(sensor, vehicle)

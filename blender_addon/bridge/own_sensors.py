@@ -5,17 +5,18 @@ A camera's lens is stored as one line of text, with the keys of a study file.
 
 import tomllib
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 import bpy
 from bpy.types import PropertyGroup, Scene
 
 from ..choices import free_name
-from ..engine import catalog, pe
+from ..engine import catalog, pe, studies
 from ..sensor_kinds import OwnCamera, OwnLidar
 from .rig import sensor_objects
-from .scene_settings import values_of
+from .study_table import value_at
 
+T = TypeVar("T")
 _added: dict[str, dict[str, Any]] = {}
 """Tables that this add-on has added to the catalogue, by name."""
 LENS_KEYS = frozenset({"fx", "fy", "cx", "cy", "fov_deg", "distortion"})
@@ -54,15 +55,21 @@ def table_of(row: PropertyGroup) -> dict[str, Any]:
     return {"kind": row.kind} | to_table(row)
 
 
+def own_of(row: PropertyGroup, cls: type[T]) -> T:
+    """Return the figures of an own sensor's row, impossible ones included."""
+    found = {name: value_at(row.table, (name,)) for name in studies.settings_of(cls)}
+    return cls(**{name: value for name, value in found.items() if value is not None})
+
+
 def _camera_table(row: PropertyGroup) -> dict[str, Any]:
-    own = OwnCamera(**values_of(row, OwnCamera))
+    own = own_of(row, OwnCamera)
     size = {"width": own.width, "height": own.height}
     lens = read_line(own.lens, "distortion")
     return size | ({} if LENS_KEYS & set(lens) else {"hfov_deg": own.hfov}) | lens
 
 
 def _lidar_table(row: PropertyGroup) -> dict[str, Any]:
-    own = OwnLidar(**values_of(row, OwnLidar))
+    own = own_of(row, OwnLidar)
     low, high = own.elevations
     steps = max(own.channels - 1, 1)
     return ({"min_range_m": own.min_range} if own.min_range > 0.0 else {}) | {

@@ -9,7 +9,7 @@ from bpy.types import PropertyGroup, Scene
 
 from ..choices import CUSTOM, FROM_BOXES, HIGHWAY, REGIONS, ROAD, UNIFORM, FocusArea, FocusRegion
 from ..engine import formats, pe
-from .scene_settings import as_typed
+from .study_table import as_typed
 
 MODELS = {ROAD: pe.Prior.road, HIGHWAY: pe.Prior.highway, UNIFORM: pe.Prior.uniform}
 

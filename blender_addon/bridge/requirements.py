@@ -9,14 +9,13 @@ from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import asdict, replace
 from functools import lru_cache
-from typing import Any
 
 from bpy.types import PropertyGroup
 
 from ..engine import pe, requirements, studies
+from .study_table import TableData
 
 REASON = "reason"  # Key of a stored text that is why there is no verdict
-TableData = dict[str, Any]
 Requirement = requirements.Requirement
 Verdict = requirements.Verdict
 VerdictSummary = requirements.VerdictSummary

@@ -3,16 +3,16 @@
 import contextlib
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict
 
 import bpy
 import numpy as np
-from bpy.types import Depsgraph, Object, PropertyGroup, Scene, ViewLayer
+from bpy.types import Depsgraph, Object, Scene, ViewLayer
 from mathutils import Matrix
 
-from ..engine import catalog, geometry, graphics, kinds, pe, search
-from .scene_settings import values_of
+from ..engine import geometry, pe, search
+from .study_table import value_at
 
+COLOR = ("color",)
 SCALE_TOLERANCE = 1e-4
 """How far a sensor's axes may be from unit length and from right angles."""
 HELD_POSITION_M = 4e-6
@@ -29,62 +29,10 @@ def sensor_objects(scene: Scene) -> list[Object]:
     return sorted(sensors, key=lambda obj: (obj.perception_entropy.order, obj.name))
 
 
-def rig_from_objects(objects: Sequence[Object], depsgraph: Depsgraph) -> pe.Rig:
-    """Return the visible sensors among some objects as a rig. `InputError` when there is none, or
-    one of them is no possible sensor."""
-    visible = [obj for obj in objects if obj.visible_get(view_layer=depsgraph.view_layer)]
-    if not visible:
-        found = f"{len(objects)} hidden" if objects else "none"
-        raise pe.InputError("scene", "sensors", "at least one visible sensor", found)
-    sensors = [sensor_from_object(obj, depsgraph) for obj in visible]
-    try:
-        return pe.Rig(sensors)
-    except pe.InputError as error:
-        raise error.at("scene") from None
-
-
-def sensor_from_object(obj: Object, depsgraph: Depsgraph) -> pe.Sensor:
-    """Return one object's model, placement, fusion group and AP curve as a sensor. `InputError`
-    when it is no possible sensor; the line names the object."""
-    settings = obj.perception_entropy
-    try:
-        returns = depsgraph.scene.perception_entropy.returns
-        model = kinds.returning(catalog.load(settings.model), returns)
-        pose = pose_of(obj, depsgraph)
-        fusion = settings.fusion or None
-        color = color_of(obj)
-        return pe.Sensor(
-            obj.name,
-            model,
-            pose,
-            fusion,
-            curve=curve_of(settings),
-            color=color,
-            sheet=sheet_of(settings),
-        )
-    except pe.InputError as error:
-        raise error.within("scene", f"sensor {obj.name!r}") from None
-
-
-def sheet_of(settings: PropertyGroup) -> pe.DataSheet:
-    """Return what is known of a sensor or a model to choose, besides what the catalogue has."""
-    return pe.DataSheet(**values_of(settings, pe.DataSheet))
-
-
 def color_of(obj: Object) -> str | None:
     """Return the colour of a sensor, such as "#5fb8f7"; None before it has one."""
     settings = obj.perception_entropy
-    return graphics.color_text(settings.color) if settings.color_of else None
-
-
-def possible_sensors(objects: Sequence[Object], depsgraph: Depsgraph) -> list[pe.Sensor]:
-    """Return the visible sensors among some objects, without those that cannot be scored."""
-    sensors = []
-    for obj in objects:
-        if obj.visible_get(view_layer=depsgraph.view_layer):
-            with contextlib.suppress(pe.InputError):
-                sensors.append(sensor_from_object(obj, depsgraph))
-    return sensors
+    return value_at(settings.table, COLOR) if settings.color_of else None
 
 
 def pose_of(obj: Object, depsgraph: Depsgraph) -> pe.Pose:
@@ -254,20 +202,3 @@ def _ground_from_parent(obj: Object) -> np.ndarray:
         return np.eye(4)
     parent = np.array(obj.parent.matrix_world, dtype=float)
     return parent @ np.array(obj.matrix_parent_inverse, dtype=float)
-
-
-def curve_of(settings: PropertyGroup) -> pe.ApCurve | None:
-    """Return a sensor's own AP curve; None where it uses that of its kind. `InputError` when the
-    numbers are no curve."""
-    if not settings.own_curve:
-        return None
-    return pe.ApCurve(**values_of(settings, pe.ApCurve, prefix="curve_"))
-
-
-def put_curve(settings: PropertyGroup, curve: pe.ApCurve | None) -> None:
-    """Set or remove a sensor's own AP curve; equal values are not written again."""
-    for name, value in (asdict(curve) if curve else {}).items():
-        if getattr(settings, f"curve_{name}") != value:
-            setattr(settings, f"curve_{name}", value)
-    if settings.own_curve != (curve is not None):
-        settings.own_curve = curve is not None

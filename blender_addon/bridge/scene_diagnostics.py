@@ -12,7 +12,8 @@ from bpy.types import ID, Collection, LayerCollection, Object, Scene
 
 from ..engine import advice, pe
 from .mounting import followers_of
-from .rig import sensor_from_object, sensor_objects, view_layer_of
+from .rig import sensor_objects, view_layer_of
+from .sensor_records import sensor_from_object
 from .transform_constraints import AXIS_LABELS, free_axes, holders, locked_axes
 from .vehicle import (
     IN_RENDERS,

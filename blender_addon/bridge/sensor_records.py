@@ -1,128 +1,84 @@
-"""Sensor records: one sensor as plain values, read from the scene, a variant or an imported study.
+"""Sensors as tables: one sensor of a scene, of a variant or of an imported study, as plain values.
 
-A scene is read into records, a variant stores records, and an imported study is converted to
-records. `scene_record.study_of` makes a study from records only.
+A sensor's object holds the text of its table `[[sensor]]`, with what else is known of it: its
+mirror image, its rack, whether it stays. Blender has its name, pose and visibility. A variant
+stores the tables of all sensors; what differs between two of them are keys.
 """
 
+import contextlib
 import json
-import math
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, astuple, dataclass, field
-from typing import Any, NamedTuple
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from typing import Annotated, Any
 
 import numpy as np
 from bpy.types import Depsgraph, Object, PropertyGroup, Scene, ViewLayer
 
-from ..engine import catalog, kinds, pe, search
-from .rig import (
-    color_of,
-    curve_of,
-    last_written_pose,
-    pose_from_numbers,
-    pose_of,
-    pose_of_matrix,
-    sensor_objects,
-    sheet_of,
-    view_layer_of,
-)
-from .scene_settings import pair_as_typed
+from ..engine import catalog, kinds, pe, search, studies
+from ..sensor_kinds import DEFAULT_MODEL
+from .rig import color_of, last_written_pose, pose_of, pose_of_matrix, sensor_objects, view_layer_of
+from .study_table import LARGEST_INT, TableData, parsed
 from .transform_constraints import locked_axes
 
-NO_BOUNDS = (False,) * len(search.AXES)
-ZEROS = (0.0,) * len(search.AXES)
-PAPER_FREE = tuple(axis in search.PAPER_FREE for axis in search.AXES)
-STORED = (
-    "name",
-    "model",
-    "fusion",
-    "free",
-    "visible",
-    "display",
-    "size_m",
-    "bounded",
-    "low",
-    "high",
-    "mirror_of",
-    "mount",
-    "rack",
-)
-"""Fields that a variant stores as they are; the others have forms of their own."""
-
-
-class ModelOption(NamedTuple):
-    """A model that may replace a sensor's model; its price, and what else is known of it."""
-
-    model: str
-    sheet: pe.DataSheet
+OF_OBJECT = ("locked", "options", "may_be_left_out", "stays", "color", "order")
+"""Keys that belong to the sensor's object, in whatever variant."""
+OF_BLENDER = ("name", "position", "rotation", "visible", "display", "size_m", "locked", "options")
+"""Keys that an object's text does not have: Blender holds them."""
+SCORED = ("name", "model", "fusion", "position", "rotation", "visible", "ap")
+IDENTITY = (*SCORED, "free", "bounds", "mirror_of", "mount", "rack")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SensorRecord:
-    """One sensor: everything that a score and a search depend on, and its display settings.
+    """One sensor: everything that a score and a search depend on, and its display settings. Its
+    table (`studies.read`, `studies.write`) has the keys of `[[sensor]]`, and those of its object.
 
-    `bounded` marks the axes with own bounds, `low` and `high` are these bounds [m or deg].
-    `mirror_of` is the linked mirror image, `mount` the sensor's mount, `rack` the group that moves
-    as one. `curve` is an own AP curve; `sheet` are figures of its
-    own, `intrinsics` is the model if the catalogue does not have it.
-
-    The last fields belong to the sensor's object and are not stored with a variant: a variant's
-    record takes them from the object that the variant would use if it were applied. `locked` axes
-    restrict the search, `options` are the models to choose from, `may_be_left_out` allows designs
-    without the sensor, and one that `stays` is moved by no search. `color` is the sensor's own,
-    `order` its place among the sensors.
+    `mirror_of` is the linked mirror image, `rack` the group that moves as one. `intrinsics` is the
+    model if the catalogue does not have it. A variant's record takes the keys `OF_OBJECT` from the
+    object that the variant would use if it were applied: `locked` axes restrict the search,
+    `options` are tables of the models to choose from, `may_be_left_out` allows designs without the
+    sensor, and one that `stays` is moved by no search; `order` is its place among the sensors.
     """
 
-    name: str
+    name: studies.Named
     model: str
-    pose: pe.Pose
+    pose: Annotated[pe.Pose, studies.Part(inline=True)]
     fusion: str = ""
-    free: tuple[bool, ...] = PAPER_FREE
+    curve: Annotated[pe.ApCurve | None, studies.Part(key="ap")] = None
+    color: str | None = None
+    sheet: Annotated[pe.DataSheet, studies.Part(inline=True)] = field(default_factory=pe.DataSheet)
+    free: Annotated[tuple[str, ...], studies.Part(rule=studies.Several(search.AXES))] = (
+        search.PAPER_FREE
+    )
+    bounds: studies.AxisBounds = field(default_factory=studies.AxisBounds)
+    mount: str = ""
+    mirror_of: str = ""
+    rack: str = ""
     visible: bool = True
     display: str = "ARROWS"
     size_m: float = 0.25
-    bounded: tuple[bool, ...] = NO_BOUNDS
-    low: tuple[float, ...] = ZEROS
-    high: tuple[float, ...] = ZEROS
-    mirror_of: str = ""
-    mount: str = ""
-    rack: str = ""
-    curve: pe.ApCurve | None = None
-    sheet: pe.DataSheet = field(default_factory=pe.DataSheet)
-    intrinsics: Any = None  # the engine's model, where the catalogue may not have it
-
-    locked: tuple[str, ...] = ()
-    options: tuple[ModelOption, ...] = ()
-    may_be_left_out: bool = False
     stays: bool = False
-    color: str | None = None
-    order: int = 0
+    may_be_left_out: bool = False
+    order: Annotated[int, studies.Part(rule=studies.Whole(-LARGEST_INT))] = 0
+    locked: tuple[str, ...] = ()
+    options: Annotated[tuple[TableData, ...], studies.Part(stored=False)] = ()
+    intrinsics: Annotated[Any, studies.Part(stored=False)] = None
 
     @property
-    def numbers(self) -> tuple[float, ...]:
-        """Position [m] and roll, pitch, yaw [deg]."""
-        return (*self.pose.position, *self.pose.rotation_deg)
+    def table(self) -> TableData:
+        """The record as plain data."""
+        table: TableData = studies.write(self)
+        return table
 
-    @property
-    def scored(self) -> tuple[object, ...]:
-        """The values that a score and its key figures depend on."""
-        return self.name, self.model, self.fusion, self.numbers, self.visible, self.curve
-
-    @property
-    def identity(self) -> tuple[object, ...]:
-        """Values by which two variants differ; display settings are left out."""
-        bounds = zip(self.bounded, self.low, self.high, strict=True)
-        links = self.mirror_of, self.mount, self.rack
-        return (
-            *self.scored,
-            self.free,
-            *((a, b) if is_bounded else None for is_bounded, a, b in bounds),
-            *links,
-        )
+    def keys(self, among: Sequence[str]) -> TableData:
+        """Return the values of some keys, those that have their default left out."""
+        return {key: value for key, value in self.table.items() if key in among}
 
 
 def same_sensors(records: Iterable[SensorRecord], others: Iterable[SensorRecord]) -> bool:
     """Return whether two lists of sensors are the same variant."""
-    return [record.identity for record in records] == [record.identity for record in others]
+    return [each.keys(IDENTITY) for each in records] == [each.keys(IDENTITY) for each in others]
 
 
 def records_of_scene(scene: Scene) -> tuple[SensorRecord, ...]:
@@ -135,48 +91,47 @@ def records_of_scene(scene: Scene) -> tuple[SensorRecord, ...]:
 
 def record_of_object(obj: Object, depsgraph: Depsgraph, layer: ViewLayer) -> SensorRecord:
     """Return the record of one sensor of a scene. `InputError` when it is scaled or sheared, has no
-    finite place, or its AP curve is impossible."""
-    settings = obj.perception_entropy
+    finite place, or a value of its table is wrong."""
     visible = obj.visible_get(view_layer=layer)
-    try:
-        pose = pose_of(obj, depsgraph) if visible else _hidden_pose(obj)
-        curve = curve_of(settings)
-    except pe.InputError as error:
-        raise error.within("scene", f"sensor {obj.name!r}") from None
-    return SensorRecord(
-        name=obj.name,
-        model=settings.model,
-        pose=pose,
-        fusion=settings.fusion,
-        free=tuple(settings.free),
+    record = _placed_record(obj, depsgraph if visible else None)
+    return replace(
+        record,
         visible=visible,
         display=obj.empty_display_type,
         size_m=obj.empty_display_size,
-        bounded=tuple(settings.bounded),
-        low=tuple(settings.bounds_low),
-        high=tuple(settings.bounds_high),
-        mirror_of=settings.mirror_of,
-        mount=settings.mount,
-        rack=settings.rack,
-        curve=curve,
-        sheet=sheet_of(settings),
-        **_object_fields(obj),
+        **_object_keys(obj),
     )
 
 
-def _object_fields(obj: Object | None) -> dict[str, Any]:
-    """Return the fields of a record that belong to the object; empty without an object."""
-    if obj is None:
-        return {}
-    settings = obj.perception_entropy
-    return {
-        "locked": locked_axes(obj),
-        "options": tuple(ModelOption(o.model, sheet_of(o)) for o in settings.options),
-        "may_be_left_out": settings.may_be_left_out,
-        "stays": settings.stays,
-        "color": color_of(obj),
-        "order": settings.order,
-    }
+def _placed_record(obj: Object, depsgraph: Depsgraph | None) -> SensorRecord:
+    """Return a sensor's table with its name and pose; `depsgraph` is None for a hidden one."""
+    try:
+        pose = _hidden_pose(obj) if depsgraph is None else pose_of(obj, depsgraph)
+        known = _record_of_text(obj.perception_entropy.table)
+    except pe.InputError as error:
+        raise error.within("scene", f"sensor {obj.name!r}") from None
+    return replace(known, name=obj.name, pose=pose, color=color_of(obj))
+
+
+@lru_cache(maxsize=512)
+def _record_of_text(text: str) -> SensorRecord:
+    """Return the table of an object's text, without name and pose; it is asked for in drags."""
+    table = parsed(text)
+    if table is None:
+        raise pe.InputError("sensor", "", "a table as JSON", "other text")
+    usual = {"name": "sensor", "model": DEFAULT_MODEL, "position": [0.0, 0.0, 0.0]}
+    return studies.read(SensorRecord, studies.Node(usual | table, "sensor"))
+
+
+def object_table(record: SensorRecord) -> TableData:
+    """Return the table that the record's object holds."""
+    return {key: value for key, value in record.table.items() if key not in OF_BLENDER}
+
+
+def _object_keys(obj: Object) -> dict[str, Any]:
+    """Return the keys that a scene's object has besides its text."""
+    options = tuple(parsed(row.table) or {} for row in obj.perception_entropy.options)
+    return {"locked": locked_axes(obj), "options": options}
 
 
 def _hidden_pose(obj: Object) -> pe.Pose:
@@ -200,40 +155,28 @@ def _ground_from_object(obj: Object) -> np.ndarray:
 
 def records_of(variant: PropertyGroup) -> tuple[SensorRecord, ...]:
     """Return a variant's sensors, in the order of the scene's."""
-    records = (_record_of_table(variant.id_data, row) for row in json.loads(variant.sensors))
+    scene = variant.id_data
+    records = []
+    for table in json.loads(variant.sensors):
+        record = studies.read(SensorRecord, studies.Node(table, "variant"))
+        obj = scene.objects.get(record.name)
+        if obj is not None and (
+            obj.perception_entropy.is_sensor or obj.perception_entropy.is_parked
+        ):
+            known = _record_of_text(obj.perception_entropy.table)
+            own = {key: getattr(known, key) for key in OF_OBJECT}
+            record = replace(record, **own | _object_keys(obj) | {"color": color_of(obj)})
+        records.append(record)
     return tuple(sorted(records, key=lambda record: (record.order, record.name)))
 
 
-def _record_of_table(scene: Scene, table: dict[str, Any]) -> SensorRecord:
-    values: dict[str, Any] = {
-        key: tuple(v) if isinstance(v, list) else v for key, v in table.items()
-    }
-    pose = pose_from_numbers(values.pop("pose"))
-    curve = values.pop("curve")
-    own = None if curve is None else pe.ApCurve(*curve)
-    obj = _object_named(scene, table["name"])
-    known: dict[str, Any] = {"sheet": pe.DataSheet(**values.pop("sheet"))}
-    return SensorRecord(**values, pose=pose, curve=own, **known, **_object_fields(obj))
-
-
-def _object_named(scene: Scene, name: str) -> Object | None:
-    """Return the sensor of a name, active or inactive, or None."""
-    obj = scene.objects.get(name)
-    if obj is None:
-        return None
-    settings = obj.perception_entropy
-    return obj if settings.is_sensor or settings.is_parked else None
-
-
 def write_records(variant: PropertyGroup, records: Sequence[SensorRecord]) -> None:
-    """Store the records of sensors in a variant."""
-    rows = []
-    for record in records:
-        curve = None if record.curve is None else astuple(record.curve)
-        own = {key: getattr(record, key) for key in STORED}
-        tables = {"sheet": asdict(record.sheet)}
-        rows.append(own | {"pose": record.numbers, "curve": curve} | tables)
-    variant.sensors = json.dumps(rows)
+    """Store the tables of sensors in a variant."""
+    tables = [
+        {key: value for key, value in record.table.items() if key not in OF_OBJECT}
+        for record in records
+    ]
+    variant.sensors = json.dumps(tables)
 
 
 def record_of_sensor(sensor: pe.Sensor) -> SensorRecord:
@@ -250,6 +193,37 @@ def record_of_sensor(sensor: pe.Sensor) -> SensorRecord:
         color=sensor.color,
         sheet=sensor.sheet,
     )
+
+
+def rig_from_objects(objects: Sequence[Object], depsgraph: Depsgraph) -> pe.Rig:
+    """Return the visible sensors among some objects as a rig. `InputError` when there is none, or
+    one of them is no possible sensor."""
+    visible = [obj for obj in objects if obj.visible_get(view_layer=depsgraph.view_layer)]
+    if not visible:
+        found = f"{len(objects)} hidden" if objects else "none"
+        raise pe.InputError("scene", "sensors", "at least one visible sensor", found)
+    sensors = [sensor_from_object(obj, depsgraph) for obj in visible]
+    try:
+        return pe.Rig(sensors)
+    except pe.InputError as error:
+        raise error.at("scene") from None
+
+
+def sensor_from_object(obj: Object, depsgraph: Depsgraph) -> pe.Sensor:
+    """Return one object's model, placement, fusion group and AP curve as a sensor. `InputError`
+    when it is no possible sensor; the line names the object."""
+    returns = depsgraph.scene.perception_entropy.returns
+    return sensor_of(_placed_record(obj, depsgraph), "scene", returns)
+
+
+def possible_sensors(objects: Sequence[Object], depsgraph: Depsgraph) -> list[pe.Sensor]:
+    """Return the visible sensors among some objects, without those that cannot be scored."""
+    sensors = []
+    for obj in objects:
+        if obj.visible_get(view_layer=depsgraph.view_layer):
+            with contextlib.suppress(pe.InputError):
+                sensors.append(sensor_from_object(obj, depsgraph))
+    return sensors
 
 
 def rig_of(
@@ -272,14 +246,14 @@ def rig_of(
         raise error.at(source) from None
 
 
-def sensor_of(record: SensorRecord, source: str = "variant") -> pe.Sensor:
-    """Return a record as the engine's sensor. `InputError` when the catalogue does not have its
-    model, or the name or the fusion group is impossible."""
+def sensor_of(record: SensorRecord, source: str = "variant", returns: str = "all") -> pe.Sensor:
+    """Return a record as the engine's sensor, with these returns. `InputError` when the catalogue
+    does not have its model, or the name or the fusion group is impossible."""
     try:
         model = record.intrinsics or catalog.load(record.model)
         return pe.Sensor(
             record.name,
-            model,
+            kinds.returning(model, returns),
             record.pose,
             record.fusion or None,
             curve=record.curve,
@@ -288,22 +262,3 @@ def sensor_of(record: SensorRecord, source: str = "variant") -> pe.Sensor:
         )
     except pe.InputError as error:
         raise error.within(source, f"sensor {record.name!r}") from None
-
-
-def bounds_of(record: SensorRecord) -> dict[str, tuple[float, float]]:
-    """Return a record's own bounds by axis [m or rad]."""
-    return bounds_by_axis(record.bounded, record.low, record.high)
-
-
-def bounds_by_axis(
-    bounded: Sequence[bool], low: Sequence[float], high: Sequence[float]
-) -> dict[str, tuple[float, float]]:
-    """Return the bounds of the bounded axes [m or rad]; the given angles are in degrees."""
-    limits = {}
-    for n, axis in enumerate(search.AXES):
-        if bounded[n]:
-            bounds = pair_as_typed((low[n], high[n]))
-            if axis not in search.POSITION_AXES:
-                bounds = math.radians(bounds[0]), math.radians(bounds[1])
-            limits[axis] = bounds
-    return limits

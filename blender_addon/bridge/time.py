@@ -3,72 +3,36 @@
 import json
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 from bpy.types import Object, PropertyGroup, Scene
 from mathutils import Vector
 
-from ..engine import motion, pe, studies, text
-from .scene_settings import values_of, write_values
-
-BY_NAME = ("noises", "rates")
+from ..engine import motion, studies
+from .study_table import read_row, store_row, value_at
 
 
-def time_of(settings: PropertyGroup) -> dict[str, Any]:
-    """Return the fields of a study in time that a scene holds, by name. `InputError` when a value
-    or a row is wrong, or names repeat."""
-    by_name = by_name_of(settings)
-    rows = [_table_of(row) for row in settings.stories if row.enabled]
-    return {
-        "frames": motion.Frames(**values_of(settings, motion.Frames), **by_name),
-        "confirmation": confirmation_of(settings),
-        "stories": tuple(_read_story(row) for row in rows),
-    }
-
-
-def confirmation_of(settings: PropertyGroup) -> motion.Confirmation:
-    """Return how tracks are confirmed."""
-    return motion.Confirmation(**values_of(settings, motion.Confirmation))
+def stories_of(settings: PropertyGroup) -> tuple[motion.Story, ...]:
+    """Return the stories of a scene that are switched on. `InputError` when a value is wrong."""
+    return tuple(story_of(row) for row in settings.stories if row.enabled)
 
 
 def story_of(row: PropertyGroup) -> motion.Story:
     """Return the story of a row; `InputError` when a value is wrong."""
-    return _read_story(_table_of(row))
+    return read_row(motion.Story, row, f"story {row.name!r}", name=row.name)
 
 
-def _read_story(table: Mapping[str, Any]) -> motion.Story:
-    return studies.read(motion.Story, studies.Node(table, "scene", "story"))
-
-
-def by_name_of(settings: PropertyGroup) -> dict[str, Any]:
-    """Return noises by class and rates by kind of sensor; `InputError` where the text is wrong."""
-    kept = text.parse_json("scene", settings.time_text, infinite=True) if settings.time_text else {}
-    frames = studies.read(motion.Frames, studies.Node(kept, "scene", "time"))
-    return {key: dict(getattr(frames, key)) for key in BY_NAME}
-
-
-def write_time(
-    settings: PropertyGroup,
-    frames: motion.Frames,
-    confirmation: motion.Confirmation,
-    stories: Sequence[motion.Story],
-) -> None:
-    """Write them to a scene, in place of its own."""
-    write_values(settings, frames)
-    write_values(settings, confirmation)
-    by_name = {key: dict(own) for key in BY_NAME if (own := getattr(frames, key))}
-    settings.time_text = text.dump_json(by_name) if by_name else ""
+def write_stories(settings: PropertyGroup, stories: Sequence[motion.Story]) -> None:
+    """Write stories to a scene, in place of its own."""
     settings.stories.clear()
     for story in stories:
         write_story(settings.stories.add(), story)
 
 
 def write_story(row: PropertyGroup, story: motion.Story) -> None:
-    """Write a story to a row: its fields, and as JSON what these do not have."""
-    row.name = story.name
+    """Write a story to a row; what its preset has, too, as it is changed there."""
     row.result = ""
-    write_values(row, story)
-    row.table = json.dumps(studies.write(story))
+    declared = studies.settings_of(motion.Story)
+    store_row(row, story, name=story.name, **{name: getattr(story, name) for name in declared})
 
 
 def frame_rate(scene: Scene) -> float:
@@ -85,11 +49,8 @@ def body_place(obj: Object) -> tuple[float, float, float]:
 
 def story_signatures(settings: PropertyGroup, scene: str) -> dict[str, str]:
     """Return by name what the result of each row depends on; `scene` is the scene's fingerprint."""
-    rule = f"{values_of(settings, motion.Confirmation)!r} {settings.time_text}"
-    return {
-        row.name: f"{scene} {rule} {row.table} {values_of(row, motion.Story)!r}"
-        for row in settings.stories
-    }
+    rule = value_at(settings.table, ("time",))
+    return {row.name: f"{scene} {rule} {row.table}" for row in settings.stories}
 
 
 def store_driven(
@@ -118,11 +79,3 @@ def clear_stale_stories(settings: PropertyGroup, scene: str) -> bool:
     for row in stale:
         row.result = ""
     return bool(stale)
-
-
-def _table_of(row: PropertyGroup) -> dict[str, Any]:
-    try:
-        table = json.loads(row.table or "{}")
-    except ValueError:
-        raise pe.InputError("scene", f"story {row.name!r}", "its table", "other text") from None
-    return {**table, **values_of(row, motion.Story), "name": row.name}

@@ -4,13 +4,14 @@ A lock fixes an axis in a search. An animation, a driver or a constraint defines
 so that a search of that sensor is impossible.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterator
 from typing import cast
 
 import bpy
-from bpy.types import Object
+from bpy.types import Object, PropertyGroup
 
 from ..engine import search
+from .study_table import value_at
 
 AXIS_LABELS = dict(zip(search.AXES, ("X", "Y", "Z", "Roll", "Pitch", "Yaw"), strict=True))
 PLACING = ("location", "rotation", "delta_location", "delta_rotation")
@@ -25,13 +26,18 @@ def locked_axes(obj: Object) -> tuple[str, ...]:
 
 def free_axes(obj: Object) -> tuple[str, ...]:
     """Return the axes that the search may change: those that are ticked and not locked."""
-    return unlocked_axes(obj.perception_entropy.free, locked_axes(obj))
+    return unlocked_axes(ticked_axes(obj.perception_entropy), locked_axes(obj))
 
 
-def unlocked_axes(free: Iterable[bool], locked: Iterable[str]) -> tuple[str, ...]:
-    """Return the names of the axes that are ticked, without the locked ones."""
-    pairs = zip(search.AXES, free, strict=True)
-    return tuple(axis for axis, ticked in pairs if ticked and axis not in locked)
+def ticked_axes(settings: PropertyGroup) -> Collection[str]:
+    """Return the axes of a sensor's table that a search may change."""
+    axes: Collection[str] = value_at(settings.table, ("free",), search.PAPER_FREE)
+    return axes
+
+
+def unlocked_axes(free: Collection[str], locked: Collection[str]) -> tuple[str, ...]:
+    """Return the names of the axes that are free and not locked, in their order."""
+    return tuple(axis for axis in search.AXES if axis in free and axis not in locked)
 
 
 def holder_of(obj: Object) -> str:

@@ -5,15 +5,19 @@ import json
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 from bpy.types import Depsgraph, Scene
 
 from ..engine import advice, jobs, pe
 from .fingerprint import Fingerprint
+from .prior import prior_from_scene
 from .result import FrontRow, ShownFront, score_from_dict, scored_data, store_outcome
 from .scene_diagnostics import check_placeable, scene_advice
-from .sensor_records import SensorRecord, records_of, records_of_scene, rig_of
+from .sensor_records import SCORED, SensorRecord, records_of, records_of_scene, rig_of
+from .study_table import SCORED as SCORED_PARTS
+from .study_table import document_of
 from .time import story_signatures
 from .variants import Variant, find_or_add_variant, mark_active, study_of_variant
 
@@ -23,7 +27,7 @@ MAX_NAME_LENGTH = 60
 
 def same_score(records: Sequence[SensorRecord], others: Sequence[SensorRecord]) -> bool:
     """Whether two lists of sensors have the same score and figures, whatever their free axes."""
-    return [record.scored for record in records] == [record.scored for record in others]
+    return [each.keys(SCORED) for each in records] == [each.keys(SCORED) for each in others]
 
 
 def store_variant_scores(scene: Scene, outcome: jobs.Outcome, surroundings: str) -> None:
@@ -121,6 +125,24 @@ def hardware_note(variants: Sequence[Variant]) -> str:
         with suppress(pe.InputError):  # a sensor that the catalogue does not know, or none
             rigs.append([sensor.model for sensor in rig_of(records_of(variant))])
     return advice.hardware_note(rigs)
+
+
+def worth_of_differences(scene: Scene, variants: Sequence[Variant]) -> dict[str, advice.Worth]:
+    """Return what differences between scored variants are worth, by score; none where no pairs of
+    rigs were like these."""
+    settings = scene.perception_entropy
+    try:
+        document = document_of(settings, *SCORED_PARTS)
+        by = SimpleNamespace(
+            space=document.space,
+            prior=prior_from_scene(scene),
+            model=document.perception,
+            targets=document.metric,
+        )
+        rigs = [rig_of(records_of(row), returns=settings.returns) for row in variants]
+    except pe.InputError:  # a sensor that the catalogue does not know, or none
+        return {}
+    return advice.worth_rows(by, rigs, one_vehicle=True)
 
 
 def check_choosable(scene: Scene, study: pe.Study) -> None:

@@ -11,7 +11,7 @@ from ..choices import free_name
 from ..engine import pe
 from .apply_variant import apply_records
 from .fingerprint import Fingerprint
-from .scene_record import record_of_scene, study_of
+from .scene_study import study_of
 from .sensor_records import SensorRecord, records_of, records_of_scene, same_sensors, write_records
 
 Variant: TypeAlias = PropertyGroup
@@ -81,8 +81,7 @@ def study_of_variant(scene: Scene, variant: Variant, depsgraph: Depsgraph) -> pe
     """Return the study that the scene would have if the variant were applied to it. `InputError`
     with one line that says what is wrong."""
     try:
-        record = record_of_scene(scene, depsgraph, records_of(variant), source="variant")
-        return study_of(record)
+        return study_of(scene, depsgraph, records_of(variant), source="variant")
     except pe.InputError as error:
         named = f"variant {variant.name!r}"
         raise error.at(named) if error.source == "variant" else error from None

@@ -9,7 +9,7 @@ from bpy.types import Collection, Depsgraph, LayerCollection, Mesh, Object, Scen
 
 from ..engine import geometry, pe
 from .rig import mounted_on_sensor
-from .scene_settings import as_typed
+from .study_table import as_typed
 
 RESIDUAL = "pe_residual"
 """Mesh attribute with what single precision leaves out of the points of an imported vehicle."""
@@ -245,11 +245,8 @@ def mesh_of(name: str, triangles: np.ndarray) -> Mesh:
     return mesh
 
 
-def paint_area(objects: Sequence[Object], name: str, area: np.ndarray) -> bool:
-    """Paint the faces (F, 3, 3) of an area in a vertex group on the meshes of a vehicle. Return
-    False, with nothing painted, where a corner of it is no vertex of theirs."""
-    found: dict[Object, list[int]] = {}
-    seen = set[bytes]()
+def paint_area(objects: Sequence[Object], name: str, area: np.ndarray) -> None:
+    """Paint the faces (F, 3, 3) of an area in a vertex group on the meshes of a vehicle."""
     wanted = {corner.tobytes() for corner in np.ascontiguousarray(area.reshape(-1, 3) + 0.0)}
     for obj in objects:
         if obj.type != "MESH":
@@ -259,11 +256,6 @@ def paint_area(objects: Sequence[Object], name: str, area: np.ndarray) -> bool:
         obj.data.vertices.foreach_get("co", points)
         local = points.reshape(-1, 3).astype(float) + residual_of(obj.data)
         placed = placed_points(local, ground_from_object) + 0.0
-        found[obj] = [n for n, point in enumerate(placed) if point.tobytes() in wanted]
-        seen |= {placed[n].tobytes() for n in found[obj]}
-    if seen != wanted:
-        return False
-    for obj, vertices in found.items():
+        vertices = [n for n, point in enumerate(placed) if point.tobytes() in wanted]
         if vertices:
             obj.vertex_groups.new(name=name).add(vertices, 1.0, "REPLACE")
-    return True

@@ -6,7 +6,7 @@ of them, `readout_text` puts it into text, and `readout` draws that in a corner 
 """
 
 from . import readout, session
-from .readout_text import BETTER, SAME, SENSE_ICONS, WORSE, change_text
+from .readout_text import BETTER, SAME, SENSE_ICONS, WORSE, change_text, is_not_shown
 from .shown import (
     AT_REST,
     BEFORE_SEARCH,

@@ -97,8 +97,8 @@ def entropy_change(now: float, before: float, error: float = 0.0) -> tuple[str, 
     """Return how an entropy changed, and whether for the better; lower is better. `error` is the
     standard error of the change."""
     by = now - before
-    if abs(by) < MIN_CHANGE or is_noise(by, error):
-        return "no change", SAME
+    if abs(by) < MIN_CHANGE or scoring.is_noise(by, error):
+        return scoring.NO_DIFFERENCE, SAME
     return f"{abs(by):.3f} {'worse' if by > 0.0 else 'better'}", WORSE if by > 0.0 else BETTER
 
 
@@ -112,7 +112,7 @@ def zone_lines(before: pe.Score, now: pe.Score) -> list[ReadoutLine]:
         if name is None:
             continue
         error = advice.difference_error(before, now, ("zone", name, "entropy"))
-        if sense * by[name] >= MIN_ZONE_CHANGE and not is_noise(by[name], error):
+        if sense * by[name] >= MIN_ZONE_CHANGE and not scoring.is_noise(by[name], error):
             where = advice.WHERE.get(name, name)
             lines.append((TextPiece(f"{word} {where} by {abs(by[name]):.2f} nats", sense),))
     return lines
@@ -123,21 +123,27 @@ def change_text(row: search.Figure, values: Sequence[float], error: float = 0.0)
     `error` is the standard error of their difference."""
     texts = list(map(row.text, values)) or [NO_FIGURE]
     costs = [row.cost_of(value) for value in values]
-    if texts[0] == texts[-1] or is_noise(values[-1] - values[0], error):
+    if texts[0] == texts[-1] or is_not_shown(row, values, error):
         return texts[-1], SAME
     return texts[-1], WORSE if costs[-1] > costs[0] else BETTER
 
 
-def is_noise(by: float, error: float) -> bool:
-    """Whether a difference is within two of its standard errors: it says nothing then."""
-    return abs(by) <= scoring.SURE * error
+def is_not_shown(row: search.Figure, values: Sequence[float], error: float) -> bool:
+    """Whether the figures of a rig, the last of `values`, and of that before it differ in their
+    texts, but within the standard error of their difference."""
+    texts = [row.text(value) for value in values]
+    return len(set(texts[:1] + texts[-1:])) > 1 and scoring.is_noise(values[-1] - values[0], error)
 
 
 def change_of(by: float, digits: int, error: float = 0.0) -> ReadoutLine:
-    """Return "(+1.2)" as a gain or a loss; nothing where the change is 0 in these digits, or within
-    its standard error."""
+    """Return "(+1.2)" as a gain or a loss; nothing where the change is 0 in these digits.
+
+    Within its standard error no difference is shown.
+    """
     text = f"{by:+.{digits}f}"
-    if not text.strip("+-0.") or is_noise(by, error):
+    if not text.strip("+-0."):
         return ()
+    if scoring.is_noise(by, error):
+        return (TextPiece(f"({scoring.NO_DIFFERENCE})"),)
     sense = BETTER if by >= 0.0 else WORSE
     return (TextPiece(f"({text.replace('-', MINUS)})", sense),)

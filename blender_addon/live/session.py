@@ -123,9 +123,10 @@ def read_request(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Scor
         collection = scene.perception_entropy.vehicle
         vehicle = bridge.vehicle_from_collection(collection, depsgraph)  # raises the reason
     settings = scene.perception_entropy
-    space = bridge.space_of(settings)
-    model = bridge.perception_of(settings)
-    targets = bridge.targets_of(settings)
+    document = bridge.document_of(settings, *bridge.SCORED)
+    space = document.space
+    model = document.perception
+    targets = document.metric
     problem_key = prior_key, vehicle_key, space, model, targets
     problem = Problem(problem_key, prior, vehicle, space, model=model, targets=targets)
     return ScoreRequest(problem, rig, (prior_key, space, model, targets))

@@ -87,6 +87,9 @@ def _open(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> Ope
     width = max(LABEL_PX + COLUMN_PX * len(self.names), MIN_WIDTH_PX)
     letters = width // LETTER_PX
     self.said = sentences(self.names, self.rows, letters)
+    worth = bridge.worth_of_differences(context.scene, compared_variants(context.scene))
+    for line in advice.worth_lines(self.names, self.rows, worth):
+        self.said += wrap(line, letters)
     self.said += wrap(bridge.hardware_note(compared_variants(context.scene)), letters)
     return context.window_manager.invoke_props_dialog(
         self, width=width, title=self.bl_label, confirm_text="Close", translate=False

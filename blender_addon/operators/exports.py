@@ -5,7 +5,7 @@ dialog's operator ends with it: the job then runs in an operator of its own.
 """
 
 import shlex
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -237,7 +237,8 @@ def export_rig(
     properties: Any,
     into: str,
     replace: bool,
-) -> Told:
+    asked_in_window: bool,
+) -> Answer:
     """Write the sensors for another program: URDF, ROS 2, Autoware, nuScenes, CARLA and others"""
     path = chosen_file(filepath)
     told = format if properties.is_property_set("format") or not path.suffix else None
@@ -247,11 +248,10 @@ def export_rig(
     row = exchange.rig_format(name)
     study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
     replace = replace or not (row.beside or row.is_folder)  # of one file the dialog has asked
-    paths: Sequence[Path]
-    paths, lines = exchange.export_rig(
-        study.rig, name, path, study.reference, into=bpy.path.abspath(into) or None, replace=replace
-    )
-    return told_of(WrittenFiles(tuple(paths), tuple(lines)))
+    target = bpy.path.abspath(into) or None
+    if row.write_scene is not None:
+        return run(own_jobs.rig_job(study, name, path, target, replace), asked_in_window)
+    return told_of(own_jobs.write_rig(study, name, path, target, replace))
 
 
 def unregister() -> None:

@@ -14,7 +14,6 @@ from bpy_extras.io_utils import ImportHelper
 
 from .. import bridge, signals, vehicle_cache
 from ..engine import catalog, exchange, graphics, pe, search, studies
-from ..properties import FREE_BY_DEFAULT
 from ..sensor_kinds import mount_of
 from .declared import INTERNAL, Told, chosen_file, operator
 from .exports import FORMAT_ITEMS
@@ -86,12 +85,7 @@ def record_of(sensor: catalog.KnownSensor) -> bridge.SensorRecord:
     values = (*sensor.pose.position, *sensor.pose.rpy)
     pose = search.pose_from_values(dict(zip(search.AXES, values, strict=True)))
     return bridge.SensorRecord(
-        name=sensor.name,
-        model=sensor.model,
-        pose=pose,
-        free=FREE_BY_DEFAULT,
-        display=mount.display,
-        size_m=mount.size_m,
+        name=sensor.name, model=sensor.model, pose=pose, display=mount.display, size_m=mount.size_m
     )
 
 
@@ -209,5 +203,5 @@ def rig_of_file(scene: bpy.types.Scene, path: Path, format_name: str) -> exchang
     files, in the file's folder. `format_name`: `BY_NAME`, or a name of `RIG_FORMATS`."""
     several = [row.files for row in exchange.RIG_FORMATS.values() if row.is_folder]
     place = path.parent if any(path.name in files for files in several) else path
-    reference = bridge.reference_of(scene.perception_entropy)
+    reference = bridge.document_of(scene.perception_entropy, "reference").reference
     return exchange.import_rig(place, None if format_name == BY_NAME else format_name, reference)

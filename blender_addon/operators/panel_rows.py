@@ -6,7 +6,7 @@ import bpy
 
 from .. import bridge, vehicle_cache
 from ..choices import REGION_ITEMS
-from ..engine import catalog, kinds, pe
+from ..engine import catalog, kinds, pe, studies
 from ..properties import DEFAULT_REGION
 from ..sensor_kinds import own_kinds
 from ..view_settings import FITTED
@@ -36,12 +36,9 @@ def add_own_sensor(context: bpy.types.Context, kind: str) -> None:
 def add_curves(context: bpy.types.Context, _kind: str) -> None:
     """Set your own AP curves; they start as the curves of each kind"""
     rows = context.scene.perception_entropy.curves
-    for name, kind in kinds.KINDS.items():
+    for name in kinds.KINDS:
         if name not in rows:
-            row = rows.add()
-            row.name = name
-            row.a = kind.curve.a
-            row.b = kind.curve.b
+            rows.add().name = name
 
 
 def of_sensor(context: bpy.types.Context) -> bpy.types.PropertyGroup:
@@ -79,7 +76,7 @@ def guess_axles(context: bpy.types.Context) -> str:
     reference = pe.guessed_reference(vehicle)
     if reference is None:
         raise pe.InputError("vehicle", "axles", "parts named as wheels, front and rear", "none")
-    bridge.write_reference(scene.perception_entropy, reference)
+    bridge.put(scene.perception_entropy, bridge.REFERENCE, studies.write(reference))
     return f"Rear axle at x {reference.rear_axle_x:g} m, z {reference.rear_axle_z:g} m"
 
 

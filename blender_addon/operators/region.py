@@ -1,16 +1,15 @@
-"""*Free Region*: where on its mount a sensor may go; the region becomes a mount with one click."""
+"""*Free Region*: where on its mount a sensor may go."""
 
 from typing import Any
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty
 
-from .. import bridge, signals, where_map
+from .. import bridge, where_map
 from ..engine import advice, jobs, pe
-from .declared import OperatorResult, Refused, chosen_sensor, operator
+from .declared import OperatorResult, chosen_sensor, operator
 from .edit_sensors import NAME
 from .jobs import JobRow, Task, begin, of_study
-from .rows import new_row
 
 
 def _lacks(context: bpy.types.Context) -> str | None:
@@ -70,23 +69,3 @@ def _task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -
 
 
 REGION = JobRow(read=of_study(_task), unfinished="Stopped before a place was scored")
-
-
-def _no_region(context: bpy.types.Context) -> str | None:
-    return None if where_map.regions.get(context.scene.name) else "Ask Free Region first"
-
-
-@operator("Mount on Region", unless=_no_region, signal=signals.study_changed)
-def mount_on_region(context: bpy.types.Context) -> str:
-    """Make the free region the mount of its sensor: a search then stays inside"""
-    scene = context.scene
-    found = where_map.regions[scene.name]
-    if (loss := scene.perception_entropy.view.region_loss) > 0.0:
-        found = found.allowing(loss)
-    obj = scene.objects.get(found.sensor)
-    if obj is None or found.mount is None or not len(found.patch):
-        raise Refused("The region has no area, or its sensor is gone")
-    row = new_row(scene, "mounts", f"{found.sensor} region")
-    bridge.write_mount(scene, row, jobs.region_mount(found))
-    obj.perception_entropy.mount = row.name
-    return f"{obj.name} is on {row.name}, {found.area:.2f} m²"

@@ -166,8 +166,7 @@ def _ghost_body(sensor: pe.Sensor) -> graphics.Primitives:
     middle = middle + ([0.0, 0.0, size[2] / 2.0] if housing is not None else 0.0)
     corners = graphics.CORNERS * size + middle
     placed = corners @ sensor.pose.ground_from_sensor.T + np.array(sensor.pose.position)
-    quads = placed[np.array(graphics.FACES)]
-    return graphics.Primitives.of(quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3), BODY_COLOR)
+    return graphics.Primitives.of(placed[np.array(graphics.FACES)].reshape(-1, 3), BODY_COLOR)
 
 
 def _ghost_beams(sensor: pe.Sensor) -> graphics.Primitives:

@@ -29,6 +29,7 @@ class ScoringInputs(NamedTuple):
     space: pe.PerceptionSpace | None
     model: pe.PerceptionModel | None
     key: Hashable
+    targets: pe.TargetRule | None = None
 
 
 class SnapshotReader:
@@ -68,7 +69,7 @@ class SnapshotReader:
             scored=_scored(scene, sensors, inputs.space),
             space=inputs.space,
             model=inputs.model,
-            targets=bridge.targets_of(scene.perception_entropy),
+            targets=inputs.targets,
             ghosts=others,
             ghosts_name=name,
             ghosts_title=title,
@@ -79,7 +80,7 @@ class SnapshotReader:
             compared_name=compared_name,
             has_result=scene.perception_entropy.has_result,
             focus=bridge.focus_regions(scene),
-            reference=bridge.reference_of(scene.perception_entropy),
+            reference=_reference(scene),
             where=where_map.maps.get(scene.name),
             region=where_map.regions.get(scene.name),
             **(_requirements(scene) | _story(scene)),
@@ -119,12 +120,16 @@ class SnapshotReader:
         settings = scene.perception_entropy
         space = None
         try:
-            space = bridge.space_of(settings)
-            model = bridge.perception_of(settings)
-            key = bridge.prior_key(scene), space, model, bridge.targets_of(settings)
+            space = bridge.document_of(settings, "space").space
+            document = bridge.document_of(settings, *bridge.SCORED)
+            model = document.perception
+            targets = document.metric
+            key = bridge.prior_key(scene), space, model, targets
             known = self._inputs.get(scene.name)
             if known is None or known.key != key:
-                known = ScoringInputs(bridge.prior_from_scene(scene), space, model, key)
+                known = ScoringInputs(
+                    bridge.prior_from_scene(scene), space, model, key=key, targets=targets
+                )
         except pe.InputError as error:
             known = ScoringInputs(None, space, None, str(error))
         self._inputs[scene.name] = known
@@ -266,6 +271,13 @@ def _requirements(scene: bpy.types.Scene) -> dict[str, Any]:
     return {"requirements": found, "requirements_key": key, "requirement": chosen}
 
 
+def _reference(scene: bpy.types.Scene) -> pe.Reference | None:
+    """Return the positions of the axles; None where they are not known, or wrong."""
+    with contextlib.suppress(pe.InputError):
+        return bridge.document_of(scene.perception_entropy, "reference").reference
+    return None
+
+
 def _story(scene: bpy.types.Scene) -> dict[str, Any]:
     """Return the selected story of a scene; none where it is wrong: a check says what is."""
     settings = scene.perception_entropy
@@ -273,8 +285,9 @@ def _story(scene: bpy.types.Scene) -> dict[str, Any]:
         return {}
     try:
         found = bridge.story_of(settings.stories[settings.story_index])
-        rates = bridge.by_name_of(settings)["rates"]
+        time = bridge.document_of(settings, "time").time
     except pe.InputError:
         return {}
-    shown = {"story": found, "confirmation": bridge.confirmation_of(settings)}
-    return {**shown, "rates": tuple(rates.items()), "rate_hz": bridge.frame_rate(scene)}
+    shown = {"story": found, "confirmation": time.confirmation}
+    rates = tuple(time.frames.rates.items())
+    return {**shown, "rates": rates, "rate_hz": bridge.frame_rate(scene)}

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from bpy.types import Context, PropertyGroup, Scene, UILayout
 
 from ..bridge import NONE, keep_property, limit_property, limits_of, shown_state
-from ..engine import advice, search
+from ..engine import advice, scoring, search
 from ..live import (
     AT_REST,
     BETTER,
@@ -20,6 +20,7 @@ from ..live import (
     ShownScore,
     change_text,
     for_drawing,
+    is_not_shown,
     shown_score,
 )
 from ..operators import known_rigs, shown_verdicts
@@ -32,10 +33,12 @@ MET_ICONS = {True: "COLORSET_03_VEC", False: "ERROR"}
 NAME_SHARE = 0.39
 BESIDE_ROW_PX = 68
 WANTED_PX = 58
-CHANGED_PX = 68
+CHANGED_PX = 44
 LABEL_PX = 14
-"""What is beside a row: borders, tabs and the lock; the room for what is wanted, and for what a
-figure was before; what a label takes beside its text; all at a scale of 1."""
+LEAST_NAME_PX = 30
+"""What is beside a row: borders, tabs and the lock; the room for what is wanted, and beside the
+text of what a figure was before; what a label takes beside its text, and the least room for names;
+all at a scale of 1."""
 LOCKS = {True: "LOCKED", False: "UNLOCKED"}
 
 
@@ -86,7 +89,9 @@ def draw_dashboard(layout: UILayout, context: Context) -> None:
         coverage = "\N{EN DASH}" if shown is None else advice.percent(shown.now.coverage, 1)
         draw_label(value, coverage)
     told = known_rigs.told(scene) if is_stored else ""
-    draw_label(column, told or "Score: lower is better")
+    alike = ", ".join(each.name for each in drawn if each.is_noise)
+    unsure = f"{alike}: {scoring.NO_DIFFERENCE}" if alike else ""
+    draw_label(column, told or unsure or "Score: lower is better")
 
 
 def draw_result(layout: UILayout, context: Context) -> None:
@@ -110,13 +115,15 @@ def draw_head(layout: UILayout, shown: ShownScore | None) -> None:
 
 
 class DrawnRow(NamedTuple):
-    """A row as it is drawn: its name, its value, and what that was before, if it has changed."""
+    """A row as it is drawn: its name, its value, and what that was before, if it has changed.
+    `is_noise`: It has changed within the error of that."""
 
     row: search.Reading
     name: str
     value: str
     before: str
     sense: int
+    is_noise: bool
 
 
 def drawn_row(
@@ -132,20 +139,24 @@ def drawn_row(
     values = [value for value in known if value is not None]
     values = entropies if figure.key == search.ENTROPY else values
     is_score = figure.key == search.ENTROPY and is_simple(scene)
-    text, sense = change_text(figure, values, errors.get(figure.key, 0.0))
+    error = errors.get(figure.key, 0.0)
+    text, sense = change_text(figure, values, error)
     text = f"{'≥ ' * row.is_cut}{text.removesuffix(' nats' if is_score else ' met')}"
     is_changed = row.wanted is None and sense != SAME
     before = figure.text(values[0]).partition(" ")[0] if is_changed else ""
     name = "Score" if is_score else figure.label
-    return DrawnRow(row, name=name, value=text, before=before, sense=sense)
+    is_noise = is_not_shown(figure, values, error)
+    return DrawnRow(row, name=name, value=text, before=before, sense=sense, is_noise=is_noise)
 
 
 class RowWidths(NamedTuple):
-    """Room for the columns of the dashboard [px]. Figures are never cut: names give way."""
+    """Room for the columns of the dashboard [px]; and whether what figures were before has room,
+    too. Figures are never cut: names give way."""
 
     name: float
     value: float
     wanted: float
+    has_room: bool
 
     @classmethod
     def of(cls, context: Context, rows: Sequence[DrawnRow]) -> "RowWidths":
@@ -153,9 +164,15 @@ class RowWidths(NamedTuple):
         room, size = room_px(context, BESIDE_ROW_PX)
         scale = size / context.preferences.ui_styles[0].widget.points
         value = max(text_px(each.value, size) for each in rows) + LABEL_PX * scale
-        wanted = (CHANGED_PX if any(each.before for each in rows) else WANTED_PX) * scale
-        name = max(text_px(each.name, size) for each in rows) + LABEL_PX * scale
-        return cls(min(name, max(room - value - wanted, LABEL_PX * scale)), value, wanted)
+        changes = [text_px(f"({each.before})", size) for each in rows if each.before]
+        least = WANTED_PX * scale
+        wanted = max([least, *(each + CHANGED_PX * scale for each in changes)])
+        has_room = room - value - wanted >= LEAST_NAME_PX * scale
+        gap = LABEL_PX * scale
+        wanted = wanted if has_room else min(least, max(room - value - gap, gap))
+        name = max(text_px(each.name, size) for each in rows) + gap
+        name = min(name, max(room - value - wanted, gap))
+        return cls(name, value, wanted=wanted, has_room=has_room)
 
 
 def draw_row(layout: UILayout, context: Context, drawn: DrawnRow, sides: RowWidths) -> None:
@@ -166,13 +183,15 @@ def draw_row(layout: UILayout, context: Context, drawn: DrawnRow, sides: RowWidt
         draw_lock(line, context.scene.perception_entropy, row.figure)
     else:
         line.label(text="", icon="BLANK1")
-    name, rest = columns(line, sides.name / sum(sides), align=True)
+    total = sides.name + sides.value + sides.wanted
+    name, rest = columns(line, sides.name / total, align=True)
     draw_label(name, shortened_to(context, drawn.name, sides.name))
     value, wanted = columns(rest, sides.value / (sides.value + sides.wanted), align=True)
     draw_label(value, drawn.value)
     wanted = wanted.row(align=True)
     if drawn.before:
-        draw_label(wanted, f"({drawn.before})", SENSE_ICONS[drawn.sense])
+        before = f"({drawn.before})" if sides.has_room else ""
+        draw_label(wanted, before, SENSE_ICONS[drawn.sense])
     elif row.figure.rule is None:
         wanted.label(text="" if row.wanted is None else f"of {row.wanted:.0f}", translate=False)
     else:
@@ -201,7 +220,11 @@ def draw_limits(layout: UILayout, settings: PropertyGroup, now: advice.KeyFigure
 
 
 def draw_wanted(layout: UILayout, scene: Scene, row: search.Reading) -> None:
-    """Draw the field of what is wanted; without that, a button that begins with what there is."""
+    """Draw the field of what is wanted; without that, a button that begins with what there is; of
+    distances in *Simple* none."""
+    is_ring = bool(search.AP_RINGS.get(row.figure.key))
+    if is_simple(scene) and is_ring and row.wanted is None:
+        return
     draw_limit(layout, scene.perception_entropy, row.figure, row.value)
 
 

@@ -15,6 +15,7 @@ from .sensor_lists import draw_sensors
 
 LONGEST_LINE = "12.34 x 2.34 x 2.34 m, faces +x, 1,234,567 triangles, 100 parts"
 """The room that the line of a vehicle has before it is known."""
+READING = "Reading the vehicle ..."
 FIRST_HINT = "Front at the arrow? Else turn it round. Then add a sensor"
 
 
@@ -52,7 +53,8 @@ def draw_vehicle(layout: UILayout, context: Context) -> None:
     field.prop(settings, "vehicle", text="")
     row.operator("pe.turn_round", text="", icon="FILE_REFRESH")
     if settings.vehicle is not None:
-        draw_sentence(layout, context, vehicle_line(context.scene), room_of=LONGEST_LINE)
+        line = vehicle_line(context.scene) or READING
+        draw_sentence(layout, context, line, room_of=LONGEST_LINE)
     if settings.vehicle is not None and not listed_sensors(context.scene):
         draw_sentence(layout, context, FIRST_HINT, icon="FORWARD")
 

@@ -76,8 +76,7 @@ def advanced(layout: UILayout, settings: PropertyGroup, context: Context) -> Non
     for curve in settings.curves:
         layout.prop(curve, "own", text=kind_label(curve.name), translate=False)
         numbers = layout.row(align=True)
-        numbers.active = curve.own
-        for name in "abc":
+        for name in "abc" if curve.own else "":
             numbers.prop(curve, name)
     column = layout.column()
     draw_label(column, "Space and Voxels")

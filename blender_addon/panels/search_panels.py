@@ -4,7 +4,7 @@ from typing import Any
 
 from bpy.types import Context, PropertyGroup, UILayout
 
-from ..choices import BY_GROUP, BY_MESH, BY_PARTS, EXPECTED_AP, OBJECTS, ON_SLOTS, RANDOM
+from ..choices import BY_GROUP, BY_PARTS, EXPECTED_AP, OBJECTS, ON_SLOTS, RANDOM
 from ..engine import advice
 from ..live import shown_score
 from ..panel_text import is_simple
@@ -20,7 +20,7 @@ from .layout import (
 )
 from .variant_panels import draw_front
 
-ICONS = {BY_PARTS: "OBJECT_DATA", BY_GROUP: "WPAINT_HLT", BY_MESH: "MESH_DATA"}
+ICONS = {BY_PARTS: "OBJECT_DATA", BY_GROUP: "WPAINT_HLT"}
 ELSEWHERE = ("objective", "evaluations", "seed", "search_samples", "search_conditions")
 """Settings of a search that are drawn before the others, or in another panel."""
 SLOTS_ICON = "OUTLINER_COLLECTION"
@@ -73,7 +73,7 @@ def draw_mount(layout: UILayout, mount: PropertyGroup) -> None:
             column.prop(row, "part", text="")
         column.operator("pe.mount_parts", icon="RESTRICT_SELECT_OFF")
     else:
-        draw_properties(layout, mount, ("group" if mount.faces == BY_GROUP else "area",))
+        draw_properties(layout, mount, ("group",))
     draw_declared(layout, mount, "optimize.mount")
 
 
@@ -91,7 +91,7 @@ def limits(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     if obj is not None and not obj.perception_entropy.is_sensor:
         layout.label(text=f"{obj.name}:", translate=False)
         draw_properties(layout, obj.perception_entropy, ("is_no_go",))
-    draw_grid(layout.column(), settings)
+    draw_declared(layout.column(), settings, "optimize.grid")
     draw_tolerance(layout.column(), settings)
     draw_goals(layout.column(), settings, context)
 
@@ -106,14 +106,6 @@ def draw_tolerance(layout: UILayout, settings: PropertyGroup) -> None:
     row = layout.row()
     row.active = settings.mounting_errors or settings.failures
     row.prop(settings, "worst")
-
-
-def draw_grid(layout: UILayout, settings: PropertyGroup) -> None:
-    """Draw the steps of positions and angles that a search ends on."""
-    draw_properties(layout, settings, ("on_grid",))
-    column = layout.column()
-    column.active = settings.on_grid
-    draw_declared(column, settings, "optimize.grid")
 
 
 def draw_goals(layout: UILayout, settings: PropertyGroup, context: Context) -> None:

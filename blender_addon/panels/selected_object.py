@@ -88,7 +88,6 @@ def draw_region(layout: UILayout, context: Context, obj: Object) -> None:
     found = where_map.regions.get(context.scene.name)
     if found is None or found.sensor != obj.name:
         return
-    row.operator("pe.mount_on_region", text="", icon="MOD_SHRINKWRAP")
     row.operator("pe.dismiss", text="", icon="X").answer = "REGION"
     view = context.scene.perception_entropy.view
     layout.prop(view, "region_loss")

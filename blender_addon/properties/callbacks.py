@@ -55,16 +55,6 @@ def model_chosen(settings: PropertyGroup, context: Context) -> None:
     changed(settings, context)
 
 
-def own_curve_switched(settings: PropertyGroup, context: Context) -> None:
-    """Update callback of a sensor's own AP curve: it starts with the values of its kind."""
-    entry = catalog.entries().get(settings.model)
-    if settings.own_curve and entry is not None and not settings.is_property_set("curve_a"):
-        curve = kinds.KINDS[entry.kind].curve
-        settings.curve_a = curve.a
-        settings.curve_b = curve.b
-    changed(settings, context)
-
-
 def models_of_a_kind(
     settings: PropertyGroup, _context: Context, _typed: str
 ) -> list[tuple[str, str]]:

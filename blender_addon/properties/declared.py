@@ -1,6 +1,7 @@
 """Blender properties of settings that the engine declares: name, tooltip, range, unit and menu."""
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple, cast
 
 from bpy.props import (
@@ -11,9 +12,14 @@ from bpy.props import (
     IntProperty,
     StringProperty,
 )
+from bpy.types import PropertyGroup
 
+from .. import bridge
 from ..engine import studies
 from .callbacks import changed, redraw
+from .fields import view
+
+PathOf = Callable[[PropertyGroup], tuple[PropertyGroup, bridge.Keys]]
 
 LARGEST_INT = 2**31 - 1  # The largest whole number that a property can hold
 DRAWN = "reference."
@@ -37,9 +43,38 @@ def property_of(setting: studies.Setting, **more: Any) -> Any:
     }
     kind, own = _kind_of(setting, rule, panel)
     options |= own | more
-    if "get" in options:  # of a view of another text: its default is there
-        options |= {"default": None, "update": None}
     return kind(**{key: value for key, value in options.items() if value is not None})
+
+
+def view_of(
+    setting: studies.Setting, path_of: PathOf, *, is_explicit: bool = False, **more: Any
+) -> Any:
+    """Return the property of a setting that is a view of a table: it stores nothing.
+
+    `path_of`: From a group of properties to the group with the table, and the value's keys in it.
+    `is_explicit`: Whether the table has the value, too, where it is the default of a study file.
+    """
+    in_file = bridge.in_file(setting)
+    _, own = _kind_of(setting, setting.rule, cast(studies.Panel, setting.panel))
+
+    def read(group: PropertyGroup) -> Any:
+        owner, path = path_of(group)
+        return bridge.property_value(setting, bridge.value_at(owner.table, path, in_file))
+
+    def write(group: PropertyGroup, value: Any) -> None:
+        owner, path = path_of(group)
+        found = bridge.value_of_property(setting, value)
+        bridge.put(owner, path, None if found == in_file and not is_explicit else found)
+
+    callbacks = view(
+        read,
+        write,
+        own.get("items", ()),
+        several=isinstance(setting.rule, studies.Several),
+        low=own.get("min"),
+        high=own.get("max"),
+    )
+    return property_of(setting, **more | callbacks)
 
 
 def _kind_of(
@@ -95,13 +130,43 @@ def group_of(
     )
 
 
+def own_path(*path: str) -> PathOf:
+    """Return what finds a value in a group's own table."""
+    return lambda group: (group, path)
+
+
+def table_group(
+    cls: Any,
+    *,
+    prefix: str = "",
+    path_of: Any = own_path,
+    own: dict[str, dict[str, Any]] | None = None,
+    **more: Any,
+) -> Any:
+    """Return a mixin of a property group: views of a table, of all settings of a dataclass that the
+    panel shows. `prefix` is before the properties' names, `path_of` makes that of `view_of` from a
+    setting's key, `own` and `more` as of `group_of`."""
+    return mixin(
+        cls.__name__,
+        {
+            f"{prefix}{each.panel.property or each.name}": view_of(
+                each, path_of(studies.key_of(each.name)), **more | (own or {}).get(each.name, {})
+            )
+            for each in studies.settings_of(cls).values()
+            if each.panel is not None
+        },
+    )
+
+
 def scene_group() -> Any:
     """Return a mixin of the scene's settings: all that the engine declares for the whole study."""
     return mixin(
         "Study",
         {
-            each.panel.property: property_of(
-                each, **({"update": redraw} if key.startswith(DRAWN) else {})
+            each.panel.property: view_of(
+                each,
+                own_path(*key.split(".")),
+                update=redraw if key.startswith(DRAWN) else changed if each.scored else None,
             )
             for key, each, *_ in studies.setting_keys(of_scene=True)
             if each.panel is not None

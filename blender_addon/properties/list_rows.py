@@ -8,15 +8,17 @@ from typing import Any
 
 from bpy.types import Collection, Context, Object, PropertyGroup
 
-from ..choices import BY_GROUP, BY_MESH, BY_PARTS, ON_SLOTS, ON_SURFACE, REGION_ITEMS, free_name
+from .. import bridge
+from ..choices import BY_GROUP, BY_PARTS, ON_SLOTS, ON_SURFACE, REGION_ITEMS, free_name
 from ..engine import geometry, kinds, motion, pe
 from ..sensor_kinds import OwnCamera, OwnLidar, OwnTable, own_kinds
 from .callbacks import changed, model_suggestions, redraw
-from .declared import group_of
-from .fields import menu, pointer, rows, switch, text, whole
+from .declared import PathOf, group_of, table_group
+from .fields import menu, pointer, rows, switch, text, view, whole
 
 DEFAULT_REGION = "front"
 MAX_NAME_LENGTH = 60
+NO_FRAME = -1
 
 OBJECT_CLASSES = tuple(
     (name, name.capitalize(), f"Weigh {name}s") for name in pe.Prior.road().class_names
@@ -24,9 +26,8 @@ OBJECT_CLASSES = tuple(
 
 
 FocusFields: Any = group_of(pe.Focus)
-ApCurveFields: Any = group_of(pe.ApCurve)
-OptionFields: Any = group_of(pe.Option)
-SurfaceMountFields: Any = group_of(pe.SurfaceMount)
+OptionFields: Any = table_group(pe.Option)
+SurfaceMountFields: Any = table_group(pe.SurfaceMount)
 KINDS = (
     (ON_SURFACE, "Surface", "The sensor moves on faces of the vehicle"),
     (ON_SLOTS, "Slots", "The sensor takes the place of one of a collection's empties"),
@@ -35,7 +36,6 @@ FACES = (
     (BY_PARTS, "Parts", "Objects of the vehicle, all of their faces"),
     (BY_GROUP, "Painted", "Faces of the vehicle's meshes whose corners all weigh more than a half "
      "in a vertex group"),
-    (BY_MESH, "Mesh", "Faces of a mesh beside the vehicle, such as a free region"),
 )  # fmt: skip
 
 
@@ -55,25 +55,45 @@ class PE_FocusSettings(FocusFields, PropertyGroup):
     )
 
 
+def _curve_path(key: str) -> PathOf:
+    """Return what finds a number of the curve of a row's kind in the scene's table."""
+
+    def path_of(row: PropertyGroup) -> tuple[PropertyGroup, bridge.Keys]:
+        return row.id_data.perception_entropy, ("ap", row.name, key)
+
+    return path_of
+
+
+ApCurveFields: Any = table_group(pe.ApCurve, path_of=_curve_path, is_explicit=True)
+
+
 class PE_CurveSettings(ApCurveFields, PropertyGroup):
-    """The AP curve of a kind of sensor: AP = a ln m + b. The row has the name of the kind."""
+    """The AP curve of a kind of sensor: AP = a ln m + b. The row has the name of the kind; its
+    numbers are in the scene's table."""
 
     own: switch(
         "Own",
         "Use these numbers, for example of your detector, instead of the default curve",
         update=changed,
+        **view(bridge.has_own_curve, bridge.switch_own_curve),
     )
 
 
-OwnLidarFields: Any = group_of(
+class Tabled:
+    """A row whose properties are views of its table: that of a study file, without a name."""
+
+    table: text("Table", "The row as a study file has it, as JSON", update=changed)
+
+
+OwnLidarFields: Any = table_group(
     OwnLidar,
     own={"elevations": {"min": -90.0, "max": 90.0}, "azimuths": {"min": -360.0, "max": 360.0}},
 )
-OwnCameraFields: Any = group_of(OwnCamera)
-OwnTableFields: Any = group_of(OwnTable)
+OwnCameraFields: Any = table_group(OwnCamera)
+OwnTableFields: Any = table_group(OwnTable)
 
 
-class PE_OwnSensorSettings(OwnLidarFields, OwnCameraFields, OwnTableFields, PropertyGroup):
+class PE_OwnSensorSettings(OwnLidarFields, OwnCameraFields, OwnTableFields, Tabled, PropertyGroup):
     """A sensor of the user's own; the row has the name of its model."""
 
     kind: menu("Kind", "Kind of the sensor", own_kinds, update=changed)
@@ -81,7 +101,7 @@ class PE_OwnSensorSettings(OwnLidarFields, OwnCameraFields, OwnTableFields, Prop
     known_as: text("Known As", "Last known name")
 
 
-class PE_SensorOption(OptionFields, PropertyGroup):
+class PE_SensorOption(OptionFields, Tabled, PropertyGroup):
     """A model that may be chosen, and its price."""
 
     model: text(
@@ -89,6 +109,10 @@ class PE_SensorOption(OptionFields, PropertyGroup):
         "Name of the sensor in the catalogue",
         search=model_suggestions,
         search_options={"SUGGESTION"},
+        **view(
+            lambda row: bridge.value_at(row.table, ("model",), ""),
+            lambda row, name: bridge.put(row, ("model",), name or None),
+        ),
     )
 
 
@@ -130,7 +154,7 @@ class PE_MountPart(PropertyGroup):
     part: pointer("Part", "Object of the vehicle", Object, update=redraw)
 
 
-class PE_MountSettings(SurfaceMountFields, PropertyGroup):
+class PE_MountSettings(SurfaceMountFields, Tabled, PropertyGroup):
     """A mount: surfaces or slots for sensors."""
 
     name: text(
@@ -150,7 +174,6 @@ class PE_MountSettings(SurfaceMountFields, PropertyGroup):
         search_options={"SUGGESTION"},
         update=redraw,
     )
-    area: pointer("Mesh", "Mesh object whose faces are the mount", Object, update=redraw)
     slots: pointer(
         "Slots",
         "Each empty of the collection is a slot with a position and angles",
@@ -165,28 +188,36 @@ class Switched:
     enabled: switch("Used", "Count this row", True, update=changed)
 
 
-StateFields: Any = group_of(geometry.State)
-WeatherFields: Any = group_of(kinds.Weather)
+StateFields: Any = table_group(geometry.State)
+WeatherFields: Any = table_group(kinds.Weather)
 
 
-class PE_State(StateFields, Switched, PropertyGroup):
+class PE_State(StateFields, Switched, Tabled, PropertyGroup):
     """A state of the vehicle: a frame of the scene, and the motions that were read there."""
 
-    frame: whole("Frame", "Frame of the scene that shows this state", -1, min=-1)
-    table: text("Motions", "Motions as JSON", update=changed)
+    frame: whole(
+        "Frame",
+        "Frame of the scene that shows this state",
+        NO_FRAME,
+        min=NO_FRAME,
+        **view(
+            lambda row: bridge.value_at(row.table, ("frame",), NO_FRAME),
+            lambda row, frame: bridge.put(row, ("frame",), None if frame < 0 else frame),
+        ),
+    )
 
 
-class PE_Weather(WeatherFields, Switched, PropertyGroup):
+class PE_Weather(WeatherFields, Switched, Tabled, PropertyGroup):
     """A weather. At most one of rain, snow and fog is above 0."""
 
 
-StoryFields: Any = group_of(motion.Story)
+StoryFields: Any = table_group(motion.Story, is_explicit=True)
 
 
-class PE_Story(StoryFields, Switched, PropertyGroup):
-    """A story of what moves round the vehicle; the row has its name."""
+class PE_Story(StoryFields, Switched, Tabled, PropertyGroup):
+    """A story of what moves round the vehicle; the row has its name. Its table has all fields, as
+    those that are absent are the preset's."""
 
-    table: text("Story", "What the fields do not have, as JSON: preset, bodies", update=changed)
     result: text("Result", "When its tracks are confirmed, as JSON")
 
 

@@ -5,7 +5,7 @@ the keys of a study file.
 """
 
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from copy import deepcopy
 from typing import Any
 
@@ -13,13 +13,11 @@ from bpy.types import Context, PropertyGroup
 
 from .. import bridge, signals
 from ..engine import pe, requirements, studies
-from .callbacks import changed
 from .declared import mixin, property_of
-from .fields import menu, text
-from .list_rows import Switched
+from .fields import menu, text, view
+from .list_rows import Switched, Tabled
 
-TableData = dict[str, Any]
-Change = Callable[[TableData, Any], None]
+Change = Callable[[bridge.TableData, Any], None]
 BODIES_ASKED = "bodies"
 GROUND_ASKED = "ground"
 ASKS = (
@@ -33,7 +31,7 @@ SHAPES = (
     ("path", "Path", "A line along which a body moves"),
     ("spots", "Spots", "Single places"),
 )
-USUAL: dict[str, TableData] = {
+USUAL: dict[str, bridge.TableData] = {
     "area": {"x": ["front + 1", "front + 5"], "y": ["right", "left"]},
     "polygon": {"polygon": [["front + 1", "right"], ["front + 5", 0.0], ["front + 1", "left"]]},
     "ring": {"ring": [0.2, 1.0]},
@@ -55,26 +53,23 @@ SECTIONS = {
 }
 
 
-def _view(get: Callable[[TableData], Any], put: Change) -> dict[str, Any]:
+def _view(
+    get: Callable[[bridge.TableData], Any], put: Change, items: Sequence[tuple[Any, ...]] = ()
+) -> dict[str, Any]:
     """Return the callbacks of a property: read from a row's full table, and changed in it."""
 
-    def getter(row: PropertyGroup) -> Any:
-        return get(bridge.full_table(row))
-
-    def setter(row: PropertyGroup, value: Any) -> None:
+    def write(row: PropertyGroup, value: Any) -> None:
         bridge.edit_row(row, lambda table: put(table, value))
         signals.study_changed.emit()
 
-    return {"get": getter, "set": setter}
+    return view(lambda row: get(bridge.full_table(row)), write, items)
 
 
 def _choice(
     items: tuple[tuple[str, str, str], ...], get: Callable[..., str], put: Change
 ) -> dict[str, Any]:
-    """Return items and callbacks of a menu: Blender hands over the numbers of its entries."""
-    names = [item[0] for item in items]
-    view = _view(lambda t: names.index(get(t)), lambda t, number: put(t, names[number]))
-    return {"items": items, **view}
+    """Return items and callbacks of a menu."""
+    return {"items": items, **_view(get, put, items)}
 
 
 def _declared() -> Any:
@@ -93,30 +88,31 @@ def _declared() -> Any:
 def _declared_view(section: str, setting: studies.Setting) -> dict[str, Any]:
     """Return the callbacks of a declared setting; its default removes the key."""
     name = setting.name
-    default = setting.default
+    default = bridge.in_file(setting)
 
-    def get(table: TableData) -> Any:
+    def get(table: bridge.TableData) -> Any:
         value = table.get(section, {}).get(name, default)
         return bridge.property_value(setting, value)
 
-    def put(table: TableData, value: Any) -> None:
+    def put(table: bridge.TableData, value: Any) -> None:
         found = bridge.value_of_property(setting, value)
         own = table.setdefault(section, {})
         own.pop(name, None)
         if name in ZERO_COUNTS or found != default:
-            own[name] = value if found is None else studies.value_in_file(setting.rule, found)
+            own[name] = value if found is None else found
 
     is_menu = isinstance(setting.rule, studies.OneOf)
-    return _choice(studies.menu_of(setting), get, put) if is_menu else _view(get, put)
+    own = _choice(studies.menu_of(setting), get, put) if is_menu else _view(get, put)
+    return own | {"default": None, "update": None}  # its default is in the table
 
 
-def asked_for(table: TableData) -> str:
+def asked_for(table: bridge.TableData) -> str:
     """Return whether test bodies or blind ground are asked for."""
     criterion = table.get("criterion", {})
     return GROUND_ASKED if {"blind_m2", "blind_out"} & criterion.keys() else BODIES_ASKED
 
 
-def ask_for(table: TableData, what: str) -> None:
+def ask_for(table: bridge.TableData, what: str) -> None:
     """Ask for test bodies, or for blind ground; keys of the other go."""
     if what == asked_for(table):
         return
@@ -131,34 +127,34 @@ def ask_for(table: TableData, what: str) -> None:
         table["body"] = [USUAL_BODY]
 
 
-def shape_of(table: TableData) -> str:
+def shape_of(table: bridge.TableData) -> str:
     """Return the shape of the zone."""
     return next((shape for shape in USUAL if table.get("zone", {}).get(shape)), "area")
 
 
-def reshape(table: TableData, shape: str) -> None:
+def reshape(table: bridge.TableData, shape: str) -> None:
     """Give the zone another shape, as it usually begins."""
     if shape != shape_of(table):
         _set_shape(table, deepcopy(USUAL[shape]))
 
 
-def _set_shape(table: TableData, keys: TableData) -> None:
+def _set_shape(table: bridge.TableData, keys: bridge.TableData) -> None:
     zone = table.setdefault("zone", {})
     for key in SHAPE_KEYS:
         zone.pop(key, None)
     zone |= keys
 
 
-def _zone_line(table: TableData) -> str:
+def _zone_line(table: bridge.TableData) -> str:
     zone = table.get("zone", {})
     return bridge.line_of({key: zone[key] for key in SHAPE_KEYS if zone.get(key)})
 
 
-def _set_zone(table: TableData, line: str) -> None:
+def _set_zone(table: bridge.TableData, line: str) -> None:
     _set_shape(table, bridge.read_line(line, "x"))
 
 
-def _bodies_line(table: TableData) -> str:
+def _bodies_line(table: bridge.TableData) -> str:
     value = table.get("body", [])
     bodies = value if isinstance(value, list) else [value]
     tables = [each for each in bodies if not isinstance(each, str)]
@@ -171,7 +167,7 @@ def _bodies_line(table: TableData) -> str:
     )
 
 
-def _set_bodies(table: TableData, line: str) -> None:
+def _set_bodies(table: bridge.TableData, line: str) -> None:
     """Set names of bodies, the keys of an own body, or several of both."""
     if "=" not in line:
         table["body"] = [each.strip() for each in line.split(",") if each.strip()]
@@ -183,11 +179,11 @@ def _set_bodies(table: TableData, line: str) -> None:
         raise pe.InputError("scene", "bodies", "names, or keys of a body", str(error)) from None
 
 
-def _headings_line(table: TableData) -> str:
+def _headings_line(table: bridge.TableData) -> str:
     return ", ".join(f"{angle:g}" for angle in table.get("headings", ()))
 
 
-def _set_headings(table: TableData, line: str) -> None:
+def _set_headings(table: bridge.TableData, line: str) -> None:
     """Set the headings [deg]; an empty line stands for those of the bodies."""
     table.pop("headings", None)
     if line.strip():
@@ -205,10 +201,9 @@ def known_bodies(_row: PropertyGroup, _context: Context, _typed: str) -> list[tu
 Declared: Any = _declared()
 
 
-class PE_Requirement(Declared, Switched, PropertyGroup):
+class PE_Requirement(Declared, Switched, Tabled, PropertyGroup):
     """A requirement, and its last verdict."""
 
-    table: text("Table", "The requirement as JSON", update=changed)
     problem: text("Problem", "Why a change was not made")
     asks: menu("Asks For", "What is asked for in the zone", **_choice(ASKS, asked_for, ask_for))
     bodies: text(

@@ -1,6 +1,7 @@
 """What is stored on the scene: the study's settings, and a small summary of the last result."""
 
 import zlib
+from functools import partial
 from typing import Any
 
 import bpy
@@ -11,7 +12,7 @@ from ..choices import PANELS, PRIORS
 from ..engine import search, studies
 from .callbacks import changed, kinds_to_add, redraw, select_object_by_index, selected_object_index
 from .declared import mixin, scene_group
-from .fields import menu, number, pointer, rows, switch, text, whole
+from .fields import menu, number, pointer, rows, switch, text, view, whole
 from .list_rows import (
     PE_CurveSettings,
     PE_FocusSettings,
@@ -29,7 +30,8 @@ METHODS = tuple(
     (name, method.label, method.about, 1 + zlib.crc32(name.encode()) % 2**30)
     for name, method in search.METHODS.items()
 )
-"""Of searches; a file holds a number that stays a method's whatever others there are."""
+"""Of searches, with a number that stays a method's whatever others there are."""
+METHOD = ("optimize", "method")
 
 # Before 4.5 every path could be relative to the .blend file; since then a property has to say so.
 PATH_OPTIONS = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (4, 5, 0) else set()
@@ -50,7 +52,6 @@ LISTS = (
 row's group."""
 INDEX_OF = {name: index for name, index, *_ in LISTS}
 """The property of the selected row's place, by that of the rows."""
-KEPT_AT_FIRST = ("blind_ground", "blind_sector")
 UNITS = {"m": "LENGTH", "m2": "AREA"}
 KEEPS = "Optimize will not make it worse than its limit, or than now if there is no limit"
 HOLDS = "Optimize keeps to the limit; a limit on what it improves ends it"
@@ -80,37 +81,55 @@ def _limits() -> Any:
         properties[bridge.keep_property(key)] = switch(
             f"Keep {row.label}",
             f"{KEEPS if is_seen else HOLDS}. {row.about}",
-            key in KEPT_AT_FIRST or not (is_seen or key in search.NUMBERED),
+            **view(partial(_is_kept, key), partial(_keep, key)),
         )
         if row.rule is not None:
-            properties[bridge.limit_property(key)] = _limit_number(row)
+            properties[bridge.limit_property(key)] = _limit_number(key, row)
     return mixin("Limit", properties)
 
 
-def _limit_number(row: search.Figure) -> Any:
+def _is_kept(key: str, settings: PropertyGroup) -> bool:
+    return bridge.limit_of(settings, key)[1]
+
+
+def _keep(key: str, settings: PropertyGroup, locked: bool) -> None:
+    number, _ = bridge.limit_of(settings, key)
+    bridge.put_limit(settings, key, number, locked)
+
+
+def _number(key: str, settings: PropertyGroup) -> float:
+    number, _ = bridge.limit_of(settings, key)
+    return bridge.NONE if number is None else number
+
+
+def _set_number(key: str, settings: PropertyGroup, number: float) -> None:
+    _, locked = bridge.limit_of(settings, key)
+    number = bridge.as_typed(number) if isinstance(number, float) else number
+    bridge.put_limit(settings, key, None if number <= bridge.NONE else number, locked)
+
+
+def _limit_number(key: str, row: search.Figure) -> Any:
     about = f"{row.about}: at {'least' if row.higher else 'most'}; {bridge.NONE}: no limit"
     rule: Any = row.rule
     least = bridge.NONE
     assert rule is not None, "a figure with a limit's number has its rule"
-    if isinstance(rule, studies.Whole):
-        return whole(row.label, about, least, min=least, max=rule.maximum)
-    return number(
-        row.label,
-        about,
-        least,
-        min=least,
-        max=min(rule.maximum, LARGEST_LIMIT),
-        precision=row.decimals,
-        unit=UNITS.get(row.unit, "NONE"),
-    )
+    is_whole = isinstance(rule, studies.Whole)
+    high = rule.maximum if is_whole else min(rule.maximum, LARGEST_LIMIT)
+    callbacks = view(partial(_number, key), partial(_set_number, key), low=least, high=high)
+    own = {"min": least, "max": high, **callbacks}
+    if is_whole:
+        return whole(row.label, about, least, **own)
+    unit = UNITS.get(row.unit, "NONE")
+    return number(row.label, about, least, precision=row.decimals, unit=unit, **own)
 
 
 LimitFields: Any = _limits()
 
 
 class PE_SceneSettings(StudyFields, ListFields, LimitFields, bridge.ResultViews, PropertyGroup):
-    """The study's settings, and the last result."""
+    """The study's settings, views of its table, and the last result."""
 
+    table: text("Study", "The settings as a study file has them, as JSON", bridge.new_table())
     kind_to_add: menu("Kind", "Kind of sensor that Add and Place put on the vehicle", kinds_to_add)
     vehicle: pointer(
         "Vehicle",
@@ -140,26 +159,25 @@ class PE_SceneSettings(StudyFields, ListFields, LimitFields, bridge.ResultViews,
         1,
         min=0,
     )
-    method: menu("Method", "Method of the search", METHODS, default=search.DEFAULT_METHOD)
+    method: menu(
+        "Method",
+        "Method of the search",
+        METHODS,
+        default=search.DEFAULT_METHOD,
+        **view(
+            lambda own: bridge.value_at(own.table, METHOD, search.DEFAULT_METHOD),
+            lambda own, name: bridge.put(own, METHOD, name),
+            METHODS,
+        ),
+    )
     start_variants: switch(
         "From Variants", "Searches also start from all other variants; all starts share the budget"
-    )
-    start_poses: text(
-        "Further Starts",
-        "Placements of an imported study that searches also start from, as JSON",
-        options={"HIDDEN"},
-    )
-    on_grid: switch(
-        "On a Grid", "A search ends on positions and angles that can be mounted: whole steps"
     )
     mounting_errors: switch(
         "Mounting Errors",
         "Evaluate each candidate by its mean over small mounting errors, so the result "
         "is not sensitive to them. A candidate takes about eight times as long",
-    )
-
-    time_text: text(
-        "Time", "Process noises by class and frame rates by kind, as JSON", options={"HIDDEN"}
+        **view(bridge.has_mounting_errors, bridge.switch_mounting_errors),
     )
 
     axles_known: switch(
@@ -167,6 +185,7 @@ class PE_SceneSettings(StudyFields, ListFields, LimitFields, bridge.ResultViews,
         "Set the positions of the axles: the rear axle is the origin of Autoware, "
         "nuScenes, ASAM OSI and DriveWorks",
         update=redraw,
+        **view(bridge.has_axles, bridge.switch_axles),
     )
 
     panels: menu("Panels", "Which panels the tab has, and in which words", PANELS)

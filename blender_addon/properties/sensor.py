@@ -12,22 +12,18 @@ from bpy.types import Context, Object, PropertyGroup
 
 from .. import bridge
 from ..choices import BODY_ITEMS
-from ..engine import pe, search
+from ..engine import catalog, graphics, pe, search
 from ..sensor_kinds import DEFAULT_MODEL
-from .callbacks import (
-    changed,
-    model_chosen,
-    models_of_a_kind,
-    own_curve_switched,
-    recolored,
-    redraw,
-)
-from .declared import group_of
-from .fields import menu, number, numbers, rows, switch, switches, text, whole
+from .callbacks import changed, model_chosen, models_of_a_kind, recolored, redraw
+from .declared import own_path, table_group
+from .fields import menu, number, numbers, rows, switch, switches, text, view, whole
 from .list_rows import PE_SensorOption
 
 AXIS_LABELS = ("X", "Y", "Z", "Roll", "Pitch", "Yaw")  # Of `search.AXES`
 
+BOUNDS = ("bounds",)
+COLOR = ("color",)
+CURVE = ("ap",)
 REACH_M = 0.5
 REACH_DEG = 10.0
 """New bounds are this far to either side of a sensor's value."""
@@ -69,15 +65,84 @@ def _stand(obj: Object, position: Sequence[float], degrees: Sequence[float]) -> 
     bridge.place_at(obj, bridge.pose_from_numbers((*position, *degrees)))
 
 
-def bounds_begun(settings: PropertyGroup, _context: Context) -> None:
-    """Update callback of bounded axes: bounds that are empty begin round the sensor's value."""
+def _free(settings: PropertyGroup) -> list[bool]:
+    free = bridge.ticked_axes(settings)
+    return [axis in free for axis in search.AXES]
+
+
+def _set_free(settings: PropertyGroup, ticked: Sequence[bool]) -> None:
+    free = [axis for axis, is_free in zip(search.AXES, ticked, strict=True) if is_free]
+    bridge.put(settings, ("free",), None if free == list(search.PAPER_FREE) else free)
+
+
+def _bounds(settings: PropertyGroup) -> dict[str, list[float]]:
+    """Return the bounds of a sensor's axes, as its table has them."""
+    return {axis: list(ends) for axis, ends in bridge.value_at(settings.table, BOUNDS, {}).items()}
+
+
+def _bounded(settings: PropertyGroup) -> list[bool]:
+    own = _bounds(settings)
+    return [axis in own for axis in search.AXES]
+
+
+def _set_bounded(settings: PropertyGroup, bounded: Sequence[bool]) -> None:
+    """Bound axes, round the sensor's values at first, and no others."""
     pose = shown_pose(settings.id_data)
     values = (*pose.position, *pose.rotation_deg)
-    for index, axis in enumerate(search.AXES):
-        if settings.bounded[index] and settings.bounds_low[index] == settings.bounds_high[index]:
-            reach = REACH_M if axis in search.POSITION_AXES else REACH_DEG
-            settings.bounds_low[index] = round(values[index] - reach, 3)
-            settings.bounds_high[index] = round(values[index] + reach, 3)
+    own = _bounds(settings)
+    ends = {}
+    for axis, value, is_bounded in zip(search.AXES, values, bounded, strict=True):
+        reach = REACH_M if axis in search.POSITION_AXES else REACH_DEG
+        if is_bounded:
+            ends[axis] = own.get(axis, [round(value - reach, 3), round(value + reach, 3)])
+    bridge.put(settings, BOUNDS, ends or None)
+
+
+def _ends(which: int) -> dict[str, Any]:
+    """Return the callbacks of the lower (0) or upper (1) bounds of all axes; those of an axis that
+    is not bounded are 0, and stay so."""
+
+    def read(settings: PropertyGroup) -> list[float]:
+        own = _bounds(settings)
+        return [own[axis][which] if axis in own else 0.0 for axis in search.AXES]
+
+    def write(settings: PropertyGroup, values: Sequence[float]) -> None:
+        own = _bounds(settings)
+        for axis, value in zip(search.AXES, values, strict=True):
+            if axis in own:
+                own[axis][which] = bridge.as_typed(value)
+        bridge.put(settings, BOUNDS, own or None)
+
+    return view(read, write)
+
+
+def _color(settings: PropertyGroup) -> tuple[float, ...]:
+    color = bridge.value_at(settings.table, COLOR)
+    return (0.0, 0.0, 0.0) if color is None else graphics.rgb_of(color)
+
+
+def _set_color(settings: PropertyGroup, color: Sequence[float]) -> None:
+    bridge.put(settings, COLOR, graphics.color_text(color))
+
+
+def _has_curve(settings: PropertyGroup) -> bool:
+    return bridge.value_at(settings.table, CURVE) is not None
+
+
+def _switch_curve(settings: PropertyGroup, on: bool) -> None:
+    """Begin with the curve of the sensor's kind, or remove its own one."""
+    if on != _has_curve(settings):
+        entry = catalog.entries().get(settings.model)
+        usual = None if entry is None else bridge.curve_table(entry.kind)
+        bridge.put(settings, CURVE, (usual or {"a": 0.0, "b": 0.0}) if on else None)
+
+
+def _kept(key: str, usual: Any) -> dict[str, Any]:
+    """Return the callbacks of a value that stands in the table as it is, unless it is the usual."""
+    return view(
+        lambda settings: bridge.value_at(settings.table, (key,), usual),
+        lambda settings, value: bridge.put(settings, (key,), None if value == usual else value),
+    )
 
 
 class GroundPose:
@@ -118,13 +183,17 @@ def racks_of_scene(_settings: PropertyGroup, context: Context, _typed: str) -> l
     return sorted({obj.perception_entropy.rack for obj in context.scene.objects} - {""})
 
 
-CurveFields: Any = group_of(pe.ApCurve, prefix="curve_")
-SheetFields: Any = group_of(pe.DataSheet)
+CurveFields: Any = table_group(
+    pe.ApCurve, prefix="curve_", path_of=lambda key: own_path(*CURVE, key), is_explicit=True
+)
+SheetFields: Any = table_group(pe.DataSheet)
 
 
 class PE_ObjectSettings(GroundPose, CurveFields, SheetFields, PropertyGroup):
-    """What makes an object a sensor, and its part in the last result."""
+    """What makes an object a sensor: views of its table, which is that of a study file; and its
+    part in the last result."""
 
+    table: text("Sensor", "The sensor as a study file has it, as JSON", options={"HIDDEN"})
     is_sensor: switch(
         "Is a Sensor", "This object is a sensor: its x axis is forward, z is up", update=changed
     )
@@ -135,6 +204,10 @@ class PE_ObjectSettings(GroundPose, CurveFields, SheetFields, PropertyGroup):
         search=models_of_a_kind,
         search_options={"SUGGESTION"},
         update=model_chosen,
+        **view(
+            lambda own: bridge.value_at(own.table, ("model",), DEFAULT_MODEL),
+            lambda own, name: bridge.put(own, ("model",), name),
+        ),
     )
     color: numbers(
         "Color",
@@ -144,6 +217,7 @@ class PE_ObjectSettings(GroundPose, CurveFields, SheetFields, PropertyGroup):
         min=0.0,
         max=1.0,
         update=recolored,
+        **view(_color, _set_color),
     )
     color_of: text(
         "Color Of",
@@ -155,33 +229,41 @@ class PE_ObjectSettings(GroundPose, CurveFields, SheetFields, PropertyGroup):
         "The beams or pixels of all sensors of a group are summed. If empty, all LiDARs"
         " are one group and each camera is a group of its own",
         update=changed,
+        **_kept("fusion", ""),
     )
     own_curve: switch(
         "Own AP Curve",
         "Use the numbers below for this sensor instead of those of its kind. Sensors of"
         " one fusion group have the same curve",
-        update=own_curve_switched,
+        update=changed,
+        **view(_has_curve, _switch_curve),
     )
     free: switches(
-        "Free Axes", "Axes that the search may change", len(search.AXES), default=FREE_BY_DEFAULT
+        "Free Axes",
+        "Axes that the search may change",
+        len(search.AXES),
+        default=FREE_BY_DEFAULT,
+        **view(_free, _set_free),
     )
     bounded: switches(
         "Bounded",
         "The axis has its own bounds in a search; otherwise those of the vehicle's outline",
         len(search.AXES),
-        update=bounds_begun,
+        **view(_bounded, _set_bounded),
     )
     bounds_low: numbers(
         "From",
         "Lowest value that the search may try: metres, or degrees",
         len(search.AXES),
         precision=3,
+        **_ends(0),
     )
     bounds_high: numbers(
         "To",
         "Highest value that the search may try: metres, or degrees",
         len(search.AXES),
         precision=3,
+        **_ends(1),
     )
     mount: text(
         "Mount",
@@ -189,12 +271,14 @@ class PE_ObjectSettings(GroundPose, CurveFields, SheetFields, PropertyGroup):
         search=mounts_of_scene,
         search_options={"SUGGESTION"},
         update=redraw,
+        **_kept("mount", ""),
     )
     rack: text(
         "Rack",
         "Sensors with the same rack move as one in a search; the first by name leads",
         search=racks_of_scene,
         search_options={"SUGGESTION"},
+        **_kept("rack", ""),
     )
     is_no_go: switch(
         "No-Go Area",
@@ -202,8 +286,16 @@ class PE_ObjectSettings(GroundPose, CurveFields, SheetFields, PropertyGroup):
         update=redraw,
     )
     options: rows("Models", "Models that a search may choose for this sensor", PE_SensorOption)
-    stays: switch("Stays", "A search leaves this sensor where it is, and those that follow it")
-    may_be_left_out: switch("May Be Left Out", "A search may choose a design without this sensor")
+    stays: switch(
+        "Stays",
+        "A search leaves this sensor where it is, and those that follow it",
+        **_kept("stays", False),
+    )
+    may_be_left_out: switch(
+        "May Be Left Out",
+        "A search may choose a design without this sensor",
+        **_kept("may_be_left_out", False),
+    )
     show: switch(
         "Show Beams", "Draw this sensor's beams or frustum in the 3D view", True, update=redraw
     )
@@ -228,9 +320,15 @@ class PE_ObjectSettings(GroundPose, CurveFields, SheetFields, PropertyGroup):
         "Inactive From", "Collections of an inactive sensor before it became inactive"
     )
 
-    order: whole("Order", "Its place in an imported study's rig", options={"HIDDEN"})
+    order: whole(
+        "Order", "Its place in an imported study's rig", options={"HIDDEN"}, **_kept("order", 0)
+    )
 
-    mirror_of: text("Mirror Of", "Name of the sensor that is linked as its mirror image")
+    mirror_of: text(
+        "Mirror Of",
+        "Name of the sensor that is linked as its mirror image",
+        **_kept("mirror_of", ""),
+    )
 
     is_view: switch("Is a View", "This camera shows the view of its parent sensor")
 

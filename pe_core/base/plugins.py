@@ -28,6 +28,8 @@ SHIPPED = {
     "mesh.usda": "pe_tools.formats.meshes.usd:read_usd",
     "mesh.usdc": "pe_tools.formats.meshes.usd:read_usd",
     "mesh.usdz": "pe_tools.formats.meshes.usd:read_usd",
+    "library.usd_text": "pe_tools.exchange.usd_library:text_of_binary",
+    "library.usd_packed": "pe_tools.exchange.usd_library:packed",
     "library.picture": "pe_tools.page.pictures.vehicle_picture:picture_output",
     "page.review": "pe_tools.page:review_studies",
     "page.search": "pe_tools.page:write_search_page",
@@ -38,6 +40,8 @@ SHIPPED = {
 """Plugins of this distribution: module and attribute, by the plugin's name."""
 EXTRAS = {
     "mesh": "meshes",
+    "library.usd_text": "meshes",
+    "library.usd_packed": "meshes",
     "pyarrow.feather": "argoverse",
     "matplotlib": "notebook",
     "pandas": "notebook",

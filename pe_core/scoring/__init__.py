@@ -3,7 +3,7 @@
 from .evaluator import Evaluator
 from .sampling import VoxelSample, draw
 from .score import (
-    SURE,
+    NO_DIFFERENCE,
     FoundClass,
     GroundMap,
     ObjectScore,
@@ -13,5 +13,6 @@ from .score import (
     Score,
     ScoreStopped,
     SensorScore,
+    is_noise,
     paired_error,
 )

@@ -41,8 +41,15 @@ than NEAR_M, farther than FAR_M, and between."""
 BY_DISTANCE = ZONES[4:]
 SURE = 2.0
 """A difference up to so many of its standard errors is noise."""
+NO_DIFFERENCE = "no difference shown"
+"""What is said of such a difference, wherever it is shown."""
 Watch = Callable[[float], bool]
 """Called repeatedly with the completed share of a score, 0 to 1; returns whether to continue."""
+
+
+def is_noise(difference: float, error: float) -> bool:
+    """Whether a difference is within `SURE` of its standard errors: no difference is shown."""
+    return abs(difference) <= SURE * error
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from .domains import (
     standoff_point,
 )
 from .figure import HIGHER, LOWER, NO_FIGURE, Figure
-from .figures import ENTROPY, FIGURES, KEPT, ON_FRONT, REQUIREMENTS, figure_of
+from .figures import AP_RINGS, ENTROPY, FIGURES, KEPT, ON_FRONT, REQUIREMENTS, figure_of
 from .goals import Front, Goals, Start, Stop
 from .journal import EvaluatedRig, Journal, checked_entries
 from .key_figures import KeyFigures, Reading, ReadingRow, dashboard

@@ -4,7 +4,6 @@ By default nothing: a search then ends when its method or its budget does, moves
 from the given placement alone, and minimises one value.
 """
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, Any
@@ -109,30 +108,6 @@ class Start:
         for pose in self.poses.values():
             require_kind("optimize", "start.poses", pose, Pose)
         put(self, "poses", ReadOnlyDict(self.poses))
-
-    @property
-    def numbers(self) -> dict[str, list[float]]:
-        """Position [m] and roll, pitch, yaw [deg] of each sensor, by name."""
-        return {name: [*p.position, *p.rotation_deg] for name, p in self.poses.items()}
-
-    @staticmethod
-    def text_of(starts: "Sequence[Start]") -> str:
-        """Return starts as JSON text; empty for none."""
-        rows = [[start.name, start.numbers] for start in starts]
-        return json.dumps(rows) if rows else ""
-
-    @staticmethod
-    def of_text(text: str) -> "tuple[Start, ...]":
-        """Return the starts of a text of `text_of`; `InputError` where it is none."""
-        try:
-            return tuple(
-                Start(name, {n: Pose.from_degrees(v[:3], v[3:]) for n, v in poses.items()})
-                for name, poses in (json.loads(text) if text else ())
-            )
-        except (AttributeError, TypeError, ValueError) as error:
-            if isinstance(error, InputError):
-                raise
-            raise InputError("scene", "start", "starts of a search", shown(text)) from None
 
     def placed(self, rig: Rig) -> Rig:
         """Return a rig at the poses of this start; sensors without a pose stay. `InputError` when

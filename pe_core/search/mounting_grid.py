@@ -40,13 +40,13 @@ class MountingGrid:
         0.0,
         Number(0.0, 1.0, unit="m", noun="length"),
         "Positions that a search ends on are multiples of this; 0: any",
-        Panel("grid_position", "Position", default=0.005, precision=3, step=0.1),
+        Panel("grid_position", "Grid", precision=3, step=0.1),
     )
     angle: float = setting(
         0.0,
         Angle(0.0, 45.0),
         "Angles that a search ends on are multiples of this; 0: any",
-        Panel("grid_angle", "Angle °", default=0.5, precision=2, step=10.0),
+        Panel("grid_angle", "Grid °", precision=2, step=10.0),
     )
 
     def __post_init__(self) -> None:

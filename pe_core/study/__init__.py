@@ -3,14 +3,17 @@
 from ..base.codec import Declared, Node, read, write
 from ..base.setting import (
     REQUIRED,
+    Named,
     OneOf,
     Pair,
     Panel,
+    Part,
     Setting,
     Several,
     Texts,
     Toggle,
     Triple,
+    key_of,
     setting,
     settings_of,
     value_in_file,
@@ -20,6 +23,7 @@ from ..search import METHODS, SCHEDULED_METHOD, Robustness
 from . import requirement_file, requirement_search
 from .condition_table import ConditionScore, ConditionTable, condition_table
 from .conditions import Conditions, StateInWeather
+from .document import AxisBounds, Document, Optimize, SensorTable
 from .file_names import AREAS, MESH, OPTIMIZED, RESULT, REVIEW_PAGE, SCHEMA, SEARCH, STUDY
 from .mounting_file import mounts_table
 from .study import OBJECTIVES, Search, Study

@@ -28,6 +28,7 @@ from ..search import AXES, PAPER_FREE, SCHEDULED_METHOD, Limits, Schedule, Selec
 from ..sensors import PerceptionModel
 from ..sensors.weather import Weather
 from .conditions import Conditions
+from .file_names import MESH
 from .scoring_file import FusionTable, ModelFile
 from .study import Search, Study
 
@@ -180,19 +181,25 @@ class Document:
             selection=study.selection,
         )
 
-    def study(self, node: Node) -> Study:
-        """Return the study of the document that was read from a node."""
-        self._check(node)
+    @property
+    def perception(self) -> PerceptionModel:
+        """The AP curves, and how sensors that see nothing count."""
         curves: Any = self.ap.curves
-        model = PerceptionModel(
+        return PerceptionModel(
             self.fusion.blind, objects=self.ap.objects, model=self.ap.model, **curves
         )
+
+    def study(self, node: Node, vehicle: Vehicle | None = None) -> Study:
+        """Return the study of the document that was read from a node; a `vehicle` takes the place
+        of the file's, and has the name of a study's mesh."""
+        self._check(node)
+        given = {"vehicle": vehicle, "mesh": MESH}
         return Study(
             rig=Rig([row.sensor for row in self.sensor]),
-            **self.vehicle.read(node.at("vehicle", {})),
+            **(given if vehicle is not None else self.vehicle.read(node.at("vehicle", {}))),
             space=self.space,
             prior=self.prior,
-            model=model,
+            model=self.perception,
             search=self._search(node),
             samples=self.samples,
             reference=self.reference,

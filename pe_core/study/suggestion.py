@@ -29,7 +29,7 @@ from ..scene.rig import Rig, Sensor, SensorModel
 from ..scene.vehicle import Vehicle
 from ..scoring.requirements import Criterion, Requirement, RequirementChecker, Zone, checkable
 from ..scoring.sampling import SEARCHED
-from ..scoring.score import SURE, RigEvaluator, ScoreStopped, standard_error
+from ..scoring.score import NO_DIFFERENCE, RigEvaluator, ScoreStopped, is_noise, standard_error
 from ..scoring.sight import Sight, shown_end
 from ..scoring.sight.blind_ground import BLIND_TO_M
 from ..search import MountingPlaces, Parametrization
@@ -60,8 +60,9 @@ ADD_COMPARED = 4
 MAX_OCCLUDED = 0.10
 MIN_HEIGHT_M = 0.4
 OCCLUSION_RAYS = 4096
-"""Of one more sensor: the largest share of its rays that the vehicle may occlude, and its smallest
-height: lower it is hit by stones and splashed. That share is one of so many rays at most."""
+"""Of one more sensor, if there is such a place: the share of its rays that the vehicle may occlude,
+and its smallest height, as lower it is hit by stones and splashed. The share is one of so many rays
+at most. Where no place is so good, that which lacks least is taken, and says what it lacks."""
 SAMPLES = 2048
 """Voxels on which entropies are compared: their difference is that of one sample."""
 SPOT_M = 0.25  # Half the side of the square that a blind spot is
@@ -80,7 +81,8 @@ class Suggestion:
     """The nearest placement found that meets a requirement, or one more sensor that does. Sensors
     in `moved` are elsewhere, or are new if `added`; requirements in `breaks` were met and no longer
     are. `before` and `after` are figures of both rigs, `start` is the rig before. `stderr` is the
-    standard error of the change of entropy [nats]."""
+    standard error of the change of entropy [nats]. `occluded` is the share of an added sensor's
+    rays that the vehicle occludes."""
 
     rig: Rig
     moved: tuple[str, ...]
@@ -90,6 +92,7 @@ class Suggestion:
     after: Effect
     added: bool = False
     stderr: float = 0.0
+    occluded: float = 0.0
 
     @property
     def text(self) -> str:
@@ -116,8 +119,13 @@ class Suggestion:
             gains.append(f"blind ground {shown_end(was):.1f} to {shown_end(now):.1f} m2")
         by = self.after.entropy - self.before.entropy
         way = "lower" if by < 0.0 else "higher"
-        is_clear = abs(by) > SURE * self.stderr
-        gains.append(f"entropy {abs(by):.3f} nats {way}" if is_clear else "entropy unchanged")
+        told = NO_DIFFERENCE if is_noise(by, self.stderr) else f"{abs(by):.3f} nats {way}"
+        gains.append(f"entropy {told}")
+        if self.occluded > MAX_OCCLUDED:
+            gains.append(f"{self.occluded:.0%} of its rays occluded")
+        height = self.rig[self.moved[0]].pose.position[2]
+        if self.added and height < MIN_HEIGHT_M:
+            gains.append(f"only {height:.2f} m above the ground")
         broken = f"; breaks {', '.join(self.breaks)}" if self.breaks else ""
         return f"{done}: {', '.join(gains)}{broken}"
 
@@ -283,7 +291,7 @@ class _Mender:
         study = self._study
         models = list({each.model.name: each.model for each in study.rig}.values())
         pairs = [(requirement, model) for requirement in self._left for model in models]
-        best: dict[str, tuple[float, Rig]] = {}
+        best: dict[str, tuple[float, float, Rig]] = {}
         for number, (requirement, model) in enumerate(pairs):
             checker = self._checker_of((requirement,))
             count = 0
@@ -305,22 +313,27 @@ class _Mender:
                 rig = places.with_sensor(place.pose)
                 if place.reason or checker.shortfalls(rig)[0]:
                     continue
-                if not self._is_acceptable(rig.sensors[-1]):
+                drawback = self._drawback(rig.sensors[-1])
+                if name in best and drawback > best[name][0]:
                     continue
                 if self._is_met_mounted(requirement, rig):
-                    found = self._searching.entropy(rig), rig
-                    best[name] = min(best.get(name, found), found, key=lambda pair: pair[0])
-                    if (count := count + 1) == ADD_COMPARED:
+                    entropy = 0.0 if drawback else self._searching.entropy(rig)
+                    found = drawback, entropy, rig
+                    best[name] = min(best.get(name, found), found, key=lambda own: own[:2])
+                    if not drawback and (count := count + 1) == ADD_COMPARED:
                         break
-        for name, (_, rig) in best.items():
-            self.added[name] = self._suggestion(rig, [rig.sensors[-1].name], added=True)
+        for name, (_, _, rig) in best.items():
+            added = self._suggestion(rig, [rig.sensors[-1].name], added=True)
+            self.added[name] = replace(added, occluded=self._occluded(rig.sensors[-1]))
 
-    def _is_acceptable(self, sensor: Sensor) -> bool:
-        """Whether one would mount an added sensor so: high enough, hardly occluded."""
-        if sensor.pose.position[2] < MIN_HEIGHT_M:
-            return False
+    def _drawback(self, sensor: Sensor) -> float:
+        """Return by how much one would not mount an added sensor so; 0: one would."""
+        low = max(MIN_HEIGHT_M - sensor.pose.position[2], 0.0)
+        return max(self._occluded(sensor) - MAX_OCCLUDED, 0.0) + low
+
+    def _occluded(self, sensor: Sensor) -> float:
         vehicle = self._study.vehicle
-        return vehicle is None or occluded_share(sensor, vehicle) <= MAX_OCCLUDED
+        return 0.0 if vehicle is None else occluded_share(sensor, vehicle)
 
     def _checker_of(self, wanted: tuple[Requirement, ...]) -> RequirementChecker:
         return replace(self._study, requirements=wanted).checker()

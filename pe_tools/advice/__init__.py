@@ -9,6 +9,7 @@ from .as_built import AsBuilt, BuiltPair, Pairing, built_sensor_lines, built_tab
 from .as_built import pair_text
 from .as_built import fallen_verdicts, paired
 from .advice import FRAGILE, NOT_KEPT, UNMET, Advice, fragile, not_kept, unmet
+from .differences import Worth, worth_lines, worth_rows
 from .free_region import EDGE, FreeRegion, Limitation, Way, region_lines, usual_loss
 from .flatness import Flatness, flatness_lines, flatness_of
 from .body_sight import BodySight, StandingBody, see_bodies

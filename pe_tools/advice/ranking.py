@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from pe_core.scene.rig import Rig
-from pe_core.scoring.score import SURE, Score
+from pe_core.scoring.score import NO_DIFFERENCE, Score, is_noise
 from pe_core.search import FIGURES, KeyFigures
 from pe_core.search.figures import AP, BLIND_SECTOR, COVERAGE, ENTROPY, on_dashboard
 
@@ -43,7 +43,8 @@ def _ranked(names: Sequence[str], row: ComparedRow) -> str:
         plus_minus = f" +- {max(error, 10.0**-digits):.{digits}f}" if error else ""
         worse.append(f"{names[k]} by {abs(values[k] - values[first]):.{digits}f}{plus_minus}")
     shown = joined([f"{names[k]} ({values[k]:.{digits}f}{unit})" for k in best])
-    told = f"By {noun} {shown} {'is best' if len(best) == 1 else 'are alike'}; {row.how.better}."
+    told = f"{shown} is best" if len(best) == 1 else f"{shown}: {NO_DIFFERENCE}"
+    told = f"By {noun} {told}; {row.how.better}."
     return f"{told} Worse: {joined(worse)}{unit_of_gap}." if worse else told
 
 
@@ -119,14 +120,14 @@ def _figure_losses(start: KeyFigures, result: KeyFigures) -> Iterator[str]:
         if first is None or last is None or row.cost_of(last) <= row.cost_of(first):
             continue
         texts = row.text(first), row.text(last)
-        if texts[0] != texts[1] and abs(last - first) > SURE * errors.get(row.key, 0.0):
+        if texts[0] != texts[1] and not is_noise(last - first, errors.get(row.key, 0.0)):
             yield f"{row.name} ({texts[0]} to {texts[1]})"
 
 
 def _score_losses(before: Score, after: Score) -> Iterator[str]:
     def is_worse(measure: str, by: float) -> bool:
         error = difference_error(before, after, ("rig", "", measure))
-        return by >= FIGURES[measure].least and by > SURE * error
+        return by >= FIGURES[measure].least and not is_noise(by, error)
 
     if is_worse(COVERAGE, before.coverage - after.coverage):
         yield f"coverage ({percent(before.coverage, 1)} to {percent(after.coverage, 1)})"
@@ -147,7 +148,7 @@ def _zone_losses(before: Score, after: Score) -> Iterator[str]:
     worse = []
     for name, rise in rises.items():
         error = difference_error(before, after, ("zone", name, ENTROPY))
-        if rise >= FIGURES[ENTROPY].least and rise > SURE * error:
+        if rise >= FIGURES[ENTROPY].least and not is_noise(rise, error):
             worse.append(name)
     for name in sorted(worse, key=lambda name: -rises[name])[:ZONES_NAMED]:
         first = before.per_zone[name].entropy

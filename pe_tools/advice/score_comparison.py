@@ -11,7 +11,16 @@ from pe_core import catalog
 from pe_core.motion.drive_by import shown_margin
 from pe_core.scene.rig import SensorModel
 from pe_core.scoring.sampling import BLOCKS
-from pe_core.scoring.score import BY_DISTANCE, FigureKey, PartScore, Score, TrafficAp, paired_error
+from pe_core.scoring.score import (
+    BY_DISTANCE,
+    NO_DIFFERENCE,
+    FigureKey,
+    PartScore,
+    Score,
+    TrafficAp,
+    is_noise,
+    paired_error,
+)
 from pe_core.scoring.sight import SECTOR_RADIUS_M
 from pe_core.search import FIGURES, Figure, KeyFigures
 from pe_core.search.figures import (
@@ -31,8 +40,8 @@ NEVER = -math.inf  # Margin of a story that is never confirmed: there is no wors
 OTHER_HARDWARE = (
     "The rigs differ in models or numbers of sensors. On simulated rigs of LiDARs entropy was not "
     "shown to rank better than the number of beams, and it can prefer a rig with a blind sector; "
-    "cameras and radars were not tested. Look at blind ground, and at the expected AP in traffic, "
-    "beside it (docs/validity/own)."
+    "nor was it shown to rank rigs of cameras; radars were not tested. Look at blind ground, and "
+    "at the expected AP in traffic, beside it (docs/validity)."
 )
 """Note beside scores of rigs that differ in their sensors, not in their placement alone."""
 OTHER_RETURNS = "LiDAR returns differ, as in the paper or on the road: do not compare scores."
@@ -138,9 +147,28 @@ class ComparedRow:
         return {None: "-", NEVER: "none"}.get(value, f"{value or 0.0:.{self.how.decimals}f}")
 
     def change_text(self, k: int) -> str:
-        """Return a told value minus the first as text; empty for the first, or without a number."""
+        """Return a told value minus the first as text; empty for the first, or without a number.
+
+        Within the standard error of the difference no difference is shown.
+        """
         first, own = (math.nan if v is None else v for v in (self.told[0], self.told[k]))
-        return f"{own - first:+.{self.how.decimals}f}" if k and math.isfinite(own - first) else ""
+        if not k or not math.isfinite(own - first):
+            return ""
+        return self.difference_text(own - first, 0, k)
+
+    def difference_text(self, by: float, one: int, other: int) -> str:
+        """Return a difference of two told values, given by index, as text.
+
+        Within its standard error no difference is shown.
+        """
+        text = f"{by:+.{self.how.decimals}f}"
+        return NO_DIFFERENCE if text.strip("+-0.") and self.is_noise(one, other) else text
+
+    def is_noise(self, one: int, other: int) -> bool:
+        """Whether two values, given by index, differ within the standard error of it."""
+        a = self.values[one]
+        b = self.values[other]
+        return a is not None and b is not None and is_noise(a - b, self.errors[one][other])
 
     @property
     def differences(self) -> tuple[float | None, ...]:
@@ -162,9 +190,9 @@ class ComparedRow:
 
     def sense(self, k: int) -> int:
         """Return -1 if a value is clearly better than the first one, 1 if it is worse, else 0. A
-        loss counts also within the error, a gain does not."""
+        loss counts from two standard errors on, a gain from `factor` of them."""
         less = self.differences[k]
-        if less is None or abs(less) <= self.how.least:
+        if less is None or abs(less) <= self.how.least or self.is_noise(0, k):
             return 0
         if (less < 0.0) == self.how.higher:
             return 1

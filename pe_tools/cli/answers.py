@@ -213,7 +213,7 @@ class ReplyError:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Reply:
+class ServeReply:
     """One line of a session: the `id` and the verb of its request, the exit status that the verb
     would have, lines that it would print on stderr, and its answer or why there is none."""
 

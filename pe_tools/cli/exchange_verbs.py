@@ -14,16 +14,19 @@ from pe_core.study import STUDY, Study, rig_line, save_study
 
 from ..exchange import (
     FILES,
+    SceneFacts,
     export_rig,
     format_of_file,
     format_to_read,
     import_rig,
     read_vehicle_info,
+    rig_format,
 )
 from ..formats import read_mesh
-from ..jobs import export_study, prepare_folder
+from ..jobs import export_study, prepare_folder, score_facts
 from ..outputs import OF_EXAMPLE, export_scene, output_files, scene_output, scene_outputs
 from .answers import FilesAnswer
+from .explain_verbs import scored
 from .options import LINE, ranged_outputs
 from .run_job import output_file, save_text
 from .study_source import StudyFiles
@@ -74,11 +77,19 @@ def export(source: StudyFiles, args: argparse.Namespace) -> Answer:
             into=args.into,
             placed=asked_origin(args),
             replace=args.replace or args.output is None,
+            facts=_facts(study, to),
         )
     for line in lines:
         tell(line)
     files = tuple(map(str, paths))
     return answered(args, FilesAnswer(written=files), (f"wrote {path}" for path in files)), DONE
+
+
+def _facts(study: Study, name: str) -> SceneFacts | None:
+    """Return the vehicle and what a score finds, for a format that has room for them."""
+    if rig_format(name).write_scene is None:
+        return None
+    return SceneFacts(study.vehicle, score_facts(scored(study, None)))
 
 
 def import_study(_: StudyFiles, args: argparse.Namespace) -> Answer:

@@ -147,7 +147,11 @@ def compare(source: StudyFiles, args: argparse.Namespace) -> Answer:
     curves = advice.curve_note(studies.values())
     notes = [note for note in (advice.hardware_note(models), curves) if note]
     apart = advice.disagreement(names, [*rows, *figure_rows])
+    worth = advice.worth_rows(
+        next(iter(studies.values())), [study.rig for study in studies.values()], one_vehicle=alike
+    )
     said = [*[apart] * bool(apart), *advice.ranking(names, rows)]
+    said += advice.worth_lines(names, [*rows, *figure_rows], worth)
     lines = [*comparison(names, [*rows, *figure_rows]), *said]
     lines += [] if alike else ["their vehicles differ"]
     if error := max(score.stderr for score in scores.values()):

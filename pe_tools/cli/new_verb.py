@@ -18,6 +18,7 @@ from pe_core.study import Study
 
 from ..advice import warnings
 from ..formats import Mesh, axes_in_text, write_mesh
+from ..templating import Templates
 from .answers import FilesAnswer
 from .found_vehicle import OF_MESH, FoundVehicle, asked_keys, find_vehicle
 from .known_rigs import new_of_rig
@@ -100,16 +101,14 @@ class FirstStudy:
 
 def study_text(first: FirstStudy) -> str:
     """Return the study file's text: keys with comments, in the order a newcomer asks."""
-    from jinja2 import Environment, StrictUndefined  # other verbs start without it
-
     study = first.study()
     sensor = first.roof.sensor
     roof = find_roof(first.found.vehicle)
     axes = study.axes
     top = sensor.pose.position[2] + 0.1
     named = axes.up is not None and axes.forward is not None
-    environment = Environment(trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined)
-    text: str = environment.from_string(TEMPLATE.read_text("utf-8")).render(
+    text = Templates(TEMPLATE.parent, is_html=False).render(
+        TEMPLATE.name,
         row=_row,
         line=_line,
         study=study,

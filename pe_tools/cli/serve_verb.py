@@ -20,7 +20,7 @@ from pe_core.study import Study, load_study_data
 
 from ..jobs import placements
 from ..sweep import SOURCE, changed_study, read_changes
-from .answers import Reply, ReplyError, SessionState
+from .answers import ReplyError, ServeReply, SessionState
 from .command import Parser, file_error
 from .interrupts import FATAL
 from .options import OptionRow, options
@@ -119,7 +119,7 @@ class Session:
             flags = (known[name] for name in names)
             self._verbs[verb.name] = {row.flags[-1].lstrip("-"): row for row in flags}
 
-    def reply(self, line: bytes) -> Reply:
+    def reply(self, line: bytes) -> ServeReply:
         """Answer a request. Bad input is a reply with an error."""
         do: str | None = None
         number: Any = None
@@ -132,12 +132,12 @@ class Session:
                 status, answer = self._answer(do, request)
         except (InputError, OSError) as error:
             wrong = error if isinstance(error, InputError) else file_error(error)
-            return Reply(id=number, do=do, status=BAD_INPUT, error=_reply_error(wrong))
+            return ServeReply(id=number, do=do, status=BAD_INPUT, error=_reply_error(wrong))
         except _WrongUsage as error:
             wrong = InputError(REQUEST, "", "", str(error))
-            return Reply(id=number, do=do, status=USAGE, error=_reply_error(wrong))
+            return ServeReply(id=number, do=do, status=USAGE, error=_reply_error(wrong))
         lines = tuple(each.removeprefix("pe: ") for each in notes.getvalue().splitlines())
-        return Reply(id=number, do=do, status=status, notes=lines, answer=answer)
+        return ServeReply(id=number, do=do, status=status, notes=lines, answer=answer)
 
     def _answer(self, do: str, request: Mapping[str, Any]) -> tuple[int, Any]:
         require_name(REQUEST, "do", do, [*self._own, *self._verbs])

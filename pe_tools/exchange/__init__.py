@@ -6,7 +6,8 @@ from .foreign_values import MAX_BEAMS, Written, require_at_most
 from .frames import pose_from_quaternion
 from .importing import ImportedRig, import_rig
 from .lens_pictures import Picture, straight
-from .portable import PortableSensor, with_pictures
+from .osi import mounting_position
+from .portable import PortableSensor, SceneFacts, with_pictures
 from .portable_kinds import picture_of, portable_sensors
 from .rig_formats import (
     FILES,
@@ -16,5 +17,6 @@ from .rig_formats import (
     RIG_FORMATS,
     format_of_file,
     format_to_read,
+    origin_of,
     rig_format,
 )

@@ -8,6 +8,7 @@ from pe_core import catalog
 from pe_core.base.errors import InputError
 from pe_core.base.files import require_new, write_all_bytes
 from pe_core.base.input_files import not_noting_inputs
+from pe_core.base.plugins import call_plugin, install_hint, required_plugin
 from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig, Sensor, SensorModel
 from pe_core.scene.vehicle_description import Reference
@@ -16,7 +17,7 @@ from . import rig_formats as formats
 from .frames import origin_in_ground, seen_from, shifted
 from .importing import ModelledRig, errors_of, read_rig
 from .merging import listed_kinds, merged
-from .portable import MergeTarget, PortableRig, PortableSensor, with_pictures
+from .portable import MergeTarget, PortableRig, PortableSensor, SceneFacts, with_pictures
 from .portable_kinds import portable_sensors
 from .rig_formats import RigFormat, format_to_read, rig_format
 
@@ -28,6 +29,7 @@ def rig_files(
     *,
     into: str | Path | None = None,
     placed: Pose | None = None,
+    facts: SceneFacts | None = None,
 ) -> tuple[Mapping[str, bytes], list[str]]:
     """Return a rig in another program's format. `InputError` when the format is unknown, needs the
     rear axle, cannot express the rig, or cannot update the file `into`.
@@ -42,6 +44,8 @@ def rig_files(
         File or folder of this format whose content besides the rig stays in the returned files.
     placed : Pose, optional
         Pose of the file's origin, for a format without a vehicle.
+    facts : SceneFacts, optional
+        Vehicle and figures, for a format that has room for them.
 
     Returns
     -------
@@ -50,7 +54,7 @@ def rig_files(
     """
     row = rig_format(name)
     read = None if into is None else _read_target(Path(into), row)
-    return _rig_files(rig, row, reference, read, placed=placed)
+    return _rig_files(rig, row, reference, read, placed=placed, facts=facts)
 
 
 def _rig_files(
@@ -59,6 +63,7 @@ def _rig_files(
     reference: Reference | None,
     read: ModelledRig | None,
     placed: Pose | None,
+    facts: SceneFacts | None = None,
 ) -> tuple[Mapping[str, bytes], list[str]]:
     back = [-value for value in origin_in_ground(row.origin, reference, row.title)]
     moved = tuple(dataclasses.replace(s, pose=shifted(s.pose, back)) for s in portable_sensors(rig))
@@ -73,7 +78,10 @@ def _rig_files(
         kept = listed_kinds((sensor.kind or "", sensor.name) for sensor in others)
     kept_lines = [f"kept as in the file: {kept}"] if kept else []
     sensors, lens_lines = with_pictures(moved, row.keeps, row.title)
-    files, lines = row.write(sensors, target)
+    if row.write_scene is not None and facts is not None:
+        files, lines = row.write_scene(sensors, facts)
+    else:
+        files, lines = row.write(sensors, target)
     return files, [*lines, *lens_lines, *lost_line(rig, row.title, row.holds), *kept_lines]
 
 
@@ -155,6 +163,7 @@ def export_rig(
     into: str | Path | None = None,
     placed: Pose | None = None,
     replace: bool = False,
+    facts: SceneFacts | None = None,
 ) -> tuple[list[Path], list[str]]:
     """Write a rig in another program's format; parameters not listed are those of `rig_files`.
 
@@ -188,9 +197,20 @@ def export_rig(
             read = _read_target(output, row)
         except InputError as error:
             damaged_lines = [f"replaced as a whole, as it cannot be read: {error}"]
-    files, lines = _rig_files(rig, row, reference, read, placed=placed)
+    files, lines = _rig_files(rig, row, reference, read, placed=placed, facts=facts)
+    if output.suffix.lower() in row.binary:
+        files = _packed(row, files, output)
     paths = write_files(files, output, inside=row.is_folder, replace=replace)
     return paths, [*damaged_lines, *lines]
+
+
+def _packed(row: RigFormat, files: Mapping[str, bytes], output: Path) -> Mapping[str, bytes]:
+    """Return written files in the format of the output's suffix, which a library writes."""
+    suffix = output.suffix.lower()
+    hint = install_hint("library", row.packed)
+    point, function = required_plugin("library", row.packed, str(output), "format", expected=hint)
+    packed: Mapping[str, bytes] = call_plugin(point, function, files, suffix)
+    return packed
 
 
 def _is_there(row: RigFormat, output: Path) -> bool:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import count
 from pathlib import Path
@@ -18,10 +19,11 @@ import numpy as np
 from pe_core.base.errors import InputError, shown
 from pe_core.base.table_reader import Table
 from pe_core.base.values import Number, Whole, numbers, real
-from pe_core.geometry.poses import METRES
+from pe_core.geometry.poses import METRES, Pose
 
 from . import foreign_values as values
 from .foreign_values import MAX_BEAMS, RANGE, RPY, XYZ, Export, require_at_most
+from .frames import shifted
 from .lens_pictures import picture_of_fov
 from .merging import merge_rows
 from .portable import FieldOfView, ForeignRig, MergeTarget, PortableRig, PortableSensor, Scan
@@ -104,11 +106,16 @@ def _id_of(row: Message) -> int | None:
 
 def _row(sensor: PortableSensor) -> dict[str, Any]:
     """Return the pose of a sensor, its fields of view [rad], counts and directions of beams."""
-    mounting = {
-        "position": dict(zip(XYZ, sensor.pose.position, strict=True)),
-        "orientation": dict(zip(RPY, sensor.pose.rpy, strict=True)),
+    return {"mounting_position": mounting_position(sensor.pose), **_figures(sensor)}
+
+
+def mounting_position(pose: Pose, origin: Sequence[float] = (0.0, 0.0, 0.0)) -> dict[str, Any]:
+    """Return a MountingPosition: a pose in the frame with its origin there [m]."""
+    moved = shifted(pose, [-value for value in origin])
+    return {
+        "position": dict(zip(XYZ, moved.position, strict=True)),
+        "orientation": dict(zip(RPY, moved.rpy, strict=True)),
     }
-    return {"mounting_position": mounting, **_figures(sensor)}
 
 
 def _figures(sensor: PortableSensor) -> dict[str, Any]:

@@ -1,17 +1,28 @@
 """The exchange model: sensors and poses as all rig formats can express them."""
 
 import math
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from pe_core.base.arrays import Floats
 from pe_core.geometry.poses import Pose
+from pe_core.scene.vehicle import Vehicle
 
 from .lens_pictures import KeptPicture, Picture, lost
 
 ORIGIN = Pose((0.0, 0.0, 0.0))
 EVEN_RAD = 1e-4  # Channels nearer to even distances than this are even
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Emitters:
+    """A scan as emitters that fire together at each of `ticks` azimuths of a turn. `azimuths` (E,)
+    are relative to those of the ticks, `elevations` (E,) above the horizon [rad]."""
+
+    azimuths: Floats
+    elevations: Floats
+    ticks: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +32,8 @@ class Scan:
     metres. `even` tells whether the channels are evenly spaced; their azimuth offsets are up to
     `offset_rad`. `directions` (B, 3) are the beams of an imported file that lists them; for a LiDAR
     of a rig, `compute_beams` computes them. `ends` are the first and the last azimuth [rad], which
-    formats state that divide a scan so (SDF); None where the file has `fov` alone."""
+    formats state that divide a scan so (SDF); None where the file has `fov` alone.
+    `compute_emitters` returns the scan as emitters; None for a file that has none."""
 
     channels: int
     low: float
@@ -35,6 +47,7 @@ class Scan:
     compute_beams: Callable[[], Floats] | None = None
     offset_rad: float = 0.0
     ends: tuple[float, float] | None = None
+    compute_emitters: Callable[[], Emitters] | None = None
 
     @property
     def beams(self) -> Floats | None:
@@ -111,6 +124,15 @@ class ForeignRig:
     sensors: PortableRig
     lines: Sequence[str] = ()
     document: Any = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SceneFacts:
+    """What a format may have besides the rig: the vehicle, in the ground frame, and `metadata`, the
+    figures and verdicts of a score as plain data."""
+
+    vehicle: Vehicle | None = None
+    metadata: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

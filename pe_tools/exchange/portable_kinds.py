@@ -3,7 +3,7 @@ a row goes by its table in a study, in the formats that have room for it."""
 
 import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -13,6 +13,7 @@ import numpy as np
 from pe_core import catalog
 from pe_core.base.arrays import Floats
 from pe_core.base.errors import InputError
+from pe_core.base.values import degrees_in_file
 from pe_core.scene.rig import Rig, SensorModel
 from pe_core.sensors import KINDS
 from pe_core.sensors.camera import Camera
@@ -24,7 +25,7 @@ from pe_core.sensors.ultrasonic import Ultrasonic
 
 from .foreign_values import MAX_BEAMS
 from .lens_pictures import ALIKE_PX, Picture, Size
-from .portable import EVEN_RAD, FieldOfView, PortableRig, PortableSensor, Scan
+from .portable import EVEN_RAD, Emitters, FieldOfView, PortableRig, PortableSensor, Scan
 
 CAMERA = Camera.kind
 LIDAR = Lidar.kind
@@ -38,6 +39,14 @@ nuScenes' own cameras have it 0.046 below."""
 RANGES = {"min_range": 0.0, "max_range": math.inf}
 """Ranges of a model, and the values that no file states [m]."""
 
+RadarScan = tuple[str, float, float, float, Mapping[str, float]]
+"""Name, range [m], half azimuth and half elevation [deg], and resolutions, of a radar's scan."""
+RESOLUTIONS = {
+    "rangeResM": "range_resolution",
+    "boreAzResDeg": "azimuth_resolution",
+    "boreElResDeg": "elevation_resolution",
+}
+"""Fields of a radar's mode by the name that NVIDIA's schema has for a resolution."""
 OwnModel = tuple[SensorModel, str]
 """A model made of a file's figures, and a message on it (may be empty)."""
 
@@ -145,6 +154,16 @@ def lidar_of(name: str, scan: Scan) -> Lidar:
     ranges = scan.max_range, scan.min_range
     if scan.directions is not None:
         return Lidar.from_directions(name, scan.directions, *ranges)
+    if scan.compute_emitters is not None:
+        emitters = scan.compute_emitters()
+        return Lidar(
+            name,
+            emitters.elevations,
+            emitters.ticks,
+            scan.max_range,
+            azimuth_offsets=emitters.azimuths,
+            min_range=scan.min_range,
+        )
     elevations = np.linspace(scan.low, scan.high, scan.channels)
     low, high = scan.fov
     if high - low < NO_EXTENT_RAD:  # it does not rotate: all of its channels have one azimuth
@@ -223,7 +242,19 @@ def _scan(model: Lidar) -> Scan:
         compute_beams=lambda: model.directions,
         offset_rad=float(np.abs(model.azimuth_offsets - _common_offset(model)).max()),
         ends=_ends(model),
+        compute_emitters=lambda: emitters_of(model),
     )
+
+
+def emitters_of(model: Lidar) -> Emitters:
+    """Return a LiDAR as emitters. One that scans less than a whole turn has an emitter for each of
+    its beams, which fire once."""
+    steps = model.azimuth_steps
+    if len(steps) == model.azimuth_count:
+        return Emitters(model.azimuth_offsets, model.elevations, model.azimuth_count)
+    azimuths = (model.azimuth_offsets[:, None] + steps * model.azimuth_step).ravel()
+    around = np.array([math.remainder(a, 2.0 * math.pi) for a in azimuths.tolist()])
+    return Emitters(around, np.repeat(model.elevations, len(steps)), ticks=1)
 
 
 def _camera_model(sensor: PortableSensor, usual: Size | None) -> OwnModel | None:
@@ -236,11 +267,16 @@ def _camera_model(sensor: PortableSensor, usual: Size | None) -> OwnModel | None
 def _model_by_table(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
     if not sensor.parameters:
         return None
+    return model_of_table(sensor.model or sensor.name, sensor.parameters), ""
+
+
+def model_of_table(name: str, parameters: str) -> Any:
+    """Return the model of a table in a study, given as JSON; `parameters_of` is its inverse."""
     try:
-        table = json.loads(sensor.parameters)
+        table = json.loads(parameters)
     except ValueError as error:
-        raise InputError(sensor.name, "parameters", "a table of a model (JSON)", error) from None
-    return catalog.from_table(sensor.model or sensor.name, table), ""
+        raise InputError(name, "parameters", "a table of a model (JSON)", error) from None
+    return catalog.from_table(name, table)
 
 
 def _model_by_field(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
@@ -275,12 +311,61 @@ def _model_by_field(sensor: PortableSensor, _: Size | None) -> OwnModel | None:
 
 def _with_field(model: Radar | Ultrasonic) -> dict[str, Any]:
     seen = FieldOfView(*model.window, model.max_range, model.min_range)
-    return {"parameters": _parameters(model), "field": seen}
+    return {"parameters": parameters_of(model), "field": seen}
 
 
-def _parameters(model: SensorModel) -> str:
+def parameters_of(model: SensorModel) -> str:
     """Return the table of a model as JSON, on one line."""
     return json.dumps(catalog.to_table(model), ensure_ascii=False, separators=(",", ":"))
+
+
+def catalogued_emitters(name: str) -> Emitters | None:
+    """Return the emitters of a catalogued LiDAR; None if the catalogue has none of that name."""
+    model = catalog.load(name) if name in catalog.names(LIDAR) else None
+    return emitters_of(model) if isinstance(model, Lidar) else None
+
+
+def scans_of(parameters: str, name: str) -> list[RadarScan]:
+    """Return the scans of a radar's table, one a mode, with symmetric fields: the wider side."""
+    rows: list[RadarScan] = []
+    for number, mode in enumerate(model_of_table(name, parameters).modes, 1):
+        across, up = (
+            degrees_in_file(max(abs(float(ends[0])), abs(float(ends[-1]))))
+            for ends in (mode.azimuths, mode.elevations)
+        )
+        fine = {}
+        for key, field in RESOLUTIONS.items():
+            value = getattr(mode, field)
+            if value is not None:
+                fine[key] = value if key.endswith("M") else degrees_in_file(value)
+        rows.append((f"s{number:03d}", float(mode.max_range), across, up, fine))
+    return rows
+
+
+def parameters_of_scans(name: str, scans: Iterable[RadarScan]) -> str:
+    """Return the table of the radar with a mode for each scan, whose ranges are those of all its
+    directions."""
+    modes = []
+    for scan, reach, across, up, resolution in scans:
+        fine = {RESOLUTIONS[key]: value if key.endswith("M") else math.radians(value)
+                for key, value in resolution.items()}  # fmt: skip
+        modes.append(
+            RadarMode(
+                scan,
+                np.radians([-across, across]),
+                np.array([reach, reach]),
+                np.radians([-up, up]),
+                scales=np.ones(2),
+                **fine,
+            )
+        )
+    return parameters_of(Radar(name, modes))
+
+
+def spans_of(parameters: str, name: str) -> tuple[float, float]:
+    """Return the spans of azimuth and elevation [deg] of the table of an ultrasonic sensor."""
+    (left, right), (low, high) = model_of_table(name, parameters).window
+    return degrees_in_file(right - left), degrees_in_file(high - low)
 
 
 PORTABLE_KINDS: dict[str, PortableKind] = {
@@ -296,5 +381,5 @@ PORTABLE_KINDS: dict[str, PortableKind] = {
     ULTRASONIC: PortableKind(_with_field, _model_by_field, "Bosch Ultrasonic 3.1"),
 }  # Rows by kind; other kinds are expressed by `OTHER`
 OTHER = PortableKind(
-    lambda model: {"parameters": _parameters(model)}, _model_by_table
+    lambda model: {"parameters": parameters_of(model)}, _model_by_table
 )  # The row of a kind without one

@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 from pe_core.base.errors import InputError
 from pe_core.base.values import choice
+from pe_core.scene.vehicle_description import Reference
 
 from . import (
     argoverse2,
@@ -20,11 +21,14 @@ from . import (
     ros,
     urdf,
     urdf_writer,
+    usd,
+    usd_schema,
+    usd_writer,
 )
 from . import lens_pictures as lenses
 from .foreign_values import Export
-from .frames import GROUND, REAR_AXLE, REAR_AXLE_GROUND
-from .portable import ForeignRig, MergeTarget, PortableRig, PortableSensor
+from .frames import GROUND, REAR_AXLE, REAR_AXLE_GROUND, origin_in_ground
+from .portable import ForeignRig, MergeTarget, PortableRig, PortableSensor, SceneFacts
 
 MODEL = "model"  # The model name; properties of a catalogued model are then not lost
 BEAMS = "beams"  # A LiDAR's channels, azimuths and range
@@ -49,7 +53,10 @@ class RigFormat:
     intrinsics to what the format can express. `settled`: function that adjusts a sensor once its
     model is known. `usual_size` (int, int): image size of the format's data set [px], for a format
     that states no size. `beside`: whether files with camera intrinsics are beside the main file.
-    `merges`: whether an export into a file keeps what the file has besides the rig."""
+    `merges`: whether an export into a file keeps what the file has besides the rig. `write_scene`:
+    function that writes the rig over its vehicle, with what its score found; None for a format that
+    has room for sensors alone. `binary`: other suffixes that it is written with, by a library:
+    `packed` is the name of the plugin."""
 
     name: str
     title: str
@@ -64,6 +71,9 @@ class RigFormat:
     usual_size: lenses.Size | None = None
     beside: bool = False
     merges: bool = True
+    write_scene: Callable[[PortableRig, SceneFacts], Export] | None = None
+    binary: tuple[str, ...] = ()
+    packed: str = ""
 
     @property
     def is_folder(self) -> bool:
@@ -182,6 +192,21 @@ _ROWS = (
         holds=frozenset({MODEL}),
         keeps=lenses.of_driveworks,
     ),
+    RigFormat(
+        name="usd",
+        title="OpenUSD",
+        origin=GROUND,
+        files=(usd_schema.FILE,),
+        suffixes=(".usda", ".usd", ".usdc", ".usdz"),
+        read=usd.read,
+        write=usd_writer.write,
+        write_scene=usd_writer.write_scene,
+        holds=_TABLE | _BEAMS,
+        keeps=lenses.opencv,
+        merges=False,
+        binary=(".usdc", ".usdz"),
+        packed="usd_packed",
+    ),
 )
 RIG_FORMATS = MappingProxyType({row.name: row for row in _ROWS})  # Formats by name
 
@@ -198,7 +223,7 @@ def format_of_file(output: Path, files: Mapping[str, str], chosen: str | None = 
     one file, by the format's name. `chosen`: name of the format that was asked for; it may be one
     that has a folder of files."""
     suffix = output.suffix.lower()
-    fitting = [name for name, file in files.items() if Path(file).suffix == suffix]
+    fitting = [name for name, file in files.items() if suffix in _written_suffixes(name, file)]
     if chosen is not None:
         if suffix and fitting and chosen not in fitting:
             found = f"{suffix}, the suffix of {' or '.join(fitting)}"
@@ -213,6 +238,19 @@ def format_of_file(output: Path, files: Mapping[str, str], chosen: str | None = 
         expected = f"the name of a format ({known}), or a suffix that only one has"
         raise InputError(output, "format", expected, suffix or "no suffix")
     return fitting[0]
+
+
+def origin_of(name: str, reference: Reference | None) -> tuple[float, ...]:
+    """Return the origin of a format's frame in the ground frame, (3,) [m]. `InputError` where it is
+    the rear axle and that is not known."""
+    row = rig_format(name)
+    return origin_in_ground(row.origin, reference, row.title)
+
+
+def _written_suffixes(name: str, file: str) -> tuple[str, ...]:
+    """Return the suffixes of files that a format writes."""
+    row = RIG_FORMATS.get(name)
+    return (Path(file).suffix, *(row.binary if row is not None else ()))
 
 
 FILES = MappingProxyType({row.name: row.files[0] for row in _ROWS if not row.is_folder})

@@ -17,7 +17,7 @@ from pe_core.scene.rig import Rig
 from pe_core.scoring import RigEvaluator
 from pe_core.scoring.requirements import CheckStep, RequirementChecker, Verdict
 from pe_core.scoring.sampling import CENTERED, SEARCHED, Shift
-from pe_core.scoring.score import SURE, ObjectScore, Score, ScoreStopped
+from pe_core.scoring.score import NO_DIFFERENCE, ObjectScore, Score, ScoreStopped, is_noise
 from pe_core.search import EvaluatedRig, KeyFigures, Reading, Robustness, Value, dashboard
 from pe_core.search.figures import BLIND_GROUND, BLIND_SECTOR, ENTROPY, FIGURES, TRAFFIC_AP
 from pe_core.study.condition_table import (
@@ -228,13 +228,13 @@ class Outcome(Tabular):
     @property
     def change_text(self) -> str:
         """The change of entropy that a search made, with its standard error: "-0.051 +- 0.010", or
-        "no change beyond +- 0.010". Without an error for the whole grid."""
+        "no difference shown beyond +- 0.010". Without an error for the whole grid."""
         by = rounded(self.after.entropy - self.before.entropy)
         error = self.change_errors[ENTROPY]
         if not error:
             return f"{by:+.3f}"
         sure = f"+- {error_text(error)}"
-        return f"{by:+.3f} {sure}" if abs(by) > SURE * error else f"no change beyond {sure}"
+        return f"{NO_DIFFERENCE} beyond {sure}" if is_noise(by, error) else f"{by:+.3f} {sure}"
 
     @property
     def gain(self) -> str:

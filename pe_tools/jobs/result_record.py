@@ -13,7 +13,7 @@ from pe_core.search import KeyFigures, ReadingRow
 
 from ..advice import Advice
 
-End = Literal["before", "after"]
+BeforeOrAfter = Literal["before", "after"]
 """Of the given study, and of the result; the same for a score."""
 OpenTable = Mapping[str, Any]
 """A part of a result whose keys may change with any version."""
@@ -37,7 +37,7 @@ def placements(rig: Rig) -> PlacedSensors:
 
 
 @dataclass(frozen=True, slots=True)
-class RunRecord:
+class RunMetadata:
     """How long a run took, and the versions of the programs; of a page, the command."""
 
     seconds: float
@@ -73,7 +73,7 @@ class FrontRecord:
     refused: Any
     notes: Any
     inputs: OpenTable
-    run: RunRecord
+    run: RunMetadata
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,7 +87,7 @@ class ResultRecord:
     coverage: Annotated[float, Part(about="Of the result, 0 to 1")]
     before: Score
     after: Score
-    placements: Mapping[End, PlacedSensors]
+    placements: Mapping[BeforeOrAfter, PlacedSensors]
     mounts: OpenTable
     robustness: Annotated[OpenTable | None, AtTimes] = None
     requirements: Annotated[tuple[VerdictRow, ...] | None, AtTimes] = None
@@ -95,9 +95,9 @@ class ResultRecord:
     method: str | None
     level_samples: tuple[int, ...]
     objective: Annotated[str | None, AtTimes] = None
-    expected_ap: Annotated[Mapping[End, ObjectScore] | None, AtTimes] = None
-    value: Annotated[Mapping[End, float | None] | None, AtTimes] = None
-    figures: Annotated[Mapping[End, KeyFigures] | None, AtTimes] = None
+    expected_ap: Annotated[Mapping[BeforeOrAfter, ObjectScore] | None, AtTimes] = None
+    value: Annotated[Mapping[BeforeOrAfter, float | None] | None, AtTimes] = None
+    figures: Annotated[Mapping[BeforeOrAfter, KeyFigures] | None, AtTimes] = None
     dashboard: tuple[ReadingRow, ...]
     gain: Annotated[str | None, AtTimes] = None
     cost: Annotated[str | None, AtTimes] = None
@@ -115,4 +115,4 @@ class ResultRecord:
     warnings: tuple[Advice, ...]
     history: tuple[OpenTable, ...]
     inputs: InputsRecord
-    run: RunRecord
+    run: RunMetadata

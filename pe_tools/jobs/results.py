@@ -34,7 +34,7 @@ from pe_core.version import __version__
 from ..wording import percent
 from .folder import PROGRAM, FileSet, Write, prepare_folder
 from .job import HistoryRow, Outcome
-from .result_record import End, InputsRecord, ResultRecord, RunRecord, placements
+from .result_record import BeforeOrAfter, InputsRecord, ResultRecord, RunMetadata, placements
 from .searched_figure import IN_NATS, SearchedFigure
 from .study_export import fingerprint, inputs_of, study_text, study_writers
 
@@ -125,8 +125,22 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
     return finite(record(made))  # type: ignore[no-any-return]
 
 
-def _ends(both: tuple[T, T] | None) -> dict[End, T] | None:
+def _ends(both: tuple[T, T] | None) -> dict[BeforeOrAfter, T] | None:
     return None if both is None else {"before": both[0], "after": both[1]}
+
+
+def score_facts(outcome: Outcome) -> dict[str, Any]:
+    """Return what a score found as plain data, for files of other programs that have the rig: the
+    study's fingerprint, the figures of the dashboard, and the verdicts."""
+    facts = {
+        "study": fingerprint(outcome.study),
+        "voxels": outcome.after.voxels,
+        "stderr": outcome.after.stderr,
+        "coverage": outcome.after.coverage,
+        "figures": [record(each.row) for each in outcome.dashboard],
+        "verdicts": [record(each.summary) for each in outcome.verdicts],
+    }
+    return finite(facts)  # type: ignore[no-any-return]
 
 
 def _value(figure: SearchedFigure, value: Value) -> dict[str, float | None]:
@@ -134,11 +148,11 @@ def _value(figure: SearchedFigure, value: Value) -> dict[str, float | None]:
     return dict(zip((figure.key, VIOLATION), figure.cells(value), strict=True))
 
 
-def run_record(seconds: float, host: Mapping[str, str]) -> RunRecord:
+def run_record(seconds: float, host: Mapping[str, str]) -> RunMetadata:
     """Return the part of a result about the run: its duration, and versions of the programs."""
     own = {"perception-entropy": __version__, "numpy": np.__version__}
     versions = {**own, "python": platform.python_version(), **host}
-    return RunRecord(round(seconds, 3), versions)
+    return RunMetadata(round(seconds, 3), versions)
 
 
 def write_outcome(

@@ -19,10 +19,10 @@ from pe_core.base.plugins import (
 from pe_core.study import Study
 
 from ..exchange import Written, write_files
-from . import scene_gltf
+from . import detection_area, ground_plan, masks, scene_gltf, solids
 from .request import OutputRequest
 
-OF_EXAMPLE = ("footprints", "footprints-dxf", "masks", "nebula", "rerun", "solids")
+OF_EXAMPLE = ("footprints-dxf", "footprints-svg", "nebula", "rerun")
 """Outputs of the plugin that is shipped as an example."""
 EXAMPLE = "the plugin perception-entropy-outputs: pip install examples/plugin"
 OUTPUT = "output"  # The sort of plugins that lead to a `SceneOutput`
@@ -53,6 +53,22 @@ class SceneOutput:
 
 _ROWS = (
     SceneOutput("gltf", "Whole Scene (glTF)", scene_gltf.FILE, scene_gltf.write),
+    SceneOutput(
+        "solids", "Fields of View as Solids (glTF, STL)", "solids", solids.write, has_several=True
+    ),
+    SceneOutput(
+        "footprints", "Footprints on the Ground (GeoJSON)", ground_plan.FILE, ground_plan.write
+    ),
+    SceneOutput(
+        "masks", "Ego Masks (PNG, CSV)", "masks", masks.write, has_several=True, has_range=False
+    ),
+    SceneOutput(
+        "detection-area",
+        "Virtual Detection Areas (ASAM OSI)",
+        "detection_area",
+        detection_area.write,
+        has_several=True,
+    ),
     SceneOutput(
         "picture",
         "Picture (SVG)",

@@ -1,6 +1,6 @@
 """The review page: one HTML file that shows a rig, its score and what its sensors see. It is the
 same from Blender and from a command line. `sections` lists its parts, `document` puts them
-together. Names are imported at first use: other verbs of `pe` start without page and jinja2."""
+together. Names are imported at first use: other verbs of `pe` start without the page."""
 
 from __future__ import annotations
 

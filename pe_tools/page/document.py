@@ -11,12 +11,11 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from markupsafe import Markup
-
 import pe_core as pe
 from pe_core import study as studies
 
 from .. import jobs
+from ..templating import Markup
 from .markup import css_string, render
 from .report_context import About, ReportContext, keyed_contexts
 from .sections import SECTIONS, Section

@@ -1,19 +1,18 @@
-"""The templates of the page (jinja2), and how they write values: escaped, with units and signs.
+"""The templates of the page, and how they write values: escaped, with units and signs.
 Every value that a template writes is escaped, and characters that do not print are spelled out."""
 
 from collections.abc import Iterable, Sequence
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
-
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup, escape
 
 from pe_core import metric
 from pe_core.base.errors import plural
 from pe_core.scoring.sight import shown_end, shown_start
 
 from .. import advice, graphics
+from ..templating import Markup, Templates, escape
 from ..wording import degrees, margin_text, unseen_text, verdict_text
 
 TEMPLATES = Path(__file__).with_name("templates")
@@ -26,28 +25,19 @@ percent = advice.percent
 
 def render(template: str, **values: Any) -> Markup:
     """Return a template of the page's folder filled with values."""
-    return Markup(_environment().get_template(template).render(values))
+    return Markup(_templates().render(template, **values))
 
 
 def macros() -> Any:
     """Return the macros that templates share, as functions that return markup."""
-    return _environment().get_template("macros.html").module
+    return SimpleNamespace(**_templates().module("macros.html"))
 
 
 @cache
-def _environment() -> Environment:
-    environment = Environment(
-        loader=FileSystemLoader(TEMPLATES),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=StrictUndefined,
-        finalize=printable,
-    )
-    environment.policies["json.dumps_kwargs"] = {"separators": (",", ":"), "allow_nan": False}
-    for function in (capitalized, joined, lines, number, percent, plural, points, signed, triple):
-        environment.filters[function.__name__] = function
-    environment.filters |= {
+def _templates() -> Templates:
+    own = (capitalized, joined, lines, number, percent, plural, points, signed, triple)
+    filters: dict[str, Any] = {function.__name__: function for function in own}
+    filters |= {
         "css_string": css_string,
         "degrees": degrees,
         "price": price_text,
@@ -66,7 +56,7 @@ def _environment() -> Environment:
         "hexadecimal": graphics.color_text,
         "where": lambda name: advice.WHERE.get(name, name),
     }
-    return environment
+    return Templates(TEMPLATES, filters, printable)
 
 
 def printable(value: object) -> object:

@@ -98,9 +98,14 @@ def conclusions(rigs: PublishedRigs, values: Values, effort: CameraEffort) -> Js
     )
 
 
-def _on_sedan(rigs: PublishedRigs, on_plate: Json, values: Values) -> Json:
-    """Return rho of each score with cars over the rigs on cars, with the plate and the sedan."""
+def _on_sedan(rigs: PublishedRigs, on_plate: Json, values: Values) -> Json | None:
+    """Return rho of each score with cars over the rigs on cars, with the plate and the sedan.
+
+    None while some of them are not scored on the sedan.
+    """
     names = [rig.name for rig in rigs.rigs if rig.vehicle in CARS]
+    if not all(task_name(SEDAN, name) in values for name in names):
+        return None
     ap = rigs.ap(CARS_OUTCOME)[[RIGS.index(name) for name in names]]
     bodies = {
         PLATE: {name: on_plate[name] for name in names},

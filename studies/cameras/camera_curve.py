@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 
 import numpy as np
 
@@ -105,13 +106,15 @@ def _slope(counts: BeamCounts, ap: Floats, fitted: pe.ApCurve, effort: CameraEff
     """Return the interval of a, and how many bootstraps end at a bound of the fit."""
     at_bound: list[bool] = []
 
-    def of(index: Ints) -> pe.ApCurve:
+    @cache
+    def of(chosen: tuple[int, ...]) -> pe.ApCurve:
+        index = np.array(chosen)
         return fitted_curve(BeamCounts(counts.m, counts.shares[index]), ap[index], fitted)
 
     def slopes(index: Ints) -> Floats:
         if index.ndim == 1:
-            return np.asarray(of(index).a)
-        curves = [of(own) for own in index]
+            return np.asarray(of(tuple(index.tolist())).a)
+        curves = [of(tuple(sorted(own))) for own in index.tolist()]  # 462 differ
         at_bound.extend(is_at_bound(curve) for curve in curves)
         return np.array([curve.a for curve in curves])
 

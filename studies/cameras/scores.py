@@ -64,28 +64,40 @@ def seen_entropy(entropy: float, coverage: float) -> float | None:
 
 
 def scored_rig(rig: PublishedRig, body: str, effort: CameraEffort) -> Json:
-    """Return the scores of a rig by outcome, and by class m and weight of the objects it sees."""
+    """Return the scores of a rig by outcome, and by class m and weight of the objects it sees.
+
+    On another body than the plate, only the scores of cars.
+    """
     found: Json = {"scores": {}, "pixels": {}}
+    outcomes = tuple(CLASS_OF) if body == PLATE else (CARS_OUTCOME,)
+    blind = _blind_sector(rig, body, effort)
     by_space = {
-        within: _Measured.of(rig, body, within, effort) for within in sorted(set(WITHIN_M.values()))
+        within: _Measured.of(rig, body, within, effort)
+        for within in sorted({WITHIN_M[outcome] for outcome in outcomes})
     }
-    for outcome, name in CLASS_OF.items():
+    for outcome in outcomes:
         measured = by_space[WITHIN_M[outcome]]
-        found["scores"][outcome] = measured.scores(name, by_space[WITHIN_M["car"]].blind_sector)
-        if outcome in CURVES:
-            found["pixels"][outcome] = measured.pixels(name, WITHIN_M[outcome])
+        found["scores"][outcome] = measured.scores(CLASS_OF[outcome], blind)
+        if outcome in CURVES and body == PLATE:
+            found["pixels"][outcome] = measured.pixels(CLASS_OF[outcome], WITHIN_M[outcome])
     return found
+
+
+def _blind_sector(rig: PublishedRig, body: str, effort: CameraEffort) -> float:
+    """Return the width of the widest blind sector of the heights [deg]."""
+    space = space_within(WITHIN_M[CARS_OUTCOME], effort.interval)
+    sight = Sight(space, pe.Prior.road(), body_of(rig.vehicle, body))
+    return max(sector.width for sector in sight.blind_sectors(rig.rig))
 
 
 @dataclass(frozen=True, eq=False)
 class _Measured:
-    """A rig in the space within a distance: on voxels, on objects, and how wide it is blind."""
+    """A rig in the space within a distance: on voxels, and on objects."""
 
     voxels: pe.Score
     objects: pe.Score
     targets: ObjectEvaluator
     m: Floats
-    blind_sector: float
 
     @classmethod
     def of(cls, rig: PublishedRig, body: str, within: float, effort: CameraEffort) -> _Measured:
@@ -93,13 +105,11 @@ class _Measured:
         vehicle = body_of(rig.vehicle, body)
         targets = targets_on(rig.vehicle, body, within, effort)
         cache = ObjectMeasurementCache(targets.drawn.objects, vehicle, True)
-        sectors = Sight(space, pe.Prior.road(), vehicle).blind_sectors(rig.rig)
         return cls(
             pe.Evaluator(space, pe.Prior.road(), vehicle).summary(rig.rig),
             targets.score(rig.rig),
             targets,
             early_fusion(list(cache.measure(rig.rig).values())),
-            max(sector.width for sector in sectors),
         )
 
     def scores(self, name: str, blind_sector: float) -> dict[str, float | None]:

@@ -1,9 +1,11 @@
 """``python -m blender_addon FILE VERB`` as a user runs it, against ``python -m pe_core``."""
 
+import io
 import json
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import bpy
 import pytest
@@ -14,6 +16,7 @@ from tests.addon import scenes
 from tests.addon.command_line import FAST, complaints, pe_here, run_alone, run_here
 from tests.limits import HANG_S
 
+AT = ("--at", "8", "2", "--json")
 DRIVE = """
 import os, sys, bpy
 bpy.ops.wm.open_mainfile(filepath=sys.argv[1])
@@ -48,6 +51,31 @@ def test_explain_says_what_it_says_without_blender(blend, tmp_path):
         outside = pe_here("explain", study, *asked)
         assert inside.stdout == outside.stdout and inside.stdout, inside.stderr
         assert inside.returncode == outside.returncode == 0
+
+
+def test_a_session_begins_with_the_scene_and_has_the_command_s_bits(blend, monkeypatch):
+    """Replies go to stdout alone; what is wrong ends nothing, and the file stays as it is."""
+    requests = [
+        {"id": 1, "do": "fly"},
+        {"id": 2, "do": "score", "samples": 1024},
+        {"id": 3, "do": "move", "sensor": "front", "position": [1.5, 0, 1.6]},
+        {"id": 4, "do": "explain", "at": [8, 2]},
+    ]
+    before = blend.read_bytes()
+    stdin = SimpleNamespace(buffer=io.BytesIO("\n".join(map(json.dumps, requests)).encode()))
+    with monkeypatch.context() as patched:
+        patched.setattr(sys, "stdin", stdin)
+        answer = run_here(blend, "serve")
+    assert answer.returncode == 0, answer.stderr
+    wrong, scored, moved, asked = map(json.loads, answer.stdout.splitlines())
+    assert (wrong["status"], scored["status"], moved["status"], asked["status"]) == (1, 0, 0, 0)
+    alone = json.loads(run_here(blend, "score", "--samples", "1024", "--json").stdout)
+    assert scored["answer"]["after"] == alone["after"]
+    assert scored["answer"]["run"]["versions"] == alone["run"]["versions"]
+    assert moved["answer"]["sensors"]["front"]["position"] == [1.5, 0.0, 1.6]
+    typed = run_here(blend, "explain", "--set=sensor.front.position=[1.5, 0, 1.6]", *AT)
+    assert asked["answer"] == json.loads(typed.stdout)
+    assert blend.read_bytes() == before
 
 
 def test_optimize_and_export_agree_with_the_engine(blend, tmp_path, all_errors):

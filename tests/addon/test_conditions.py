@@ -64,7 +64,7 @@ def test_a_frame_is_a_state_and_its_motions_are_those_of_the_hinge(car):
     bpy.ops.pe.add_row(rows="states")
     add_open_state(car)
     drawn, opened = car.perception_entropy.states
-    assert (drawn.name, drawn.frame, json.loads(drawn.table)) == ("As Drawn", 1, {})
+    assert (drawn.name, drawn.frame, json.loads(drawn.table)) == ("As Drawn", 1, {"frame": 1})
     assert opened.frame == OPEN_FRAME
     move = json.loads(opened.table)["move"]
     assert [m["parts"] for m in move] == [["door"]] and move[0]["sensors"] == ["mirror"]

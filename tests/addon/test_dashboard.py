@@ -7,10 +7,9 @@ import bpy
 import pytest
 
 from blender_addon import bridge, engine_calls
-from blender_addon.bridge.limits import write_limits
-from blender_addon.engine import pe, search
+from blender_addon.engine import pe, search, studies
 from blender_addon.operators import known_rigs
-from blender_addon.panels import CLASSES, main
+from blender_addon.panels import CLASSES, dashboard, layout, main
 from tests.addon import layouts, scenes
 
 TERMS = re.compile(r"\bnats\b|\bprior\b|\bfusion\b|entropy", re.IGNORECASE)
@@ -77,7 +76,7 @@ def test_what_is_wanted_is_met_or_not_and_is_the_study_s(car):
 def test_limits_that_are_written_are_those_that_are_read(car):
     shown_only = search.Limit(-1.5, kept=False)
     limits = search.Limits(blind_sector=0, reach=True, ap_far=0.25, height=2.5, entropy=shown_only)
-    write_limits(car.perception_entropy, limits)
+    bridge.put(car.perception_entropy, ("limits",), studies.write(limits))
     assert scenes.study().limits == limits
 
 
@@ -118,6 +117,27 @@ def test_simple_has_eight_headers_at_most_and_no_terms(car):
     assert len(panels(car, roots=True)) > len(simple)
     assert f"{car.perception_entropy.result.entropy:.3f} nats" in shown(car).texts("label")
     assert json.loads(car.perception_entropy.result_json)["dashboard"]
+
+
+@pytest.mark.parametrize("width", [180, 200, 215, 280, 500])
+def test_figures_are_never_cut_names_give_way(car, width):
+    """In a sidebar of 215 px it said "Score 3....."."""
+    bpy.ops.pe.score()
+    shown_in = layouts.Window(car, car.objects["roof"])
+    shown_in.region.width = width
+    row = search.dashboard(None, 3.25)[0]
+    rows = [
+        dashboard.DrawnRow(row, name="Requirements", value="12.3 m2", before=before, sense=1)
+        for before in ("", "45.6")
+    ]
+    sides = dashboard.RowWidths.of(shown_in, rows)
+    size = layout.room_px(shown_in, 0.0)[1]
+    used = sides.name + sides.value + sides.wanted
+    assert used <= layout.room_px(shown_in, dashboard.BESIDE_ROW_PX)[0] + 1e-6
+    assert sides.value > layout.text_px("12.3 m2", size)
+    if sides.has_room:
+        assert sides.wanted > layout.text_px("(45.6)", size)
+    assert sides.has_room == (width >= 280)
 
 
 def test_simple_has_few_panels_fields_and_buttons(car):

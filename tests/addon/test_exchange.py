@@ -6,7 +6,7 @@ import bpy
 import pytest
 
 from blender_addon import bridge
-from blender_addon.engine import exchange, pe
+from blender_addon.engine import exchange, pe, studies
 from pe_tools.cli.verbs import main
 from tests.addon import scenes
 from tests.addon.command_line import run_here
@@ -25,7 +25,7 @@ def wheel(name, x):
 def axled(car):
     place = {"location": (1.5, 0.1, 1.3), "rotation_euler": (0.0, 0.1, 0.2)}
     scenes.add_sensor("eye", "Front 120 deg 8 MP", **place)
-    bridge.write_reference(car.perception_entropy, AXLE)
+    bridge.put(car.perception_entropy, bridge.REFERENCE, studies.write(AXLE))
     return car
 
 
@@ -91,3 +91,24 @@ def test_what_a_file_has_besides_its_rig_stays_in_it(axled, tmp_path, capfd):
     assert json.loads(objects.read_text()) == CARLA
     main(["export", str(study), "--into", str(objects), "-o", str(tmp_path / "command.json")])
     assert (tmp_path / "command.json").read_bytes() == out.read_bytes()
+
+
+def test_openusd_is_the_same_from_panel_and_command_and_comes_back(axled, tmp_path):
+    """Rig, vehicle, figures and verdicts; the import is a variant at the same places."""
+    blend = tmp_path / "car.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+    path = tmp_path / "panel" / "rig.usda"
+    path.parent.mkdir()
+    assert bpy.ops.pe.export_rig(filepath=str(path)) == {"FINISHED"}
+    answer = run_here(blend, "export", "--to", "usd", "-o", tmp_path / "command" / "rig.usda")
+    assert answer.returncode == 0, answer.stderr
+    for name in ("rig.usda", "vehicle.usda"):
+        from_command = (tmp_path / "command" / name).read_bytes()
+        assert (path.parent / name).read_bytes() == from_command
+    assert 'dictionary "entropy"' in path.read_text()
+    before = scenes.study().rig
+    assert bpy.ops.pe.import_rig(filepath=str(path)) == {"FINISHED"}
+    for ours, theirs in zip(before, scenes.study().rig, strict=True):
+        assert theirs.name == ours.name and theirs.model.name == ours.model.name
+        assert theirs.pose.position == pytest.approx(ours.pose.position, abs=1e-6)
+        assert theirs.pose.rpy == pytest.approx(ours.pose.rpy, abs=1e-6)

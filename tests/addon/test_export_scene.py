@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from mathutils import Vector
 
-from blender_addon.engine import outputs
+from blender_addon import bridge
+from blender_addon.engine import outputs, pe
 from tests.addon import scenes
 from tests.addon.command_line import run_here
 
@@ -14,6 +15,7 @@ from tests.addon.command_line import run_here
 def seen(car):
     place = {"location": (1.5, 0.1, 1.3), "rotation_euler": (0.1, 0.2, -2.0)}
     scenes.add_sensor("eye", "Autoware sample kit", **place)
+    bridge.write_reference(car.perception_entropy, pe.Reference(-1.31, 0.33, 2.8))
     return car
 
 

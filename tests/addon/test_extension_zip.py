@@ -1,6 +1,7 @@
 """The built zip, installed as a user's own extension into a Blender of its own."""
 
 import ast
+import hashlib
 import os
 import re
 import subprocess
@@ -107,11 +108,13 @@ def test_the_manifest_says_what_the_platform_asks_for(contents):
         assert len(why) <= MAX_PERMISSION_LETTERS and not why.endswith(".")
 
 
-def test_wheels_run_everywhere_and_are_all_in_the_manifest(contents):
+def test_wheels_are_official_run_everywhere_and_are_all_in_the_manifest(contents):
     manifest = tomllib.loads(contents["blender_manifest.toml"].decode())
     wheels = sorted(name for name in contents if name.endswith(".whl"))
     assert sorted(each.removeprefix("./") for each in manifest["wheels"]) == wheels != []
     assert all(each.endswith("-py3-none-any.whl") for each in wheels)
+    listed = re.findall(r"sha256:(\w+)", (ROOT / "tools/extension_wheels.txt").read_text("utf-8"))
+    assert sorted(hashlib.sha256(contents[name]).hexdigest() for name in wheels) == sorted(listed)
 
 
 def test_the_code_takes_no_network_and_runs_no_text_and_the_add_on_has_no_thread(contents):
@@ -135,7 +138,7 @@ def test_threads_c_and_the_search_path_are_where_the_notes_for_reviewers_say(con
     for name, data in contents.items():
         if name.endswith(".py"):
             imports = set(imported_by(ast.parse(data)))
-            if imports & {"threading", "_thread", "ctypes"} or b"sys.path." in data:
+            if imports & {"threading", "ctypes"} or b"sys.path." in data:
                 found.add(name)
     assert found == set(re.findall(r"`(pe_\w+/[\w/]+\.py)`", notes.partition("\n## ")[0]))
 

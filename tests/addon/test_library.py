@@ -8,7 +8,14 @@ import pytest
 
 import blender_addon
 import pe_core as pe
-from blender_addon import library, operators, own_catalog, preferences_panel, sensor_cache
+from blender_addon import (
+    library,
+    operators,
+    own_catalog,
+    preferences_panel,
+    sensor_cache,
+    verification,
+)
 from blender_addon.housing import KEY
 from tests.addon import scenes
 
@@ -136,3 +143,19 @@ def test_sensors_of_an_own_catalogue_are_in_the_menus_of_all_files(enabled, tmp_
     assert "My LiDAR" not in operators.models("lidar") and "a name used once" in own_catalog.problem
     stored.own_catalog = ""
     assert not own_catalog.problem
+
+
+def test_the_engine_is_verified_from_the_preferences(enabled, monkeypatch):
+    """What came of it stands there; so does an engine that cannot be verified."""
+    told = ("2 of 3 golden cases are right, 0.1 s", "FAILED LiDAR, range: 1 in place of 2")
+    monkeypatch.setattr(verification.verify, "verify_in_short", lambda: told)
+    assert bpy.ops.pe.verify_engine() == {"FINISHED"}
+    assert verification.lines() == told and not verification.is_running()
+
+    def fail():
+        raise pe.InputError("engine", "process", "one that starts", "none")
+
+    monkeypatch.setattr(verification.verify, "verify_in_short", fail)
+    assert bpy.ops.pe.verify_engine() == {"FINISHED"}
+    first, second = verification.lines()
+    assert "one that starts" in first and second.startswith("FAILED")

@@ -6,7 +6,7 @@ import pytest
 
 import pe_core as pe
 from blender_addon import bridge
-from blender_addon.bridge.scene_settings import values_of
+from blender_addon.bridge.study_table import read_row
 from tests.addon import scenes
 
 CAN = "Velodyne VLP-16 Puck"
@@ -141,7 +141,5 @@ def test_a_mount_is_added_of_what_is_selected_or_painted(car):
 def test_a_new_mount_has_the_engine_s_settings(scene):
     """Angles too, which the panel has in degrees: 60 degrees of slope were read as 1."""
     row = scene.perception_entropy.mounts.add()
-    own = values_of(row, pe.SurfaceMount)
-    expected = pe.SurfaceMount(("any",))
-    for name, value in own.items():
-        assert value == pytest.approx(getattr(expected, name)), name
+    assert read_row(pe.SurfaceMount, row, "any", parts=["any"]) == pe.SurfaceMount(("any",))
+    assert row.max_slope == 60.0

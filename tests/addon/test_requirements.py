@@ -218,7 +218,8 @@ class TestZones:
         assert shape.legend.title == f"{met} of 3 requirements met"
 
     def test_samples_are_filled_where_met_and_hatched_where_not(self, held):
-        """Squares of the passing samples cover the met zones, hatching the failing ones."""
+        """Squares of the passing samples cover the chosen zone, hatching those that fail."""
+        held.perception_entropy.requirement_index = 1
         shape = self.shape(held)
         ahead, behind = shape.verdicts[1:]
         assert ahead.met and not behind.met and not behind.passed.any()
@@ -230,6 +231,8 @@ class TestZones:
         inside = ahead.samples.points[ahead.samples.inside]
         corners = filled.points.reshape(-1, 3)[:, :2]
         assert np.abs(inside[:, None] - corners[None]).max(axis=2).min(axis=1).max() <= 0.26
+        held.perception_entropy.requirement_index = 2
+        assert not len(self.shape(held).faces.points), "what is met needs no look"
 
     def test_the_selected_one_has_worst_place_margin_and_height(self, held):
         held.perception_entropy.requirement_index = 1

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from blender_addon import bridge, consistency, diagnostics, result_staleness
-from blender_addon.engine import exchange, jobs, outputs, page, pe, search, text
+from blender_addon.engine import exchange, jobs, outputs, page, pe, search, studies, text
 from blender_addon.operators import compare_variants
 from blender_addon.panels import main
 from tests.addon import layouts, scenes
@@ -118,7 +118,7 @@ def test_import_rigs_and_compare_them(car, tmp_path):
     settings = car.perception_entropy
     place = {"location": (1.5, 0.1, 1.3), "rotation_euler": (0.0, 0.1, 0.2)}
     scenes.add_sensor("eye", "Front 120 deg 8 MP", **place)
-    bridge.write_reference(settings, pe.Reference(-1.31, 0.33, 2.8))
+    bridge.put(settings, bridge.REFERENCE, studies.write(pe.Reference(-1.31, 0.33, 2.8)))
     before = scenes.study().rig
 
     # A rig leaves for another program and comes back as a variant; what stood here is kept.

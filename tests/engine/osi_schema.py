@@ -43,12 +43,21 @@ MESSAGES = {
     "ultrasonic_sensor_view_configuration *UltrasonicSensorViewConfiguration 1004",
 }
 
+# osi_sensordata.proto and osi_common.proto, 3.7.0: the fields that a detection area needs; JSON
+# has no numbers of fields, and that of the area was not looked up.
+MESSAGES |= {
+    "Polygon3d": "vertex *Vector3d 1",
+    "VirtualDetectionArea": "polygon *Polygon3d 1",
+    "SensorData": "sensor_id Identifier 5; mounting_position MountingPosition 6; "
+    "virtual_detection_area VirtualDetectionArea 29",
+}
 
-def configuration():
-    """Return the class of a SensorViewConfiguration."""
+
+def configuration(name="SensorViewConfiguration"):
+    """Return the class of a message."""
     file = descriptor_pb2.FileDescriptorProto(name="osi.proto", package="osi3", syntax="proto2")
-    for name, fields in MESSAGES.items():
-        message = file.message_type.add(name=name)
+    for key, fields in MESSAGES.items():
+        message = file.message_type.add(name=key)
         for text in filter(str.strip, fields.split(";")):
             field, kind, number = text.split()
             many = _FIELD.LABEL_REPEATED if kind.startswith("*") else _FIELD.LABEL_OPTIONAL
@@ -59,5 +68,5 @@ def configuration():
                 added.type_name = f".osi3.{kind}"
     pool = descriptor_pool.DescriptorPool()
     pool.Add(file)
-    found = pool.FindMessageTypeByName("osi3.SensorViewConfiguration")
+    found = pool.FindMessageTypeByName(f"osi3.{name}")
     return message_factory.GetMessageClass(found)

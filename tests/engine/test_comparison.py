@@ -144,9 +144,10 @@ def _value(score, figure):
     return getattr(parts[group][name], measure)
 
 
-def test_a_gain_counts_when_it_is_clear_and_a_loss_always():
+def test_a_gain_counts_when_it_is_clear_and_a_loss_from_two_errors_on():
     """The error of a difference is 0.02: 2.13 times that is clear."""
-    scores = [score(h, own=NOISE[k]) for k, h in enumerate((2.0, 1.98, 2.02, 1.9, 2.001))]
+    entropies = (2.0, 1.959, 2.041, 1.9, 2.039)
+    scores = [score(h, own=NOISE[k]) for k, h in enumerate(entropies)]
     for first, second in (0, 1), (0, 2), (0, 3), (0, 4):
         row = advice.compare({"a": scores[first], "b": scores[second]})[0]
         assert row.sense(0) == 0
@@ -208,7 +209,8 @@ def test_a_story_that_is_never_confirmed_is_the_worst_there_is(margins, senses, 
 
 def test_less_than_all_is_nowhere_told_as_all():
     """In the table and in the sentence below it, as in the line of a score."""
-    rows = advice.compare({"a": score(2.0, 0.99971), "b": score(2.0, 1.0)})
+    exact = {"a": score(2.0, 0.99971, stderr=0.0), "b": score(2.0, 1.0, stderr=0.0)}
+    rows = advice.compare(exact)
     coverage = next(line for line in comparison(["a", "b"], rows) if "99." in line)
     assert coverage.split()[1:] == ["99.9", "100.0", "(+0.1)"]
     assert "a (99.9%)" in advice.ranking(["a", "b"], rows)[1]

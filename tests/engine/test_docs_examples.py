@@ -140,7 +140,7 @@ def bare_python(tmp_path_factory):
     folder = tmp_path_factory.mktemp("bare")
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", folder], check=True)
     packages = next((folder / "lib").glob("python*/site-packages"))
-    for name in ("numpy", "numpy.libs", "jinja2", "markupsafe", "ruamel", "trimesh"):
+    for name in ("numpy", "numpy.libs", "ruamel", "trimesh"):
         if (installed := Path(np.__file__).parents[1] / name).exists():
             (packages / name).symlink_to(installed)
     (packages / "checkout.pth").write_text(f"{ROOT}\n")

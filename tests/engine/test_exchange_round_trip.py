@@ -41,6 +41,7 @@ KEEPS = {
     "carla": set(),
     "kitti": {"pinhole"},
     "osi": set(),
+    "usd": OPENCV,
 }
 """Lenses that come back to the last figure, by format."""
 HOLDS = {
@@ -50,6 +51,7 @@ HOLDS = {
     "driveworks": {"model"},
     "carla": {"even", "field"},
     "osi": {"even", "uneven", "field"},
+    "usd": {"model", "table", "even", "uneven", "ranges", "fusion"},
 }
 """What else comes back: a catalogued model, a radar's own table, channels of an own LiDAR."""
 WITHOUT = {

@@ -1,6 +1,5 @@
 """Pictures: ego masks and ranges, held to rays; the PNG files they go into."""
 
-import importlib
 import json
 import math
 import struct
@@ -14,7 +13,7 @@ from pe_core import catalog
 from pe_core.catalog import load
 from pe_core.sensors import BrownConrady, Camera, FTheta, KannalaBrandt, Lidar, range_picture
 from pe_core.sensors.field_of_view import FREE
-from pe_tools.outputs import scene_files
+from pe_tools.outputs import masks, scene_files
 
 TRIANGLES = np.array(
     [  # a wall on the left of the view, a pane ahead on the right, a rod thinner than a pixel
@@ -33,7 +32,6 @@ LENSES = (
 )
 
 
-pytestmark = pytest.mark.usefixtures("example_plugin")
 WALL = pe.Vehicle(
     np.array(
         [  # a wall across, 2 m ahead, 4 m wide, from the ground up to 3 m
@@ -44,12 +42,8 @@ WALL = pe.Vehicle(
 )
 
 
-def plugin():
-    return importlib.import_module("entropy_outputs.masks")
-
-
 def ego_mask(sensor, vehicle):
-    return plugin().MASKS[sensor.kind](sensor, vehicle)
+    return masks.MASKS[sensor.kind](sensor, vehicle)
 
 
 def camera(lens=None, width=64, height=36):
@@ -65,7 +59,7 @@ def mounted(model, rpy=(0.1, 0.05, 0.2)):
 @pytest.mark.parametrize("lens", LENSES)
 def test_each_pixel_is_the_ray_through_its_middle(lens, monkeypatch):
     """One ray at a time, from first hits; rows are also cast some at a time."""
-    monkeypatch.setattr(plugin(), "RAYS_AT_ONCE", 64 * 7)
+    monkeypatch.setattr(masks, "RAYS_AT_ONCE", 64 * 7)
     sensor = mounted(camera(lens))
     parts = ego_mask(sensor, BODY).parts
     axes = sensor.pose.ground_from_sensor
@@ -74,7 +68,7 @@ def test_each_pixel_is_the_ray_through_its_middle(lens, monkeypatch):
     for row, column in np.random.default_rng(0).integers(0, (36, 64), (300, 2)).tolist():
         way = lens.unproject(np.array([column + 0.5]), np.array([row + 0.5]))
         if np.isnan(way).any():
-            expected = plugin().OUTSIDE
+            expected = masks.OUTSIDE
         else:
             hit = BODY.first_hit(sensor.pose.position, way @ axes.T, through_glass=True)
             expected = -1 if hit.face[0] < 0 else int(BODY.parts[hit.face[0]])

@@ -11,7 +11,7 @@ import pytest
 from tests.limits import HANG_S
 
 PE = Path(sysconfig.get_path("scripts"), f"pe{'.exe' if sys.platform == 'win32' else ''}")
-LIBRARIES = "numpy jinja2 markupsafe ruamel trimesh pe_core pe_tools usercustomize sitecustomize"
+LIBRARIES = "numpy ruamel trimesh pe_core pe_tools usercustomize sitecustomize"
 TRAP = """
 import os
 with open({found!r}, "a") as file:

@@ -16,6 +16,37 @@ from tests.engine.processes import pe
 from tests.engine.test_docs_examples import STUDY
 
 POSE = {"position": [0.25, -0.1, 1.875], "rotation": [0, 3.5, -90]}
+WRONG = [
+    b"no json",
+    b'"text"',
+    b"\xff\xfe",
+    b"[" * 100_000,
+    b'{"do": "score", "x": NaN}',
+    b'{"do": "' + b"x" * MAX_LINE_BYTES + b'"}',
+    {},
+    {"do": 3},
+    {"do": "fly"},
+    {"do": "optimize"},
+    {"do": "load"},
+    {"do": "load", "study": "none.toml"},
+    {"do": "load", "study": "box.npz"},
+    {"do": "load", "study": "study.toml", "set": {"samples": "many"}},
+    {"do": "move", "sensor": "tail", "position": [0, 0, 1]},
+    {"do": "move", "sensor": "roof"},
+    {"do": "move", "sensor": "roof", "position": [0, 0]},
+    {"do": "move", "sensor": "roof", "position": None},
+    {"do": "set", "changes": {"sensor.roof.modle": 3}},
+    {"do": "set", "changes": ["samples=1"]},
+    {"do": "score", "sample": 4},
+    {"do": "score", "json": False},
+    {"do": "explain", "at": ["--help"]},
+    {"do": "explain", "at": [1]},
+    {"do": "explain", "suggest": 1},
+    {"do": "explain", "at": [[1], 2]},
+    {"do": "where"},
+    {"do": "where", "model": "none"},
+    {"do": "export"},
+]
 
 
 @pytest.fixture(scope="module")
@@ -72,39 +103,6 @@ def test_bits_are_those_of_the_command(served):
         pe("explain", "study.toml", *typed, "--at", "8", "-0.00001", "--json").stdout
     )
     assert asked["answer"] == place
-
-
-WRONG = [
-    b"no json",
-    b'"text"',
-    b"\xff\xfe",
-    b"[" * 100_000,
-    b'{"do": "score", "x": NaN}',
-    b'{"do": "' + b"x" * MAX_LINE_BYTES + b'"}',
-    {},
-    {"do": 3},
-    {"do": "fly"},
-    {"do": "optimize"},
-    {"do": "load"},
-    {"do": "load", "study": "none.toml"},
-    {"do": "load", "study": "box.npz"},
-    {"do": "load", "study": "study.toml", "set": {"samples": "many"}},
-    {"do": "move", "sensor": "tail", "position": [0, 0, 1]},
-    {"do": "move", "sensor": "roof"},
-    {"do": "move", "sensor": "roof", "position": [0, 0]},
-    {"do": "move", "sensor": "roof", "position": None},
-    {"do": "set", "changes": {"sensor.roof.modle": 3}},
-    {"do": "set", "changes": ["samples=1"]},
-    {"do": "score", "sample": 4},
-    {"do": "score", "json": False},
-    {"do": "explain", "at": ["--help"]},
-    {"do": "explain", "at": [1]},
-    {"do": "explain", "suggest": 1},
-    {"do": "explain", "at": [[1], 2]},
-    {"do": "where"},
-    {"do": "where", "model": "none"},
-    {"do": "export"},
-]
 
 
 def test_a_bad_line_is_one_error_and_the_session_goes_on(served):

@@ -1,13 +1,14 @@
 """Fields of view as solids: closed, as large as a formula says, and where the body leaves them."""
 
-import importlib
 import math
 
 import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.base.errors import InputError
 from pe_core.sensors.lidar.field_of_view import beam_patch
+from pe_tools.outputs import scene_files, solids
 from pe_tools.outputs.solid import free_solid, mounted_view
 
 from .shapes import box, box_car, camera, lidar_on_roof, small_lidar
@@ -30,11 +31,6 @@ MODELS |= {
 }
 
 
-@pytest.fixture(scope="module", autouse=True)
-def plugin(example_plugin):
-    return importlib.import_module("entropy_outputs.solids")
-
-
 def view_of(name, vehicle=None, step=STEP):
     sensor = pe.Sensor(name, MODELS[name], pe.Pose.from_degrees(*POSE))
     return mounted_view(sensor, vehicle, RANGE, step)
@@ -46,17 +42,17 @@ def corners(solid):
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_solids_of_every_kind_of_view_are_closed_and_outwards(plugin, name):
+def test_solids_of_every_kind_of_view_are_closed_and_outwards(name):
     view = view_of(name, box_car())
-    whole = plugin.whole_solid("whole", view)
+    whole = solids.whole_solid("whole", view)
     free = free_solid("free", view)
-    hidden = plugin.hidden_solid("hidden", view)
-    solids = [whole, free] + ([hidden] if hidden else [])
-    assert all(is_watertight(corners(solid)) for solid in solids)
-    assert all(plugin.volume(solid) > 0.0 for solid in solids)
-    parts = plugin.volume(free) + (plugin.volume(hidden) if hidden else 0.0)
+    hidden = solids.hidden_solid("hidden", view)
+    found = [whole, free] + ([hidden] if hidden else [])
+    assert all(is_watertight(corners(solid)) for solid in found)
+    assert all(solids.volume(solid) > 0.0 for solid in found)
+    parts = solids.volume(free) + (solids.volume(hidden) if hidden else 0.0)
     assert parts == pytest.approx(
-        plugin.volume(whole), rel=1e-3
+        solids.volume(whole), rel=1e-3
     )  # the hidden one is 1 mm thick at least
 
 
@@ -70,27 +66,53 @@ def test_a_pole_is_one_point_of_a_field_that_reaches_it():
         assert set(ends[:, 2]) == poles and len(ends) == len(poles)
 
 
-def test_a_wall_takes_what_lies_behind_it(plugin):
+def test_a_wall_takes_what_lies_behind_it():
     """A wall 5 m ahead, wider than the picture: what is free is a pyramid of that height."""
     wall = pe.Vehicle(box((5.0, -30.0, -30.0), (5.1, 30.0, 30.0)))
     eye = camera(90.0, position=(0, 0, 0))
     view = mounted_view(eye, wall, RANGE, math.radians(1.0))
     free = free_solid("free", view)
-    assert plugin.volume(free) == pytest.approx(10.0 * 10.0 * 1080 / 1920 * 5.0 / 3.0, rel=1e-3)
-    assert plugin.hidden_solid("hidden", view).points[:, 0].min() == pytest.approx(5.0, abs=1e-6)
+    assert solids.volume(free) == pytest.approx(10.0 * 10.0 * 1080 / 1920 * 5.0 / 3.0, rel=1e-3)
+    assert solids.hidden_solid("hidden", view).points[:, 0].min() == pytest.approx(5.0, abs=1e-6)
 
 
-def test_cubes_that_touch_along_an_edge_are_joined_by_a_third(plugin):
+def test_cubes_that_touch_along_an_edge_are_joined_by_a_third():
     cubes = np.random.default_rng(7).random((9, 8, 7)) < 0.3
-    filled = plugin.joined(cubes)
-    solid = plugin.voxel_solid("cubes", filled, np.array([-1.0, 2.0, 0.0]), 0.5)
+    filled = solids.joined(cubes)
+    solid = solids.voxel_solid("cubes", filled, np.array([-1.0, 2.0, 0.0]), 0.5)
     assert is_watertight(corners(solid)) and (filled >= cubes).all()
-    assert plugin.volume(solid) == pytest.approx(filled.sum() * 0.125)
-    assert plugin.voxel_solid("none", np.zeros((2, 2, 2), bool), np.zeros(3), 0.5) is None
+    assert solids.volume(solid) == pytest.approx(filled.sum() * 0.125)
+    assert solids.voxel_solid("none", np.zeros((2, 2, 2), bool), np.zeros(3), 0.5) is None
 
 
-def test_where_nothing_is_seen_all_is_blind_but_the_vehicle(plugin):
+def test_where_nothing_is_seen_all_is_blind_but_the_vehicle():
     """10 m round a block of 4 by 2 by 1 m, and 2.5 m high: 24 * 22 * 2.5 - 8 m3."""
     block = pe.Vehicle(box((-2.0, -1.0, 0.0), (2.0, 1.0, 1.0)))
     away = pe.Rig([lidar_on_roof(small_lidar(max_range=1.0), (500.0, 0.0, 2.0))])
-    assert plugin.volume(plugin.blind_volume("blind", away, block)) == pytest.approx(1312.0)
+    assert solids.volume(solids.blind_volume("blind", away, block)) == pytest.approx(1312.0)
+
+
+def test_osi_has_the_nominal_field_of_view_in_the_sensors_frame():
+    """A pinhole's pyramid on a car whose body does not matter: its corners at the range."""
+    json_format = pytest.importorskip("google.protobuf.json_format", reason="of the extra test")
+    from tests.engine.osi_schema import configuration
+
+    axle = pe.Reference(-1.3, 0.32)
+    eye = camera(90.0, (1.0, 0.5, 1.2), (5.0, 20.0, -130.0), name="eye")
+    study = pe.Study(pe.Rig([eye]), box_car(), reference=axle)
+    files, lines = scene_files(study, "detection-area", RANGE)
+    assert lines == []
+    message = configuration("SensorData")()
+    json_format.Parse(files["eye_sensor_data.json"], message)
+    place = message.mounting_position
+    assert (place.position.x, place.position.y, place.position.z) == pytest.approx((2.3, 0.5, 0.88))
+    assert place.orientation.pitch == pytest.approx(math.radians(20.0))
+    corners = np.array(
+        [[(v.x, v.y, v.z) for v in each.vertex] for each in message.virtual_detection_area.polygon]
+    )
+    far = corners.reshape(-1, 3)
+    assert np.linalg.norm(far, axis=1).max() == pytest.approx(RANGE, abs=1e-3)
+    assert far[:, 1].max() / far[np.argmax(far[:, 1]), 0] == pytest.approx(1.0, abs=1e-3)
+    assert (far[:, 0] >= 0.0).all() and far.shape[1] == 3
+    with pytest.raises(InputError, match="rear axle"):
+        scene_files(pe.Study(pe.Rig([eye])), "detection-area", RANGE)

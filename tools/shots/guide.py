@@ -166,7 +166,7 @@ def scored(camera: Camera) -> None:
     stage.rest()
     camera.still("dashboard", DASHBOARD)
     for name in ("blind_ground", "ap_far"):
-        stage.do(f"{SETTINGS}settings.property_unset('limit_{name}')")
+        stage.do(f"{SETTINGS}settings.limit_{name} = -100")
 
 
 def asked(camera: Camera) -> None:

@@ -70,6 +70,7 @@ def coloured(camera: Camera) -> None:
     camera.frame(STILL_MS)
     near = tuple(stage.do(NEAREST)["point"])
     camera.caption = "A click puts the sensor there."
+    stage.press("pe.take_place")
     stage.click(*stage.place_of(near))
     stage.wait_until("sum(o.perception_entropy.is_sensor for o in window.scene.objects) == 2", 60)
     stage.do(f"{SETTINGS}settings.view.show_where = False")

@@ -12,8 +12,7 @@ from ezdxf import units
 
 from pe_tools.graphics import color_text
 from pe_tools.outputs import BLIND, OutputRequest, SceneOutput
-
-from .footprints import GroundFootprint, ground_plan
+from pe_tools.outputs.ground_plan import GroundFootprint, ground_plan
 
 FILE = "footprints.dxf"
 MM = 1000.0

@@ -29,8 +29,7 @@ from pe_tools.outputs import SceneOutput
 from pe_tools.outputs.glb import view_wires
 from pe_tools.outputs.request import BLIND, BODY, GLASS, OutputRequest, plain_names
 from pe_tools.outputs.solid import mounted_view
-
-from .solids import blind_volume
+from pe_tools.outputs.solids import blind_volume
 
 FILE, APPLICATION = "scene.rrd", "perception_entropy"
 WORLD, VEHICLE, SENSORS, BEAMS, GROUND = "world", "vehicle", "sensors", "beams", "ground"

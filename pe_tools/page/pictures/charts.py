@@ -3,8 +3,7 @@
 import math
 from collections.abc import Callable, Iterator, Sequence
 
-from markupsafe import Markup
-
+from ...templating import Markup
 from ..markup import MINUS, number
 from .svg import Canvas
 

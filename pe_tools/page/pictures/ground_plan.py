@@ -5,7 +5,6 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from markupsafe import Markup
 from numpy.typing import NDArray
 
 import pe_core as pe
@@ -13,6 +12,7 @@ from pe_core.base.arrays import Floats
 from pe_core.scoring import sight
 
 from ... import graphics
+from ...templating import Markup
 from ..markup import number
 from .svg import Canvas
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from markupsafe import Markup
 from numpy.typing import NDArray
 
 import pe_core as pe
@@ -19,6 +18,7 @@ from pe_core.sensors.camera.model import camera_of
 from pe_core.sensors.lidar.model import lidar_of
 
 from ... import graphics
+from ...templating import Markup
 from ..markup import number, signed
 from .painted_mesh import painted_vehicle
 from .ray_scene import RayCamera, RayScene

@@ -6,13 +6,13 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from markupsafe import Markup
 
 import pe_core as pe
 from pe_core.base.arrays import Flags, Floats
 from pe_core.scoring import requirements, sight
 
 from ... import graphics
+from ...templating import Markup
 from ..markup import number
 from .ground_plan import PlanBounds, PlanDrawing
 

@@ -6,10 +6,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
-from markupsafe import Markup
 
 from pe_core.base.arrays import Floats
 
+from ...templating import Markup
 from ..markup import escaped
 
 PictureBox = tuple[float, float, float, float]  # Left, top, width and height

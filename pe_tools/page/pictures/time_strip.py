@@ -1,10 +1,9 @@
 """A drive-by as a strip: AP of each sensor over time, and the moments of a body's track."""
 
-from markupsafe import Markup
-
 from pe_core.motion import SeenBody, Story
 
 from ... import graphics
+from ...templating import Markup
 from ..markup import number
 from .charts import linear_map, ticks
 from .svg import Canvas

@@ -5,13 +5,13 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from markupsafe import Markup
 
 import pe_core as pe
 from pe_core import catalog, scene
 from pe_core.base.arrays import Floats
 
 from ... import advice, graphics, jobs
+from ...templating import Markup
 from ..report_context import MAX_TRIANGLES, ReportContext
 from .painted_mesh import PaintedMesh, lathe, painted_vehicle, rounded_box
 from .ray_scene import RayScene, Viewpoint

@@ -5,14 +5,13 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
-from markupsafe import Markup
-
 import pe_core as pe
 from pe_core import catalog
 from pe_core.base.values import error_text
 from pe_core.search import FIGURES
 
 from ... import advice
+from ...templating import Markup
 from ..markup import escaped, macros
 from ..pictures.ground_plan import difference_map
 from ..pictures.vehicle_picture import labelled_picture
@@ -81,6 +80,12 @@ def _summary_lines(
     if apart := advice.disagreement(names, rows):
         yield apart
     yield from (line.replace(" +- ", " ± ") for line in advice.ranking(names, rows))
+    worth = advice.worth_rows(
+        contexts[0].study,
+        [context.rig for context in contexts],
+        one_vehicle=len({context.study.vehicle_line for context in contexts}) == 1,
+    )
+    yield from advice.worth_lines(names, rows, worth)
     for name, context in zip(names, contexts, strict=True):
         yield from (f"{name}: {line}." for line in hidden_sensor_lines(context))
     if len({context.study.vehicle_line for context in contexts}) > 1:

@@ -5,8 +5,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from pe_core.scoring.score import SURE
-from pe_core.search import FIGURES, Figure, KeyFigures, Reading
-from pe_core.search.figures import ENTROPY, REQUIREMENTS
+from pe_core.search import ENTROPY, FIGURES, REQUIREMENTS, Figure, KeyFigures, Reading
 
 from ... import advice
 from ...wording import margin_text

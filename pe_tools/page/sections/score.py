@@ -5,13 +5,12 @@ import math
 from dataclasses import replace
 from typing import Any
 
-from markupsafe import Markup
-
 from pe_core import metric, scene
 from pe_core import sensors as kinds
 from pe_core.study.condition_table import ConditionTable
 
 from ... import advice, jobs
+from ...templating import Markup
 from ..markup import capitalized, escaped, joined, macros, number
 from ..pictures.charts import step_curve
 from ..pictures.vehicle_picture import labelled_picture

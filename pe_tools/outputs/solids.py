@@ -10,19 +10,21 @@ import numpy as np
 from pe_core.base.arrays import Flags, Floats, Ints
 from pe_core.scene import PerceptionSpace, Rig, Vehicle
 from pe_core.sensors import MeasurementCache, Voxels, kind_of
-from pe_tools.exchange import Written
-from pe_tools.graphics import Rgb, sensor_colors_on_paper
-from pe_tools.outputs import BLIND, MountedView, OutputRequest, SceneOutput, Solid, mounted_view
-from pe_tools.outputs.glb import GlbScene, add_vehicle
-from pe_tools.outputs.request import NO_RANGE_M, plain_names
-from pe_tools.outputs.scene_gltf import ROOT, STEP
-from pe_tools.outputs.solid import NEAREST_M, border, free_solid, star
+
+from ..exchange import Written
+from ..graphics import Rgb, sensor_colors_on_paper
+from .glb import GlbScene, add_vehicle
+from .request import BLIND, NO_RANGE_M, OutputRequest, plain_names
+from .scene_gltf import ROOT, STEP
+from .solid import NEAREST_M, MountedView, Solid, border, free_solid, mounted_view, star
 
 HIDDEN: Rgb = (0.30, 0.30, 0.30)
 FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 HEADER_BYTES = 80
 SOLIDS_FILE = "solids.glb"
-FREE_ALPHA, HIDDEN_ALPHA, BLIND_ALPHA = 0.25, 0.5, 0.4
+FREE_ALPHA = 0.25
+HIDDEN_ALPHA = 0.5
+BLIND_ALPHA = 0.4
 BLIND_NAME = "blind_volume"
 Coloured = tuple[Solid, Rgb, float]
 SIDES = {
@@ -58,7 +60,8 @@ def hidden_solid(name: str, view: MountedView) -> Solid | None:
     if not occluded[view.faces].any():
         return None
     taken = _without_pinches(view.faces, occluded[view.faces].any(axis=1))
-    faces, count = view.faces[taken], len(view.directions)
+    faces = view.faces[taken]
+    count = len(view.directions)
     outer = view.origin + view.directions * view.reach
     inner = view.origin + view.directions * np.minimum(view.ends, view.reach - NEAREST_M)[:, None]
     a, b = border(faces).T
@@ -112,8 +115,10 @@ def joined(cubes: Flags) -> Flags:
         before = int(cubes.sum())
         for axes in combinations(range(3), 2):
             turned = np.moveaxis(cubes, axes, (0, 1))
-            a, b = turned[:-1, :-1], turned[1:, :-1]
-            c, d = turned[:-1, 1:], turned[1:, 1:]
+            a = turned[:-1, :-1]
+            b = turned[1:, :-1]
+            c = turned[:-1, 1:]
+            d = turned[1:, 1:]
             b |= a & d & ~b & ~c
             a |= b & c & ~a & ~d
         if int(cubes.sum()) == before:
@@ -172,7 +177,8 @@ def write(request: OutputRequest) -> tuple[Written, list[str]]:
     shown: list[Coloured] = []
     colors = sensor_colors_on_paper(request.study.rig)
     for sensor in request.study.rig:
-        reach, plain = request.reach(sensor), names[sensor.name]
+        reach = request.reach(sensor)
+        plain = names[sensor.name]
         view = mounted_view(sensor, request.study.vehicle, reach, STEP)
         if view is None:
             lines.append(f"{sensor.name}: no field of view of a {kind_of(sensor).label} is known")
@@ -181,7 +187,8 @@ def write(request: OutputRequest) -> tuple[Written, list[str]]:
             ends = f"its solids end at {NO_RANGE_M:g} m (--range)"
             lines.append(f"{sensor.name}: has no range of its own; {ends}")
         files[f"{plain}_field.stl"] = stl_bytes(whole_solid(f"{plain}_field", view))
-        free, hidden = free_solid(f"{plain}_free", view), hidden_solid(f"{plain}_hidden", view)
+        free = free_solid(f"{plain}_free", view)
+        hidden = hidden_solid(f"{plain}_hidden", view)
         shown.append((free, colors[sensor.name], FREE_ALPHA))
         shown += [(hidden, HIDDEN, HIDDEN_ALPHA)] if hidden is not None else []
     vehicle = request.study.vehicle
@@ -199,7 +206,3 @@ def write(request: OutputRequest) -> tuple[Written, list[str]]:
         mesh = scene.add_mesh(solid.name, solid.points, solid.faces, material)
         nodes.append(scene.add_node(solid.name, mesh=mesh, extras={"volume_m3": volume(solid)}))
     return {SOLIDS_FILE: scene.encoded(scene.add_node(ROOT, nodes)), **files}, lines
-
-
-TITLE = "Fields of View as Solids (glTF, STL)"
-OUTPUT = SceneOutput("solids", TITLE, "solids", write, True)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -26,10 +27,10 @@ from pe_core.sensors import beam_field, kind_of
 from pe_core.sensors.field_of_view import FREE, count_by_part
 from pe_core.sensors.lidar.field_of_view import columns_around
 from pe_core.sensors.ray_fan import cast_fan
-from pe_tools.exchange import Written
-from pe_tools.graphics import png_bytes
-from pe_tools.outputs import OutputRequest, SceneOutput
-from pe_tools.outputs.request import plain_names
+
+from ..exchange import Written
+from ..graphics import png_bytes
+from .request import OutputRequest, plain_names
 
 SUMMARY = "masks.json"
 DECIMALS = 6
@@ -104,18 +105,19 @@ def picture_mask(sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
 def revolution_mask(sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
     """Return which beams end on the vehicle within their maximum range, however near."""
     lidar: Any = sensor.model
-    occluded, azimuths = beam_field(sensor, vehicle).occluded_by, columns_around(lidar)
+    occluded = beam_field(sensor, vehicle).occluded_by
+    azimuths = columns_around(lidar)
     rows, columns = (np.argsort(-angles, kind="stable") for angles in (lidar.elevations, azimuths))
     parts = occluded.reshape(len(rows), len(columns))[np.ix_(rows, columns)]
     return EgoMask(parts.astype(np.int32), lidar.elevations[rows], azimuths[columns])
 
 
-def fan_mask(sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
+def fan_mask(sensor: Sensor, vehicle: Vehicle | None, *, through_covers: bool = False) -> EgoMask:
     """Return the rays of a fan that end on the vehicle, the highest elevation first.
 
     What a cover lets through is free.
     """
-    fan = cast_fan(sensor, vehicle, sensor.kind == "radar")
+    fan = cast_fan(sensor, vehicle, through_covers)
     elevations, azimuths = fan.angles
     flipped = fan.part[::-1, ::-1].astype(np.int32)
     return EgoMask(flipped, elevations[::-1].copy(), azimuths[::-1].copy())
@@ -124,14 +126,15 @@ def fan_mask(sensor: Sensor, vehicle: Vehicle | None) -> EgoMask:
 MASKS: dict[str, Callable[[Sensor, Vehicle | None], EgoMask]] = {
     "camera": picture_mask,
     "lidar": revolution_mask,
-    "radar": fan_mask,
+    "radar": partial(fan_mask, through_covers=True),
     "ultrasonic": fan_mask,
 }
 
 
 def write(request: OutputRequest) -> tuple[Written, list[str]]:
     """Return a PNG per sensor, a table per LiDAR, the occluded shares by part, and messages."""
-    rig, vehicle = request.study.rig, request.study.vehicle
+    rig = request.study.rig
+    vehicle = request.study.vehicle
     names, lines = plain_names([sensor.name for sensor in rig])
     if vehicle is None:
         lines.append("the study has no vehicle: masks are white")
@@ -180,6 +183,3 @@ def _table(mask: EgoMask) -> bytes:
     seen = mask.sees_out.astype(np.uint8).tolist()
     rows += [[f"{e:g}", *row] for e, row in zip(up.tolist(), seen, strict=True)]
     return csv_text(rows).encode()
-
-
-OUTPUT = SceneOutput("masks", "Ego Masks (PNG, CSV)", "masks", write, True, has_range=False)

@@ -1,38 +1,21 @@
-"""The ground plan: footprints of sensors, the vehicle's outline, blind ground; as SVG to scale.
-
-A footprint is the cross-section of `free_solid` at z = 0: the ground within the field of view and
-the range that the vehicle's body does not occlude. The sheet's units are metres, with a layer per
-sensor.
+"""The ground plan as SVG to scale: footprints of sensors, the vehicle's outline, blind ground. The
+sheet's units are metres, with a layer per sensor.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 
-from pe_core.base.arrays import Floats, Ints
-from pe_core.base.errors import InputError
-from pe_core.scene import PerceptionSpace, Pose, Vehicle
-from pe_core.scoring.sight.ground_cells import chained, outlines
-from pe_core.sensors import kind_of
 from pe_tools.exchange import Written
-from pe_tools.graphics import Rgb, color_text, sensor_colors_on_paper
+from pe_tools.graphics import color_text
 from pe_tools.outputs import SceneOutput
-from pe_tools.outputs.request import BLIND, BODY, OutputRequest, plain_names
-from pe_tools.outputs.solid import Solid, free_solid, mounted_view
+from pe_tools.outputs.ground_plan import ClosedLines, GroundFootprint, GroundPlan, ground_plan
+from pe_tools.outputs.request import BLIND, BODY, OutputRequest
 
-STEP = math.radians(0.5)
-REACH_M = 30.0
-"""Default maximum range of footprints [m]: they fit on a sheet of A1 at 1:100."""
-CELL_M = 0.02
-"""Side of the grid cells from which the vehicle's outline is traced [m]."""
-AT_ONCE_M = 100.0
-"""For a vehicle longer than this [m], grid cells are larger."""
-ClosedLines = tuple[Floats, ...]
 FILE = "footprints.svg"
 SCALE = 100
 """Denominator of the scale of the sheet, 1:SCALE."""
@@ -53,98 +36,6 @@ text { font-family: Arial, Helvetica, sans-serif; fill: #333333; }
 .scale { stroke: #333333; stroke-width: 0.08; fill: none; }
 """
 OnPaper = tuple[float, float, float, float]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class GroundFootprint:
-    """Footprint of a sensor: closed `outlines` (N, 2) [m] with the visible ground on the left.
-
-    `plain` is the name for files and layers, `model` the label of the model, `reach` the maximum
-    range of the drawing [m].
-    """
-
-    name: str
-    plain: str
-    model: str
-    color: Rgb
-    pose: Pose
-    reach: float
-    outlines: ClosedLines
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class GroundPlan:
-    """A rig from above, ground frame [m]: `vehicle` and `blind` are closed outlines."""
-
-    footprints: tuple[GroundFootprint, ...]
-    vehicle: ClosedLines
-    blind: ClosedLines
-
-
-def ground_plan(request: OutputRequest) -> tuple[GroundPlan, list[str]]:
-    """Return a study's ground plan, and messages on what it lacks."""
-    study = request.study
-    names, _ = plain_names([sensor.name for sensor in study.rig])
-    footprints: list[GroundFootprint] = []
-    lines: list[str] = []
-    colors = sensor_colors_on_paper(study.rig)
-    for sensor in study.rig:
-        plain = names[sensor.name]
-        color = colors[sensor.name]
-        reach = request.reach(sensor, REACH_M)
-        view = mounted_view(sensor, request.study.vehicle, reach, STEP)
-        loops = () if view is None else level_outlines(free_solid(plain, view), 0.0)
-        model = f"{sensor.model.name}, {kind_of(sensor).label}"
-        footprint = GroundFootprint(sensor.name, plain, model, color, sensor.pose, reach, loops)
-        if not footprint.outlines:
-            lines.append(f"{sensor.name}: sees no ground within {footprint.reach:g} m")
-        footprints.append(footprint)
-    if study.vehicle is None:
-        lines.append("no vehicle: nothing is occluded, and there is no blind ground round it")
-        return GroundPlan(tuple(footprints), (), ()), lines
-    blind: ClosedLines = ()
-    try:
-        blind = study.sight().blind(study.rig, 0.0).outlines
-    except InputError as error:
-        lines.append(f"no blind ground: {error}")
-    return GroundPlan(tuple(footprints), outline_from_above(study.vehicle), blind), lines
-
-
-def level_outlines(solid: Solid, height: float) -> tuple[Floats, ...]:
-    """Return the closed outlines (N, 2) of a solid's cross-section at a height [m]. The inside is
-    on the left. The last point repeats the first. A corner at exactly this height counts as
-    above."""
-    above = solid.points[solid.faces][..., 2] >= height
-    cut = above.any(axis=1) & ~above.all(axis=1)
-    faces, above = solid.faces[cut], above[cut]
-    # Counter-clockwise from outside: an outline comes in where an edge leads down through the
-    # plane, and goes on to the triangle beside where one leads up.
-    down, up = _leading(faces, above), _leading(faces, ~above)
-    # The points (E, 2) where edges (E, 2) cross a height [m].
-    start, end = solid.points[down[:, 0]], solid.points[down[:, 1]]
-    share = (height - start[:, 2]) / (end[:, 2] - start[:, 2])
-    points = start[:, :2] + share[:, None] * (end - start)[:, :2]
-    numbers, back = (edge.min(axis=1) * len(solid.points) + edge.max(axis=1) for edge in (down, up))
-    row = {number: k for k, number in enumerate(numbers.tolist())}
-    return tuple(points[[row[number] for number in loop]] for loop in chained(numbers, back))
-
-
-def _leading(faces: Ints, first: Ints) -> Ints:
-    """Return the edge (T, 2) of each triangle that runs from a flagged to an unflagged corner."""
-    corner = np.argmax(first & ~np.roll(first, -1, axis=1), axis=1)
-    row = np.arange(len(faces))
-    return np.stack([faces[row, corner], faces[row, (corner + 1) % 3]], axis=1)
-
-
-def outline_from_above(vehicle: Vehicle) -> ClosedLines:
-    """Return closed outlines (N, 2) of a vehicle as it is seen from above [m]."""
-    low, high = (corner[:2] for corner in vehicle.bounds)
-    cell = CELL_M * max(1.0, float((high - low).max()) / AT_ONCE_M)
-    first, last = np.floor(low / cell) - 1, np.ceil(high / cell) + 1
-    x, y = ((a * cell, b * cell) for a, b in zip(first.tolist(), last.tolist(), strict=True))
-    space = PerceptionSpace(x, y, (0.0, cell), cell)
-    filled = np.isfinite(vehicle.top(space))
-    return outlines(filled.astype(float), 0.5, space.centers(0), space.centers(1))
 
 
 def write(request: OutputRequest) -> tuple[Written, list[str]]:
@@ -253,4 +144,4 @@ def _text(x: float, y: float, text: str) -> str:
     return f'<text x="{x:.2f}" y="{y:.2f}" font-size="{TEXT}">{escape(text)}</text>'
 
 
-OUTPUT = SceneOutput("footprints", "Footprints on the Ground (SVG)", FILE, write)
+OUTPUT = SceneOutput("footprints-svg", "Footprints on the Ground (SVG)", FILE, write)

@@ -3,7 +3,8 @@
 from .answers import FilesAnswer, VerifyAnswer
 from .check_verb import check, check_study
 from .command import Parser, as_typed, run
-from .explain_verbs import found_built, refuse_different, scored
+from .built_verb import found_built
+from .explain_verbs import refuse_different, scored
 from .interrupts import leave, noted_when_interrupted
 from .options import whole
 from .region_verb import found_region

@@ -5,7 +5,6 @@ import math
 import signal
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
@@ -17,21 +16,18 @@ from pe_core.search import FIGURES
 from pe_core.study import Study
 
 from .. import advice
-from ..advice import AsBuilt, ComparedRow
-from ..exchange import import_rig
-from ..jobs import BuiltJob, Outcome, ScoreJob, SuggestJob
+from ..advice import ComparedRow
+from ..jobs import Outcome, ScoreJob, SuggestJob
 from ..sweep import read_changes
 from ..wording import aligned
-from .answers import BuiltAnswer, CompareAnswer, ExplainAnswer
+from .answers import CompareAnswer, ExplainAnswer
 from .check_verb import suggested_for, suggestion_lines
-from .exchange_verbs import asked_origin, asked_reference
 from .interrupts import Interrupted, stop_at_first
 from .run_job import drive, print_vehicle
 from .study_source import StudyFiles
-from .terminal import DONE, NOT_MET, Answer, answered, warned, with_error
+from .terminal import DONE, Answer, answered, warned, with_error
 
 BEST = "*"
-TOML = ".toml"
 NOT_BLIND = "not blind: what is 0.5 m tall is visible there"
 WIDEST = 24  # Longer names of studies are cut at the front: their ends tell them apart
 COMPARED = ("space", "prior", "model", "targets")
@@ -128,10 +124,7 @@ def _same_body(one: Vehicle | None, other: Vehicle | None) -> bool:
 
 
 def compare(source: StudyFiles, args: argparse.Namespace) -> Answer:
-    """Score studies by name, and print a table that compares them; a rig of another program is the
-    built one of the first study."""
-    if (file := _built_file(args)) is not None:
-        return compare_built(source, args, file)
+    """Score studies by name, and print a table that compares them."""
     studies: Mapping[str, Study] = source.studies(args)
     refuse_different(studies)
     studies = {**studies, **_beside(studies, args.beside)}
@@ -168,43 +161,6 @@ def compare(source: StudyFiles, args: argparse.Namespace) -> Answer:
         words=tuple(said),
     )
     return answered(args, data, [*lines, *notes]), DONE
-
-
-def _built_file(args: argparse.Namespace) -> str | None:
-    """Return the file of a built rig: of the option, or the second of two names that is no study's.
-    It is taken off the studies then."""
-    named: list[str] = getattr(args, "studies", [])
-    if args.built is None and len(named) == 2 and Path(named[1]).suffix.lower() != TOML:
-        args.built = named.pop()
-    file: str | None = args.built
-    return file
-
-
-def compare_built(source: StudyFiles, args: argparse.Namespace, file: str) -> Answer:
-    """Compare a built rig of another program's file with the designed one of a study."""
-    studies: Mapping[str, Study] = source.studies(args)
-    if len(studies) != 1:
-        raise InputError("command line", "STUDY", "one study, the design", len(studies))
-    built = found_built(next(iter(studies.values())), args, file)
-    table = advice.built_table(built)
-    text = [*aligned(table, range(2, len(table[0]))), *advice.built_sensor_lines(built), ""]
-    text += comparison(["design", "built"], built.of_rigs)
-    answer = answered(args, BuiltAnswer(as_built=built.to_dict()), text)
-    return answer, NOT_MET if built.fallen else DONE
-
-
-def found_built(study: Study, args: argparse.Namespace, file: str) -> AsBuilt:
-    """Return the comparison of a study with the built rig in a file; Ctrl-C ends it."""
-    reference = asked_reference(args.rear_axle, study.reference, study.vehicle, file)
-    found = import_rig(file, args.format, reference, placed=asked_origin(args))
-    lines = tuple(line for line in found.lines if not line.startswith(tuple(found.to_choose)))
-    print_vehicle(study)
-    job = BuiltJob(study, found.rig, lines, args.workers)
-    with stop_at_first(job.stop) as received:
-        built = drive(job)
-    if built is None:
-        raise Interrupted(received.signum or signal.SIGINT, "no comparison was complete")
-    return built
 
 
 def _beside(studies: Mapping[str, Study], key: str | None) -> dict[str, Study]:

@@ -32,12 +32,13 @@ from .answers import (
     VerifyAnswer,
     WhereAnswer,
 )
+from .built_verb import compare_all
 from .catalog_verb import show_sensors
 from .check_verb import check
 from .command import Parser, as_typed, run
 from .description import described
 from .exchange_verbs import export, import_study
-from .explain_verbs import compare, explain
+from .explain_verbs import explain
 from .new_verb import new
 from .options import add_options
 from .region_verb import region
@@ -257,7 +258,7 @@ VERBS = (
         "score several studies and put them side by side, or a built rig and its design",
         SOME,
         options=f"beside built from rear_axle origin {COMMON} workers",
-        function=compare,
+        function=compare_all,
         answer=CompareAnswer | BuiltAnswer,
     ),
     Verb(

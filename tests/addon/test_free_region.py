@@ -45,8 +45,8 @@ def test_the_layer_follows_the_loss_at_once_and_the_panel_tells_it(asked):
     fewer = scenes.drawn(car)["region"][""]
     assert len(fewer.faces.points) == 3 * len(found.allowing(1e-6).patch)
     assert len(fewer.faces.points) < len(shape.faces.points)
-    bpy.context.view_layer.objects.active = car.objects[name]
-    texts = drawn(panels.selected_object.sensor, **vars(Window(car))).texts("operator")
+    window = Window(car, car.objects[name])
+    texts = drawn(panels.selected_object.sensor, **vars(window)).texts("operator")
     assert "pe.free_region" in texts
     bpy.ops.pe.dismiss(answer="REGION")
     assert "region" not in scenes.drawn(car)

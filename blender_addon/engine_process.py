@@ -12,7 +12,7 @@ from typing import Any
 import bpy
 
 from . import analysis_calls
-from .engine import catalog, engine_process, jobs, kinds, pe
+from .engine import advice, catalog, engine_process, jobs, kinds, pe
 from .overlay.request import ViewRequest
 
 FOLLOWS_MOUSE = engine_process.FOLLOWS_MOUSE
@@ -31,7 +31,9 @@ _PACKAGES = (__package__, f"{__package__}.overlay")
 def shared_types() -> dict[type, int]:
     """Return types of objects that are sent once, and how many of each the process keeps."""
     models = {kind.model: MAX_MODELS for kind in kinds.KINDS.values()}
-    return {pe.Vehicle: 2, pe.Prior: 4, ViewRequest: 2, jobs.PlaceMap: 2, **models}
+    return {pe.Vehicle: 2, pe.Prior: 4, ViewRequest: 2, jobs.PlaceMap: 2, **models} | {
+        advice.FreeRegion: 2
+    }
 
 
 def _setup() -> engine_process.EngineCall:

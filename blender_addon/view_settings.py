@@ -211,6 +211,14 @@ class ViewSettings:
     show_where: bool = _switch(
         True, "Where?", "Colour the body by the figure that the rig has with one more sensor there"
     )
+    show_region: bool = _switch(
+        True, "Free Region", "Tint the part of its mount on which the sensor may go"
+    )
+    region_loss: float = _value(
+        0.0, studies.Number(0.0), "Loss",
+        "How much the figure may lose, in its unit: the region follows at once; 0: as asked",
+        precision=3, step=0.1,
+    )  # fmt: skip
     show_labels: bool = _switch(True, "Names", "Write each sensor's name beside it")
     show_bodies: bool = _switch(
         True, "Test Bodies", "Write beside each test body which sensors see it, and with how much"

@@ -1,4 +1,4 @@
-"""Where a sensor would be worth most, and what would mend something: for the view and the click.
+"""Where a sensor would be worth most, where it may go, and what would mend something: for the view.
 
 The places that were scored last in each scene, and the suggestions that were asked for last. They
 are kept here and not in a property: they are not part of the user's work.
@@ -11,7 +11,7 @@ from typing import NamedTuple
 import bpy
 
 from . import bridge, signals
-from .engine import jobs, studies
+from .engine import advice, jobs, studies
 
 
 class Mended(NamedTuple):
@@ -23,7 +23,9 @@ class Mended(NamedTuple):
 
 maps: dict[str, jobs.PlaceMap] = {}
 offers: dict[str, Mended] = {}
-"""Both by the scene's name."""
+regions: dict[str, advice.FreeRegion] = {}
+built: dict[str, advice.AsBuilt] = {}
+"""All by the scene's name."""
 
 
 def store(scene_name: str, found: jobs.PlaceMap | None) -> None:
@@ -36,7 +38,17 @@ def store_offers(scene_name: str, found: Mended | None) -> None:
     _store(offers, scene_name, found)
 
 
-def _store(kept: dict, scene_name: str, found: NamedTuple | jobs.PlaceMap | None) -> None:
+def store_region(scene_name: str, found: advice.FreeRegion | None) -> None:
+    """Store the free region of a sensor, and have it shown; None discards it."""
+    _store(regions, scene_name, found)
+
+
+def store_built(scene_name: str, found: advice.AsBuilt | None) -> None:
+    """Store the comparison with a built rig, and have that shown; None discards it."""
+    _store(built, scene_name, found)
+
+
+def _store(kept: dict, scene_name: str, found: object) -> None:
     if found is not None:
         kept[scene_name] = found
     elif kept.pop(scene_name, None) is None:
@@ -60,3 +72,5 @@ def clear(*_: object) -> None:
     """Discard all: another file is opened, whose scenes may have the same names."""
     maps.clear()
     offers.clear()
+    regions.clear()
+    built.clear()

@@ -44,6 +44,7 @@ from .search import (
     Method,
     MountArea,
     Mounting,
+    MountingGrid,
     NoGo,
     Objective,
     Option,
@@ -83,8 +84,9 @@ __all__ = ["METHODS", "ApCurve", "BeamField", "BlindGround", "BoxReport", "Boxes
 __all__ += ["Camera", "Choice", "Conditions", "Constraints", "DataSheet", "Evaluator", "FTheta"]
 __all__ += ["Focus", "Front", "Goals", "GroundMap", "GroundSight", "Housing", "InputError"]
 __all__ += ["KannalaBrandt", "Lidar", "Limit", "Limits", "Mesh", "MeshAxes", "Method", "Motion"]
-__all__ += ["MountArea", "Mounting", "NoGo", "ObjectClass", "ObjectEvaluator", "ObjectScore"]
-__all__ += ["Objective", "Objects", "Option", "PartScore", "PerceptionModel", "PerceptionSpace"]
+__all__ += ["MountArea", "Mounting", "MountingGrid", "NoGo", "ObjectClass", "ObjectEvaluator"]
+__all__ += ["ObjectScore", "Objective", "Objects", "Option", "PartScore", "PerceptionModel"]
+__all__ += ["PerceptionSpace"]
 __all__ += ["Pinhole", "Pose", "Prior", "Reach", "Reference", "Rig", "RigEvaluator", "Scatter"]
 __all__ += ["Schedule", "Score", "Search", "SearchRun", "SearchSpace", "Selection", "Sensor"]
 __all__ += ["SensorScore", "Sight", "Slot", "SlotMount", "Start", "State", "Step", "Stop", "Study"]

@@ -50,7 +50,7 @@ class SceneStudies(app.StudyFiles):
         are named; else to compare of all, and for a page of what stands in the scene."""
         scene = opened_scene()
         names = args.variants
-        if not names and args.kind == "compare":
+        if not names and args.kind == "compare" and args.built is None:
             names = [row.name for row in scene.perception_entropy.variants]
             if not names:
                 raise pe.InputError(bpy.data.filepath, "variants", "at least one", "none")

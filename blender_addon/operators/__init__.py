@@ -4,6 +4,7 @@ Panels take from here the operators, and what menus list.
 """
 
 from . import (
+    built,
     compare_variants,
     conditions,
     edit_sensors,
@@ -18,6 +19,7 @@ from . import (
     panel_rows,
     place_sensor,
     placement,
+    region,
     running_job,
     shortcuts,
     suggest,

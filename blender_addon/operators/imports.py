@@ -6,6 +6,7 @@ as one.
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
@@ -192,10 +193,15 @@ def import_rig(context: bpy.types.Context, filepath: str, format: str) -> Told:
     name gets a usual one, and a line that says so"""
     path = chosen_file(filepath)
     scene = context.scene
+    found = rig_of_file(scene, path, format)
+    title = path.stem or path.parent.name
+    return replace_sensors(scene, title, tuple(found.rig), found.lines, origin=f"Read from {path}")
+
+
+def rig_of_file(scene: bpy.types.Scene, path: Path, format_name: str) -> exchange.ImportedRig:
+    """Return the rig in a file of another program, in the scene's frame; of a format of several
+    files, in the file's folder. `format_name`: `BY_NAME`, or a name of `RIG_FORMATS`."""
     several = [row.files for row in exchange.RIG_FORMATS.values() if row.is_folder]
     place = path.parent if any(path.name in files for files in several) else path
     reference = bridge.document_of(scene.perception_entropy, "reference").reference
-    name = format
-    found = exchange.import_rig(place, None if name == BY_NAME else name, reference)
-    title = path.stem or path.parent.name
-    return replace_sensors(scene, title, tuple(found.rig), found.lines, origin=f"Read from {path}")
+    return exchange.import_rig(place, None if format_name == BY_NAME else format_name, reference)

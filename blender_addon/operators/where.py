@@ -17,6 +17,8 @@ from .query_location import clicking
 
 QUERY = "QUERY"
 PLACES_SHOWN = "PLACES"
+REGION_SHOWN = "REGION"
+BUILT_SHOWN = "BUILT"
 """Answers that can be dismissed."""
 WHOLE = "WHOLE"  # What is covered, where it is no mount
 PICK = "Pick a Place: click the coloured body. Esc: cancel"
@@ -149,6 +151,8 @@ def put(context: bpy.types.Context, sensor: pe.Sensor) -> bpy.types.Object:
         items=(
             (QUERY, "Location", "The answer of Query Location, and its mark"),
             (PLACES_SHOWN, "Places", "The colours of Where? on the body"),
+            (BUILT_SHOWN, "Built Rig", "The built rig that is drawn beside this one"),
+            (REGION_SHOWN, "Free Region", "The free region of a sensor"),
         ),
     ),
 )
@@ -156,5 +160,9 @@ def dismiss(context: bpy.types.Context, answer: str) -> None:
     """Remove this answer from the 3D view"""
     if answer == QUERY:
         location_query.discard(context.scene)
+    elif answer == BUILT_SHOWN:
+        where_map.store_built(context.scene.name, None)
+    elif answer == REGION_SHOWN:
+        where_map.store_region(context.scene.name, None)
     else:
         where_map.store(context.scene.name, None)

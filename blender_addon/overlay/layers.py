@@ -21,7 +21,7 @@ from .annotations import (
 )
 from .birds_eye import birds_eye
 from .layer_cache import LayerCache
-from .place_colors import place_colors
+from .place_colors import place_colors, region_patch
 from .request import SceneSensor, ViewRequest
 from .requirement_zones import requirement_zones
 
@@ -319,6 +319,22 @@ def _where(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.Lay
     return place_colors(request.where, [each.sensor for each in request.counted])
 
 
+def _region_keys(request: ViewRequest) -> dict[str, Hashable]:
+    found = request.region
+    if found is None:
+        return {}
+    here = tuple((each.sensor.name, each.sensor.pose) for each in request.counted)
+    return {WHOLE_RIG: (found, request.view.region_loss, here)}
+
+
+def _region(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.LayerShape:
+    found = request.region
+    assert found is not None  # the layer has no key without one
+    if request.view.region_loss > 0.0:
+        found = found.allowing(request.view.region_loss)
+    return region_patch(found, [each.sensor for each in request.counted])
+
+
 def _requirement_keys(request: ViewRequest) -> dict[str, Hashable]:
     if not request.requirements:
         return {}
@@ -414,6 +430,7 @@ LAYERS = (
         **ZONES,
     ),
     Layer("where", "Where?", _where_keys, _where, on_ground=True),
+    Layer("region", "Free Region", _region_keys, _region, line_px=2.2, edged=True),
     Layer("mounts", "Mounts", _mount_keys, _mounts, line_px=1.4, edged=True),
     Layer("focus", "Focus", _focus_keys, _focus, line_px=1.4, edged=True),
     Layer("frustums", "Camera Views", _view_keys, _views),

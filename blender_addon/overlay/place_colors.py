@@ -1,4 +1,4 @@
-"""The body in the colours of the figure that a rig would have with one more sensor there."""
+"""The body in the colours of a figure with one more sensor there; the region where one may go."""
 
 import math
 from collections.abc import Sequence
@@ -9,7 +9,7 @@ import numpy as np
 from ..engine import graphics
 
 if TYPE_CHECKING:
-    from ..engine import jobs, pe
+    from ..engine import advice, jobs, pe
 
 REASONS_NAMED = 3
 TICKS = 3
@@ -17,6 +17,8 @@ NARROWEST = 0.01
 """The scale has all but 1 % of the values at either end; a narrower range would show noise."""
 GREY: graphics.Rgba = (*graphics.FORBIDDEN, 1.0)
 MARK = (1.0, 1.0, 1.0, 0.95)
+INSIDE = (0.10, 0.75, 0.62, 0.55)
+"""Colour of a free region: blue-green, as what is met."""
 
 
 def place_colors(found: "jobs.PlaceMap", sensors: "Sequence[pe.Sensor]") -> graphics.LayerShape:
@@ -49,6 +51,42 @@ def place_colors(found: "jobs.PlaceMap", sensors: "Sequence[pe.Sensor]") -> grap
         for e in found.best()
     ]
     return graphics.LayerShape(faces=faces, labels=tuple(labels), legend=legend)
+
+
+def region_patch(found: "advice.FreeRegion", sensors: "Sequence[pe.Sensor]") -> graphics.LayerShape:
+    """Return a free region with its outline, its tightest direction at the sensor, and a legend.
+    `sensors` are those of the scene: where they have moved, the legend says so."""
+    patch = found.patch
+    colors = np.broadcast_to(np.array(INSIDE), (3 * len(patch), 4))
+    edges = _outline(patch)
+    bright = np.broadcast_to(np.array((*INSIDE[:3], 1.0)), (2 * len(edges), 4))
+    row = found.row
+    unit = f" {row.unit}".rstrip()
+    lost = f"loses at most {row.number(found.allowed)}{unit} of {row.name}"
+    classes = [(INSIDE, f"{found.area:.2f} of {found.mount_area:.2f} m²")]
+    if found.typical_error:
+        classes.append((INSIDE, f"standard error {row.number(found.typical_error)}{unit}"))
+    moved = {(s.name, s.pose) for s in sensors} != {(s.name, s.pose) for s in found.rig}
+    state = " (before the last change)" if moved else " (coarse)" if found.is_coarse else ""
+    legend = graphics.ColorKey(f"{found.sensor} {lost}{state}", classes=tuple(classes))
+    labels = []
+    if (least := found.tightest) is not None:
+        at = found.rig[found.sensor].pose.position
+        labels.append(graphics.Tag(least.text, at, MARK, strong=True))
+    return graphics.LayerShape(
+        faces=graphics.Primitives.of(patch, colors),
+        lines=graphics.Primitives.of(edges, bright),
+        labels=tuple(labels),
+        legend=legend,
+    )
+
+
+def _outline(triangles: np.ndarray) -> np.ndarray:
+    """Return the edges (E, 2, 3) that belong to one of the triangles (F, 3, 3) alone."""
+    both = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2, 3)
+    turned = np.array([sorted(edge) for edge in both.tolist()]).reshape(-1, 6)
+    _, first, count = np.unique(turned, axis=0, return_index=True, return_counts=True)
+    return both[np.sort(first[count == 1])]
 
 
 def _state(found: "jobs.PlaceMap", sensors: "Sequence[pe.Sensor]") -> str:

@@ -88,6 +88,7 @@ class ViewRequest:
     rates: tuple[tuple[str, float], ...] = ()
     rate_hz: float = 24.0
     where: jobs.PlaceMap | None = None
+    region: advice.FreeRegion | None = None
 
     @property
     def counted(self) -> tuple[SceneSensor, ...]:

@@ -82,6 +82,7 @@ class SnapshotReader:
             focus=bridge.focus_regions(scene),
             reference=_reference(scene),
             where=where_map.maps.get(scene.name),
+            region=where_map.regions.get(scene.name),
             **(_requirements(scene) | _story(scene)),
         )
 
@@ -211,12 +212,15 @@ def _scored(
 
 def _ghosts(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str, str]:
     """Return sensors that are shown beside the scene's own, their name, and what they are: the best
-    placement of a running search so far, suggestions, otherwise another variant."""
+    placement of a running search so far, suggestions, a built rig, otherwise another variant."""
     if best := best_so_far.best(scene.name):
         return best, BEST_SO_FAR, "Search"
     if (offers := where_map.offers.get(scene.name)) and offers.found:
         new = tuple(each.rig[name] for each in offers.found for name in each.moved)
         return new, "moved, or added", MENDS
+    if (compared := where_map.built.get(scene.name)) is not None:
+        pairs = compared.pairing.pairs
+        return tuple(each.designed.moved(each.built.pose) for each in pairs), "calibration", "Built"
     return *_variant(scene, scene.perception_entropy.view.ghost_key), ""
 
 

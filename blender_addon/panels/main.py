@@ -5,6 +5,7 @@ from bpy.types import Context, PropertyGroup, UILayout
 
 from .. import where_map
 from ..diagnostics import vehicle_line
+from ..engine import advice
 from ..operators import offers, running_job
 from ..panel_text import draw_label, is_simple, typeset
 from ..sensor_cache import sensors as listed_sensors
@@ -92,6 +93,18 @@ def draw_add(layout: UILayout, settings: PropertyGroup, *, simple: bool) -> None
         row.operator("pe.dismiss", text="", icon="X").answer = "PLACES"
 
 
+def draw_built(layout: UILayout, context: Context) -> None:
+    """Draw the button that compares a built rig; of a compared one, which sensors are off."""
+    row = layout.row(align=True)
+    row.operator("pe.compare_built", icon="CON_TRACKTO")
+    found = where_map.built.get(context.scene.name)
+    if found is None:
+        return
+    row.operator("pe.dismiss", text="", icon="X").answer = "BUILT"
+    for line in (*advice.built_sensor_lines(found), *map(advice.pair_text, found.worst_first)):
+        draw_sentence(layout, context, line)
+
+
 @panel("Export and Import", simple=True)
 def export(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """Files to take away, and rigs of other programs"""
@@ -105,6 +118,7 @@ def export(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     row = layout.row(align=True)
     row.operator("pe.export_rig", text="Export Rig", icon="FILE_TICK")
     row.operator("pe.import_rig", text="Import Rig", icon="FILE_FOLDER")
+    draw_built(layout, context)
     layout.operator_menu_enum("pe.export_scene", "output", text="Export Scene", icon="SCENE_DATA")
     row = layout.row()
     row.prop(settings, "axles_known", text="Axles")

@@ -91,6 +91,7 @@ def limits(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     if obj is not None and not obj.perception_entropy.is_sensor:
         layout.label(text=f"{obj.name}:", translate=False)
         draw_properties(layout, obj.perception_entropy, ("is_no_go",))
+    draw_declared(layout.column(), settings, "optimize.grid")
     draw_tolerance(layout.column(), settings)
     draw_goals(layout.column(), settings, context)
 

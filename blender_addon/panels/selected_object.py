@@ -2,6 +2,7 @@
 
 from bpy.types import Context, Object, PropertyGroup, UILayout
 
+from .. import where_map
 from ..bridge import holder_of, in_surroundings
 from ..panel_text import draw_label, is_simple
 from ..properties import AXIS_LABELS
@@ -31,6 +32,7 @@ def sensor(layout: UILayout, _settings: PropertyGroup, context: Context) -> None
     row = layout.row()
     row.operator_context = "INVOKE_DEFAULT"
     row.operator("pe.place_sensor", text="Drag Along Surface", icon="VIEW_PAN").sensor = obj.name
+    draw_region(layout, context, obj)
     draw_mirror(layout, obj, simple=is_simple(context.scene))
     split = layout.split(factor=0.4)
     draw_label(split, "Mounted on")
@@ -77,6 +79,21 @@ def draw_pose(layout: UILayout, context: Context, obj: Object) -> None:
             cell.prop(settings, name, index=index, text=text, translate=False)
     if holder:
         draw_sentence(layout, context, f"Pose is fixed by {holder}", icon="LOCKED")
+
+
+def draw_region(layout: UILayout, context: Context, obj: Object) -> None:
+    """Draw the button that finds a sensor's free region; of a known one, how far it may go."""
+    row = layout.row(align=True)
+    row.operator("pe.free_region", icon="SNAP_FACE").name = obj.name
+    found = where_map.regions.get(context.scene.name)
+    if found is None or found.sensor != obj.name:
+        return
+    row.operator("pe.dismiss", text="", icon="X").answer = "REGION"
+    view = context.scene.perception_entropy.view
+    layout.prop(view, "region_loss")
+    allowed = found.allowing(view.region_loss) if view.region_loss > 0.0 else found
+    for part in allowed.extent.split("; "):
+        draw_sentence(layout, context, part)
 
 
 def draw_mirror(layout: UILayout, obj: Object, *, simple: bool) -> None:

@@ -20,9 +20,11 @@ from .limit import Limit, LimitRule
 from .limits import LIMITED, NUMBERED, Limits
 from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_method
 from .methods.portfolio import default_budget
+from .mounting_grid import GridWalk, MountingGrid, OnGrid
 from .mounts import AnyMount, Constraints, MountArea, Mounting, NoGo, Slot, SlotMount, SurfaceMount
 from .objective import NO_VALUE, FeasibilityRule, Objective, Value, as_objective, violation_sum
 from .optimize import Step, optimize
+from .own_places import OwnPlaces, PathPoint, PlacedRig
 from .parametrization import Candidate, Parametrization, feasible_start, mirrored, rig_on_mounts
 from .payload import Payload, Unreadable, send_payload
 from .places import MountingPlaces, SurfacePlace, outward_yaw

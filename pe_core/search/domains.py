@@ -74,6 +74,11 @@ def start_values(values: Mapping[str, float], bounds: Mapping[str, Bounds]) -> d
     }
 
 
+def rounded_length(length: float) -> float:
+    """Return a length, rounded as positions are [m]."""
+    return round(length, POSITION_DECIMALS) + 0.0
+
+
 def rounded(pose: Pose) -> Pose:
     """Return a pose, rounded as placements are."""
     return pose_from_values(pose_values(pose))

@@ -45,6 +45,8 @@ class Journal:
         self._entries = list(entries)
         self._position = 0
         self._source = source
+        self.known: list[tuple[int, Value, Rig]] = []
+        """Levels, values and placements of those whose value is known: below their cutoff."""
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the entries: a search that begins anew replays them."""
@@ -93,6 +95,7 @@ class Journal:
             field = f"evaluated[{self._position}]"
             raise InputError(self._source, field, expected, "another")
         self._position += 1
+        self._keep(rig, level, entry.value)
         return entry.value
 
     def require_used(self) -> None:
@@ -105,6 +108,11 @@ class Journal:
         """Append the value of a placement that is not in the journal yet."""
         self._entries.append(EvaluatedRig(value, _digest(rig, level)))
         self._position += 1
+        self._keep(rig, level, value)
+
+    def _keep(self, rig: Rig, level: int, value: Value) -> None:
+        if value != NO_VALUE:
+            self.known.append((level, value, rig))
 
 
 def _digest(rig: Rig, level: int) -> str:

@@ -223,6 +223,10 @@ class Parametrization:
         rig = self.start.rig
         return Candidate(rig.with_poses([poses[sensor.name] for sensor in rig]), tuple(values))
 
+    def domain_of(self, name: str) -> Domain:
+        """Return the poses that a sensor may take, which follows no other."""
+        return self._domains[name]
+
     def allowed(self, rig: Rig) -> bool:
         """Whether a placement breaks no rule."""
         trial = self.space.placement(rig)

@@ -45,6 +45,7 @@ from ..search import (
     Goals,
     Limits,
     Mounting,
+    MountingGrid,
     Parametrization,
     Schedule,
     SearchRun,
@@ -106,6 +107,8 @@ class Search(ShortRepr):
         Placements evaluated at most; 0: as many as the method takes.
     tolerance : Tolerance
         Mounting errors and failures that a candidate is evaluated with; none by default.
+    grid : MountingGrid
+        The steps of positions and angles that a search ends on; none by default.
     goals : Goals
         When to stop, what stays, further starts, several objectives, the analysis of the result.
     conditions : {"mean", "worst"}, optional
@@ -135,6 +138,7 @@ class Search(ShortRepr):
         Panel("evaluations", "Budget", soft_max=10_000, beside="All"),
     )
     tolerance: Tolerance = field(default_factory=Tolerance)
+    grid: MountingGrid = field(default_factory=MountingGrid)
     goals: Annotated[Goals, Part(inline=True)] = field(default_factory=Goals)
     conditions: str | None = setting(
         None,
@@ -177,6 +181,7 @@ class Search(ShortRepr):
         for kind in (Schedule, Mounting, Tolerance, Goals):
             name = kind.__name__.lower()
             require_kind(who, name, getattr(self, name), kind)
+        require_kind(who, "grid", self.grid, MountingGrid)
         known = checked_method(who, self.method or None, self.schedule != Schedule())
         object.__setattr__(self, "method", known)
 

@@ -152,6 +152,37 @@ class WhereAnswer:
     places: OpenRows
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BuiltAnswer:
+    """A built rig against the designed one: how far each sensor is off, what that costs, what is no
+    longer met."""
+
+    as_built: OpenTable
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RegionAnswer:
+    """The free region of a sensor: `allowed_loss` and `base` of the figure, the area of the patch
+    and of the whole mount, the median `standard_error` of a loss, how far each way is free, the
+    patch as triangles [m], and all evaluated places with their losses."""
+
+    sensor: str
+    figure: str
+    unit: str
+    allowed_loss: float
+    base: float
+    mount: str
+    area_m2: float
+    mount_area_m2: float
+    standard_error: float
+    evaluated_on: str
+    others_searched_again: bool
+    not_held: tuple[str, ...]
+    ways: OpenRows
+    patch: Any
+    places: OpenRows
+
+
 @dataclass(frozen=True, slots=True)
 class SweepAnswer:
     """The runs of a sweep, a row each, as in sweep.json."""

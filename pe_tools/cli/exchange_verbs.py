@@ -63,7 +63,7 @@ def export(source: StudyFiles, args: argparse.Namespace) -> Answer:
     to = format_of_file(output, FILE_NAMES, asked)
     if args.range is not None and to not in ranged_outputs():
         raise InputError("--range", "option", f"one of {', '.join(ranged_outputs())}", to)
-    reference = _reference(args.rear_axle, study.reference, study.vehicle, to)
+    reference = asked_reference(args.rear_axle, study.reference, study.vehicle, to)
     refuse_input(output)
     if to in scene_outputs():
         study = replace(study, reference=reference)
@@ -75,7 +75,7 @@ def export(source: StudyFiles, args: argparse.Namespace) -> Answer:
             output,
             reference,
             into=args.into,
-            placed=_pose_at(args),
+            placed=asked_origin(args),
             replace=args.replace or args.output is None,
             facts=_facts(study, to),
         )
@@ -102,9 +102,9 @@ def import_study(_: StudyFiles, args: argparse.Namespace) -> Answer:
         mesh = read_mesh(output.parent / args.mesh)
         vehicle = Vehicle(mesh.triangles, mesh.parts, mesh.part_names)
     require_new(output, replace=args.replace)
-    reference = _reference(args.rear_axle, None, vehicle, args.format or args.file)
+    reference = asked_reference(args.rear_axle, None, vehicle, args.format or args.file)
     models = chosen_models(args.model)
-    found = import_rig(args.file, args.format, reference, models, placed=_pose_at(args))
+    found = import_rig(args.file, args.format, reference, models, placed=asked_origin(args))
     study = Study(found.rig, vehicle, samples=FIRST_SAMPLES, mesh=args.mesh, reference=reference)
     require_new(output, replace=args.replace)  # all inputs are read
     save_study(study, output)
@@ -113,7 +113,8 @@ def import_study(_: StudyFiles, args: argparse.Namespace) -> Answer:
     return wrote(output, study, args), DONE
 
 
-def _pose_at(args: argparse.Namespace) -> Pose | None:
+def asked_origin(args: argparse.Namespace) -> Pose | None:
+    """Return where a file's origin is, as ``--at`` asks for it."""
     return None if args.at is None else Pose.from_degrees(args.at[:3], args.at[3:])
 
 
@@ -123,7 +124,7 @@ def wrote(output: Path, study: Study, args: argparse.Namespace) -> str:
     return answered(args, FilesAnswer(written=(str(output),)), [line])
 
 
-def _reference(
+def asked_reference(
     asked: Sequence[str] | None, known: Reference | None, vehicle: Vehicle | None, asking: str
 ) -> Reference | None:
     """Return the axles: as ``--rear-axle`` asks for them, or else those of the study."""

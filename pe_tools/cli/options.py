@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from pe_core.base.files import quoted
 
+from ..advice import usual_loss
 from ..exchange import RIG_FORMATS
 from ..jobs import PLACE_FIGURES
 from ..outputs import OF_EXAMPLE, scene_outputs
@@ -164,6 +165,12 @@ def _of_results() -> dict[str, OptionRow]:
         ),
         "file": row("-o", "--output", metavar="FILE", about="file for the table (.csv) or JSON"),
         "study_file": row("-o", "--output", metavar="STUDY", about="study to write"),
+        "region_file": row(
+            "-o",
+            "--output",
+            metavar="FILE",
+            about="patch (.stl .glb .obj .npz), all data (.json), or the next study on it (.toml)",
+        ),
         "resume": row("--resume", metavar="DIR", about=resume),
         "json": switch("--json", "print JSON"),
         "replace": switch("--replace", "replace files that are there"),
@@ -183,6 +190,7 @@ def _of_questions() -> dict[str, OptionRow]:
     stories = "stories alone: the study's; or by name, of a TOML file, all shipped (all); commas"
     places = ", ".join(f"{key} {each.places:,}" for key, each in PLACE_FIGURES.items())
     figures = {"choices": PLACE_FIGURES, "default": "entropy", "metavar": "|".join(PLACE_FIGURES)}
+    losses = ", ".join(f"{key} {usual_loss(each.figure):g}" for key, each in PLACE_FIGURES.items())
     mount = "a mount of the study: its surface, stand-off and orientation"
     part = "a part of the vehicle, in place of all; any number"
     return {
@@ -198,6 +206,11 @@ def _of_questions() -> dict[str, OptionRow]:
         "preset": several("--preset", metavar="ID", about=preset),
         "list": row("--list", nargs="?", const="", metavar="ID", about=listed),
         "stories": row("--stories", nargs="?", const="", metavar="NAME,...", about=stories),
+        "built": row(
+            "--built",
+            metavar="FILE",
+            about="compare the built rig in this file of another program with the design",
+        ),
         "beside": row(
             "--beside", metavar="RIG", about="a known rig on the first one's vehicle, too"
         ),
@@ -207,6 +220,11 @@ def _of_questions() -> dict[str, OptionRow]:
         "of_part": several("--part", metavar="NAME", about=part),
         "mount": row("--mount", default="", metavar="NAME", about=mount),
         "figure": row("--figure", about="what is told of each place", **figures),
+        "sensor": row("sensor", metavar="SENSOR", about="the sensor that moves"),
+        "loss": row(
+            "--loss", type=number, metavar="D", about=f"how much the figure may lose ({losses})"
+        ),
+        "others": switch("--others", "search the other sensors again at places outside, too"),
         "places": row(
             "--places", type=whole(MAX_PLACES, 1), metavar="N", about=f"how many ({places})"
         ),
@@ -255,6 +273,9 @@ def _of_exchange() -> dict[str, OptionRow]:
 def _of_pages() -> dict[str, OptionRow]:
     """What stands on a review page."""
     return {
+        "regions": several(
+            "--region", metavar="SENSOR", about="show where this sensor may go; any number"
+        ),
         "title": row("--title", default="", metavar="TEXT", about="title of the page"),
         "author": row("--author", default="", metavar="TEXT", about="who made it"),
         "date": row(

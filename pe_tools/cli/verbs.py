@@ -15,6 +15,7 @@ from pe_core.base.plugins import call_plugin, find_plugins, load_plugin, plugin_
 from ..jobs import FrontRecord, ResultRecord
 from ..versions import versions_text
 from .answers import (
+    BuiltAnswer,
     CatalogAnswer,
     CheckAnswer,
     CompareAnswer,
@@ -23,6 +24,7 @@ from .answers import (
     FilesAnswer,
     KeysAnswer,
     PresetsAnswer,
+    RegionAnswer,
     RigsAnswer,
     SensorAnswer,
     ServeReply,
@@ -30,14 +32,16 @@ from .answers import (
     VerifyAnswer,
     WhereAnswer,
 )
+from .built_verb import compare_all
 from .catalog_verb import show_sensors
 from .check_verb import check
 from .command import Parser, as_typed, run
 from .description import described
 from .exchange_verbs import export, import_study
-from .explain_verbs import compare, explain
+from .explain_verbs import explain
 from .new_verb import new
 from .options import add_options
+from .region_verb import region
 from .run_job import run_study
 from .serve_verb import serve
 from .set_verb import set_keys
@@ -180,6 +184,10 @@ def _where(source: StudyFiles, args: argparse.Namespace) -> Answer:
     return where(source.study(args), args)
 
 
+def _region(source: StudyFiles, args: argparse.Namespace) -> Answer:
+    return region(source.study(args), args)
+
+
 VERBS = (
     Verb(
         "new",
@@ -247,11 +255,11 @@ VERBS = (
     Verb(
         "compare",
         SCORE,
-        "score several studies and put them side by side",
+        "score several studies and put them side by side, or a built rig and its design",
         SOME,
-        options=f"beside {COMMON} workers",
-        function=compare,
-        answer=CompareAnswer,
+        options=f"beside built from rear_axle origin {COMMON} workers",
+        function=compare_all,
+        answer=CompareAnswer | BuiltAnswer,
     ),
     Verb(
         "where",
@@ -261,6 +269,15 @@ VERBS = (
         options="model of_part|mount figure places set workers file replace",
         function=_where,
         answer=WhereAnswer,
+    ),
+    Verb(
+        "region",
+        PLACE,
+        "tell where a sensor may go while a figure loses little",
+        ONE,
+        options="sensor figure loss others places set snap workers region_file replace",
+        function=_region,
+        answer=RegionAnswer,
     ),
     Verb(
         "optimize",
@@ -286,7 +303,8 @@ VERBS = (
         SHOW,
         "write an HTML page that shows a rig and what its sensors see",
         SOME,
-        options=f"title author date revision {COMMON} workers required_folder replace",
+        options=f"title author date revision regions built from rear_axle origin {COMMON} "
+        "workers required_folder replace",
         function=_review,
         answer=FilesAnswer,
     ),

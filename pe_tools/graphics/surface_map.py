@@ -3,6 +3,7 @@
 import numpy as np
 
 from pe_core.base.arrays import Flags, Floats, Singles
+from pe_core.geometry.surfaces import area_of, divided
 
 from .colors import VIRIDIS, Scale, on_scale
 from .primitives import Primitives
@@ -32,7 +33,8 @@ def colored_surface(
     `points` (N, 3) [m] with unit `normals` (N, 3) and `values` (N,), NaN where none is allowed:
     grey. `bounds` are the values of the low and the high end of the scale. Colours run into each
     other over the distance between places."""
-    fine = divided(triangles)
+    longest = max(FINE_M, 2.0 * float(np.sqrt(area_of(triangles) / MAX_TRIANGLES)))
+    fine = divided(triangles, longest)
     corners, place = np.unique(np.round(fine.reshape(-1, 3), 4), axis=0, return_inverse=True)
     place = place.reshape(-1)
     across = np.cross(fine[:, 1] - fine[:, 0], fine[:, 2] - fine[:, 0])
@@ -74,23 +76,3 @@ def _spread(
     allowed = weight @ known.astype(np.float32)
     mean = weight @ np.where(known, values, np.float32(0.0)) / np.maximum(allowed, 1e-12)
     return mean, allowed < 0.5 * weight.sum(axis=1)
-
-
-def divided(triangles: Floats) -> Floats:
-    """Return triangles (F, 3, 3) with long edges halved until they are short (F2, 3, 3)."""
-    across = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    area = float(np.linalg.norm(across, axis=1).sum()) / 2.0
-    longest = max(FINE_M, 2.0 * np.sqrt(area / MAX_TRIANGLES))
-    done: list[Floats] = []
-    while len(triangles):
-        sides = np.linalg.norm(np.roll(triangles, -1, axis=1) - triangles, axis=2)
-        first = sides.argmax(axis=1)
-        short = sides.max(axis=1) <= longest
-        done.append(triangles[short])
-        long = triangles[~short]
-        first = first[~short]
-        row = np.arange(len(long))
-        a, b, c = (long[row, (first + k) % 3] for k in range(3))  # a to b is the longest side
-        middle = (a + b) / 2.0
-        triangles = np.concatenate([np.stack([a, middle, c], 1), np.stack([middle, b, c], 1)])
-    return np.concatenate(done)

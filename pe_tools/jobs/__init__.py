@@ -1,5 +1,6 @@
 """Jobs that score and optimize studies, their checkpoints, and the files of their results."""
 
+from .built_job import BuiltJob
 from .check_job import Checked, CheckJob, SuggestJob
 from .checkpoint import SAVE_EVERY_S, BegunSearch, Checkpoint, FrontCheckpoint, checkpoint_of
 from .checkpoint import read_search, resume
@@ -7,6 +8,7 @@ from .folder import FileSet, check_files, prepare_folder
 from .front_files import FRONT_JSON, FRONT_NAMES, FRONT_PAGE, front_dict, write_front
 from .front_job import FrontJob, FrontJournals, has_front
 from .job import HistoryRow, Job, Outcome, Progress, StartEnd, best_so_far
+from .region_job import RegionJob, region_mount, study_on_region
 from .result_record import FrontRecord, OpenTable, PlacedSensors, ResultRecord, placements
 from .results import SearchState, add_to_result, condition_lines
 from .results import result_dict, result_names, score_facts, write_outcome

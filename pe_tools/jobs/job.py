@@ -30,7 +30,9 @@ from pe_core.study.study import Study
 
 from ..advice import (
     Advice,
+    Consensus,
     Flatness,
+    Rounding,
     curve_warnings,
     difference_error,
     gain_sentence,
@@ -123,6 +125,10 @@ class Outcome(Tabular):
         Of `study`, where it has states or weathers.
     flatness : Flatness or None
         What steps from the result of a search cost; None where the search was too short.
+    rounding : Rounding or None
+        What it cost to have the result on the study's grid; None without a grid.
+    consensus : Consensus or None
+        Where the best placements of a search agree; None where fewer than two differ.
     starts : tuple of StartEnd
         Where each start of a search ended, if it had several.
     stop_reason : str
@@ -154,6 +160,8 @@ class Outcome(Tabular):
     verdicts: tuple[Verdict, ...] = ()
     conditions: ConditionTable | None = None
     flatness: Flatness | None = None
+    rounding: Rounding | None = None
+    consensus: Consensus | None = None
     starts: tuple[StartEnd, ...] = ()
     stop_reason: str = ""
     seed_scatter: float | None = None

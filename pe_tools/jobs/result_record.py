@@ -105,6 +105,8 @@ class ResultRecord:
     ap_model: str
     returns: str
     flatness: OpenTable | None
+    rounding: OpenTable | None
+    consensus: OpenTable | None
     starts: tuple[OpenTable, ...]
     stop_reason: str | None
     seed_scatter: float | None

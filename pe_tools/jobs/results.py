@@ -70,6 +70,8 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
     robustness = outcome.robustness
     conditions = outcome.conditions
     flatness = outcome.flatness
+    rounding = outcome.rounding
+    agreed = outcome.consensus
     figure = outcome.figure
     made = ResultRecord(
         schema=SCHEMA,
@@ -97,6 +99,8 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
         ap_model=study.model.model,
         returns=study.returns,
         flatness=None if flatness is None else flatness.to_dict(),
+        rounding=None if rounding is None else rounding.to_dict(),
+        consensus=None if agreed is None else agreed.to_dict(),
         starts=tuple(
             {"name": e.name, **_value(figure, e.value), "evaluations": e.evaluations}
             for e in outcome.starts

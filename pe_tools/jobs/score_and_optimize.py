@@ -5,7 +5,8 @@ from collections.abc import Callable, Generator, Iterator
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import cached_property
-from statistics import fmean
+from math import sqrt
+from statistics import fmean, pstdev
 from typing import NamedTuple
 
 from pe_core.base.values import rounded
@@ -14,11 +15,13 @@ from pe_core.scoring import RigEvaluator
 from pe_core.scoring.sampling import CENTERED, HELD_OUT, MIN_SAMPLES
 from pe_core.scoring.score import ObjectScore, Score
 from pe_core.search import (
+    GridWalk,
     Journal,
     Objective,
     Robustness,
     Step,
     Value,
+    evaluate_all,
     feasible_start,
     optimize,
     robustness,
@@ -28,9 +31,28 @@ from pe_core.study.requirement_search import constraints_of
 from pe_core.study.study import DEFAULT_SEARCH_SAMPLES, Study
 from pe_core.study.suggestion import suggestions
 
-from ..advice import Advice, condition_warnings, flatness_of, fragile, not_kept, unmet
+from ..advice import (
+    Advice,
+    Rounding,
+    condition_warnings,
+    consensus_of,
+    flatness_of,
+    fragile,
+    not_kept,
+    unmet,
+)
 from .candidate_workers import ExecutorSource, candidate_workers
-from .job import HistoryRow, Job, Outcome, Progress, ProgressSteps, StartEnd, begun, best_so_far
+from .job import (
+    HistoryRow,
+    Job,
+    Outcome,
+    Progress,
+    ProgressSteps,
+    StartEnd,
+    Watch,
+    begun,
+    best_so_far,
+)
 from .own_objective import OwnValues, own_figure, own_objective
 from .searched_figure import IN_AP, level_sizes, searched_figure, searched_on, searched_samples
 from .stopping import TARGET, StopWatch, seed_scatter
@@ -145,6 +167,7 @@ class OptimizeJob(Job):
         self.evaluations = 0
         self.ends: list[StartEnd] = []
         self._ended: list[HistoryRow] = []
+        self._settled: Rig | None = None
         self.stop_reason = ""
         self.descents: tuple[Value, ...] = ()
         self._helpers: ExecutorSource = _nothing
@@ -154,6 +177,8 @@ class OptimizeJob(Job):
     @property
     def best(self) -> Study:
         """The study with the best placement so far."""
+        if self._settled is not None:
+            return self.study.with_rig(self._settled)
         rows = self._ended or self.history
         return self.study.with_rig(rows[-1].rig) if rows else self.study
 
@@ -231,6 +256,7 @@ class OptimizeJob(Job):
         yield from self._search()
         if not self.stopped and self.study.search.goals.stop.seconds is None:
             self.journal.require_used()
+        rounding = yield from self._to_grid()
         yield self._progress  # a driver keeps the best so far before it is scored
         stopped = self.stopped
         self.parts_left = min(self.parts_left, 1)
@@ -288,6 +314,8 @@ class OptimizeJob(Job):
             verdicts=verdicts,
             conditions=table,
             flatness=flat,
+            rounding=rounding,
+            consensus=consensus_of(self.journal.known, self._moving, self.study.search.mounting),
             starts=tuple(self.ends),
             stop_reason=self.stop_reason,
             seed_scatter=seed_scatter(self.descents) if self._own is None else None,
@@ -340,6 +368,37 @@ class OptimizeJob(Job):
             return found, self.best
         return before, self.study  # the search's sample overrated the placement
 
+    @property
+    def _moving(self) -> list[str]:
+        """Names of the sensors that the search moves by themselves."""
+        return list(dict.fromkeys(name for name, _ in self.study.coding().positions))
+
+    def _to_grid(self) -> ProgressSteps[Rounding]:
+        """Bring the best placement onto the study's grid, and look at its neighbours there. Return
+        what that costs; None without a grid, or where the job is dropped."""
+        grid = self.study.search.grid
+        if not grid.is_on or self.dropped:
+            return None
+        free = self.best.rig
+
+        def work(_: Watch) -> Rounding:
+            walk = GridWalk(self.study.with_rig(free).coding(), grid)
+            found = walk.best(
+                lambda rigs: evaluate_all(self._objectives[-1], rigs, executor=self._helpers())
+            )
+            if found.rig is None:
+                return Rounding(None, 0.0, found.evaluations, found.off)
+            rises = [each.figure(found.rig) - each.figure(free) for each in self._held_out]
+            error = pstdev(rises) / sqrt(max(len(rises) - 1, 1))
+            return Rounding(
+                rounded(fmean(rises)), rounded(error), found.evaluations, found.off, rig=found.rig
+            )
+
+        found = yield from self._beside(work, self._progress, to_the_end=True)
+        if found is not None and found.rig is not None:
+            self._settled = found.rig
+        return found
+
     def _about(self, stage: str, value: Value) -> Progress:
         return Progress(
             stage, fraction=1.0, value=value, evaluations=self.evaluations, figure=self.figure
@@ -361,6 +420,8 @@ class OptimizeJob(Job):
         start = self._first or self.history[0]
         kept = start.rig is self.study.rig and start.value.is_feasible
         search = self.study.search
+        if search.grid.is_on:
+            kept = kept and GridWalk(self.study.coding(), search.grid).holds(self.study.rig)
         return kept and not (search.tolerance.is_on or search.conditions)
 
     def _search(self) -> Iterator[Progress]:

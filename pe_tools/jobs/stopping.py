@@ -103,6 +103,9 @@ def sureness_lines(outcome: Outcome) -> list[str]:
     figure = outcome.figure
     sample = "" if outcome.own is not None else ", on the sample of the search"
     lines = [] if outcome.flatness is None else list(flatness_lines(outcome.flatness))
+    unit = "of expected AP" if figure.higher_is_better else "nats"
+    lines += [] if outcome.rounding is None else outcome.rounding.lines(unit)
+    lines += [] if outcome.consensus is None else outcome.consensus.lines(unit)
     for end in outcome.starts:
         name = f"the start {end.name}" if end.name else "the given start"
         lines.append(f"{name} ended {figure.ended(end.value)}{sample}")

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import islice
-from math import dist, sqrt
+from math import dist, inf, sqrt
 from typing import Any
 
 import numpy as np
@@ -19,9 +19,11 @@ from pe_core.scoring.score import standard_error
 from pe_core.scoring.sight import Sight
 from pe_core.search import (
     FIGURES,
+    KEPT,
     Figure,
     MountingPlaces,
     Objective,
+    RigView,
     SurfaceMount,
     SurfacePlace,
     as_objective,
@@ -46,19 +48,32 @@ APART_M = 0.5
 """How many places are named as the best, and how far apart they are at least. They fit the sample
 that they were chosen on: their changes are reported on the larger one."""
 PlaceMeasure = RigEvaluator | Callable[[Rig], float]
+SEEN_PLACES = 200  # As many as other figures of what a rig sees score in about 20 s
 CONFIRMED = 40  # Places that are scored on the larger sample at most, until the best ones are
 
 
 @dataclass(frozen=True, slots=True)
-class _RigValue:
-    """Minimises the widest blind sector [deg], or minus the number of requirements met."""
+class _SeenFigure:
+    """Minimises a figure that a rig's sight tells: it, or minus it where higher is better."""
 
-    of: Sight | RequirementConstraint
+    sight: Sight
+    key: str
+
+    def __call__(self, rig: Rig) -> float:
+        """Return the value of a rig; inf where it is not known."""
+        row = FIGURES[self.key]
+        value = row.worst(row.values(RigView(self.sight, rig)))
+        return inf if value is None else row.signed(value)
+
+
+@dataclass(frozen=True, slots=True)
+class _NotMet:
+    """Minimises minus the number of requirements met."""
+
+    of: RequirementConstraint
 
     def __call__(self, rig: Rig) -> float:
         """Return the value of a rig."""
-        if isinstance(self.of, Sight):
-            return max(sector.width for sector in self.of.blind_sectors(rig))
         return -float(sum(not off for off in self.of.shortfalls(rig)))
 
 
@@ -71,13 +86,16 @@ def _by_ap(study: Study, samples: int, shift: Shift) -> PlaceMeasure:
     return search_evaluator(by_ap, samples, shift=shift)
 
 
-def _by_sector(study: Study, _samples: int, _shift: Shift) -> PlaceMeasure:
-    return _RigValue(study.sight())
+def _seen(key: str) -> Callable[[Study, int, Shift], PlaceMeasure]:
+    def measured(study: Study, _samples: int, _shift: Shift) -> PlaceMeasure:
+        return _SeenFigure(study.sight(), key)
+
+    return measured
 
 
 def _met(study: Study, _samples: int, _shift: Shift) -> PlaceMeasure:
     if study.requirements:
-        return _RigValue(RequirementConstraint(study))
+        return _NotMet(RequirementConstraint(study))
     raise InputError("where", "requirements", "at least one, to count verdicts", "none")
 
 
@@ -109,8 +127,13 @@ PLACE_FIGURES = {
     for row in (
         PlaceFigure(FIGURES[ENTROPY], _by_entropy, places=2000, of_voxels=True),
         PlaceFigure(FIGURES[TRAFFIC_AP], _by_ap, places=600),
-        PlaceFigure(FIGURES[BLIND_SECTOR], _by_sector, places=350, exact=True),
+        PlaceFigure(FIGURES[BLIND_SECTOR], _seen(BLIND_SECTOR), places=350, exact=True),
         PlaceFigure(FIGURES[REQUIREMENTS], _met, places=700, exact=True),
+        *(
+            PlaceFigure(FIGURES[key], _seen(key), places=SEEN_PLACES, exact=True)
+            for key in KEPT
+            if key not in (BLIND_SECTOR, TRAFFIC_AP)
+        ),
     )
 }  # Figures of places, by name
 

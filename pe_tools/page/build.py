@@ -39,11 +39,21 @@ def review_studies(
     folder = jobs.prepare_folder(args.output, () if args.replace else (PAGE,))
     facts: dict[str, Any] = {"command": args.command_line, "versions": versions or {}}
     contexts = [
-        ReportContext(name, app.scored(study, args.workers), folder=folder, **facts)
+        ReportContext(
+            name, app.scored(study, args.workers), folder=folder, **_asked(study, args), **facts
+        )
         for name, study in by_name.items()
     ]
     path = write_page(contexts, args.output, replace=args.replace, about=about)
     return app.answered(args, app.FilesAnswer(written=(str(path),)), [str(path)]), app.DONE
+
+
+def _asked(study: pe.Study, args: argparse.Namespace) -> dict[str, Any]:
+    """Return what else is asked for: free regions of sensors, and a built rig."""
+    own = [name for name in args.region if name in [sensor.name for sensor in study.rig]]
+    regions = tuple(app.found_region(study, name, args.workers) for name in own)
+    built = None if args.built is None else app.found_built(study, args, args.built)
+    return {"regions": regions, "built": built}
 
 
 def write_search_page(outcome: jobs.Outcome, data: dict[str, Any], folder: Path) -> None:

@@ -29,7 +29,8 @@ class ReportContext:
     `command`: command line that reproduces the results; empty if unknown. `versions`: versions of
     programs besides the engine's, by name. `cache`: derived values by name, filled by `cached`;
     pages that show the same study share it. `folder`: folder of the page, where films of its
-    stories may be. `study_count`: number of studies on the page."""
+    stories may be. `study_count`: number of studies on the page. `regions`: free regions of sensors
+    of `study`. `built`: the comparison with a built rig."""
 
     name: str
     outcome: jobs.Outcome
@@ -39,6 +40,8 @@ class ReportContext:
     cache: dict[str, Any] = field(default_factory=dict, repr=False)
     folder: Path | None = None
     study_count: int = 1
+    regions: tuple[advice.FreeRegion, ...] = ()
+    built: advice.AsBuilt | None = None
 
     @property
     def was_searched(self) -> bool:

@@ -53,7 +53,7 @@ BOXES = {
     "glb, no indices": ("x.glb", glb_file(*gltf(points=BOX, indices=None))),
 }
 UNWRITABLE = {
-    "suffix": ("box.stl", Mesh(BOX, ZEROS, ("box",)), "suffix"),
+    "suffix": ("box.ply", Mesh(BOX, ZEROS, ("box",)), "suffix"),
     "folder": ("none/box.npz", Mesh(BOX, ZEROS, ("box",)), "file"),
     "nan": ("box.obj", Mesh(BOX * np.nan, ZEROS, ("box",)), "triangles[0]"),
     "empty": ("box.obj", Mesh(BOX[:0], ZEROS[:0], ("box",)), "triangles"),

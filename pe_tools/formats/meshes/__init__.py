@@ -19,7 +19,7 @@ from .mesh import FoundMesh as FoundMesh
 from .npz import dump_npz, read_npz
 from .obj import read_obj
 from .ply import read_ply
-from .with_trimesh import dump_obj, read_scene
+from .with_trimesh import dump_glb, dump_obj, dump_stl, read_scene
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,8 +37,8 @@ MESH_FORMATS = {
     ".npz": MeshFormat(read_npz, lambda _: OURS, dump_npz),
     ".obj": MeshFormat(read_obj, said_in_comments, dump_obj),
     ".ply": MeshFormat(read_ply),
-    ".stl": MeshFormat(read_scene),
-    ".glb": MeshFormat(read_scene, lambda _: GLTF),
+    ".stl": MeshFormat(read_scene, write=dump_stl),
+    ".glb": MeshFormat(read_scene, lambda _: GLTF, dump_glb),
 }  # Formats by suffix; plugins add others
 
 
@@ -86,7 +86,7 @@ def read_mesh(path: str | Path, axes: MeshAxes | None = None) -> Mesh:
 
 
 def write_mesh(path: str | Path, mesh: Mesh) -> None:
-    """Write a mesh to a .npz file, exactly, or to an .obj file, to 1e-12 m.
+    """Write a mesh to a .npz file, exactly, to an .obj file, to 1e-12 m, or to .stl or .glb.
 
     The suffix decides the format. The file is written atomically; parts without triangles are not,
     and parts with the same name are merged. Another suffix, a mesh that could not be read again, or

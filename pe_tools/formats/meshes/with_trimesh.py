@@ -179,17 +179,34 @@ _PREPARED: dict[str, Callable[[str, bytes], tuple[bytes, dict[str, Any]]]] = {
 
 def dump_obj(path: Path, mesh: Mesh) -> bytes:
     """Return OBJ text of a mesh: an object a part, coordinates to 1e-12 m."""
-    import trimesh
-
     if fit_names(mesh.part_names) != mesh.part_names:
         raise InputError(str(path), "part_names", "names that fit on one line", mesh.part_names)
-    scene = trimesh.Scene()
-    for part, name in enumerate(mesh.part_names):
-        corners = mesh.triangles[mesh.parts == part].reshape(-1, 3)
-        faces = np.arange(len(corners)).reshape(-1, 3)
-        each = trimesh.Trimesh(corners, faces, process=False)
-        scene.add_geometry(each, node_name=name, geom_name=name)
-    text: Any = scene.export(  # type: ignore[no-untyped-call]
+    text: Any = _scene_of(mesh, mesh.triangles).export(
         file_type="obj", digits=12, header="metres, x forward, y left, z up"
     )
     return str(text).encode()
+
+
+def dump_stl(_path: Path, mesh: Mesh) -> bytes:
+    """Return a binary STL of a mesh: one solid, coordinates in single precision."""
+    data: bytes = _scene_of(mesh, mesh.triangles).export(file_type="stl")
+    return data
+
+
+def dump_glb(_path: Path, mesh: Mesh) -> bytes:
+    """Return a GLB of a mesh, which has +Y up and +Z forward: a node a part, single precision."""
+    data: bytes = _scene_of(mesh, mesh.triangles[..., [1, 2, 0]]).export(file_type="glb")
+    return data
+
+
+def _scene_of(mesh: Mesh, triangles: Floats) -> Any:
+    """Return a scene of trimesh with an object for each part of a mesh, at these corners."""
+    import trimesh
+
+    scene = trimesh.Scene()
+    for part, name in enumerate(mesh.part_names):
+        corners = triangles[mesh.parts == part].reshape(-1, 3)
+        faces = np.arange(len(corners)).reshape(-1, 3)
+        each = trimesh.Trimesh(corners, faces, process=False)
+        scene.add_geometry(each, node_name=name, geom_name=name)
+    return scene

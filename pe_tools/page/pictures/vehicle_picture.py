@@ -10,7 +10,7 @@ import pe_core as pe
 from pe_core import catalog, scene
 from pe_core.base.arrays import Floats
 
-from ... import graphics, jobs
+from ... import advice, graphics, jobs
 from ...templating import Markup
 from ..report_context import MAX_TRIANGLES, ReportContext
 from .painted_mesh import PaintedMesh, lathe, painted_vehicle, rounded_box
@@ -45,6 +45,7 @@ BEHIND_M = 0.12  # A sensor farther than this behind the visible surface counts 
 PROUD_M = 0.0005  # Height of a window above the housing's surface
 MARK_PX = 7.0
 EDGE_COLOR = (0.1, 0.12, 0.14)
+REGION_COLOR = "#1aa088"  # As the 3D view tints a free region
 WINDOW = (0.02, 0.022, 0.025)
 
 
@@ -144,6 +145,26 @@ def labelled_picture(context: ReportContext, alt: str) -> LabelledVehicle:
     canvas = Canvas(width, height, alt)
     _draw(canvas, png, vehicle, rig)
     return LabelledVehicle(canvas.svg(), sensor_key(rig))
+
+
+def region_picture(context: ReportContext, found: advice.FreeRegion, alt: str) -> Markup:
+    """Return the picture of a study with a free region over it, as far as that faces the viewer."""
+    vehicle = context.display_vehicle[0]
+    png = context.cached("still", lambda: vehicle_picture(vehicle, context.rig, SIZE))
+    width, height = map(float, SIZE)
+    canvas = Canvas(width, height, alt)
+    canvas.picture(png, (0.0, 0.0, width, height))
+    view = default_view(vehicle, context.rig)
+    patch = found.patch
+    along = patch[:, 1:] - patch[:, :1]
+    across = np.cross(along[:, 0], along[:, 1])
+    outward = np.sign((across * found.outward(patch)).sum(axis=1))[:, None] * across
+    facing = ((np.array(view.eye) - patch[:, 0]) * outward).sum(axis=1) > 0.0
+    right, down = view.project(patch[facing].reshape(-1, 3), *SIZE)
+    corners = np.round(np.stack([right, down], axis=1), 1).reshape(-1, 6).tolist()
+    parts = ("M{:g} {:g}L{:g} {:g}L{:g} {:g}Z".format(*each) for each in corners)
+    canvas.add("path", d="".join(parts), fill=REGION_COLOR, fill_opacity=0.6)
+    return canvas.svg()
 
 
 def _draw(canvas: Canvas, png: bytes, vehicle: pe.Vehicle | None, rig: pe.Rig) -> None:

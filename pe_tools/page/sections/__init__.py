@@ -12,6 +12,7 @@ from .. import scene3d
 from ..markup import render
 from ..report_context import ReportContext
 from .comparison import comparison
+from .mounting import as_built, free_regions
 from .score import (
     by_class_and_zone,
     conditions,
@@ -59,6 +60,8 @@ SECTIONS = (
     Section("drive-by", "Seen in time", drive_by, scripts=strip_script),
     Section("conditions", "Conditions", conditions, folded=True),
     Section("maps", "Visibility", visibility),
+    Section("region", "Where sensors may go", free_regions),
+    Section("built", "As built", as_built),
     Section("parts", "By class and zone", by_class_and_zone, folded=True),
     Section("objects", "Objects", objects, folded=True),
     Section("sensors", "Sensors", sensor_details),

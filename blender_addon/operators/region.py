@@ -1,0 +1,71 @@
+"""*Free Region*: where on its mount a sensor may go."""
+
+from typing import Any
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, IntProperty
+
+from .. import bridge, where_map
+from ..engine import advice, jobs, pe
+from .declared import OperatorResult, chosen_sensor, operator
+from .edit_sensors import NAME
+from .jobs import JobRow, Task, begin, of_study
+
+
+def _lacks(context: bpy.types.Context) -> str | None:
+    settings = context.scene.perception_entropy
+    return "There is no vehicle yet" if settings.vehicle is None else None
+
+
+@operator(
+    "Free Region",
+    mode="Sensors are placed in Object Mode",
+    unless=_lacks,
+    options=frozenset(),
+    name=NAME,
+    figure=EnumProperty(
+        name="By",
+        description="Figure of the rig that may lose a little",
+        items=[
+            (key, row.figure.label, row.figure.about) for key, row in jobs.PLACE_FIGURES.items()
+        ],
+    ),
+    others=BoolProperty(
+        name="Search Others",
+        description="Search the other sensors again at places outside, which takes minutes",
+    ),
+    places=IntProperty(
+        name="Places",
+        description="How many places are evaluated; 0: as many as take about 20 s",
+        default=0,
+        min=0,
+        max=20_000,
+    ),
+)
+def free_region(context: bpy.types.Context, operator: Any) -> OperatorResult:
+    """Find where on its mount this sensor may go while the score loses little and all limits
+    hold"""
+    name = chosen_sensor(context, operator.name).name
+    asked = {key: getattr(operator, key) for key in ("figure", "others", "places")}
+    return begin(REGION, sensor=name, **asked)
+
+
+def _task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> Task:
+    asked = REGION.asked
+    loss = scene.perception_entropy.view.region_loss
+    options: dict[str, Any] = {"allowed": loss or None, "count": asked["places"] or None}
+    options["search_others"] = asked["others"]
+    job = jobs.RegionJob(study, asked["sensor"], asked["figure"], **options)
+
+    def progressed(scene: bpy.types.Scene, job: jobs.RegionJob) -> None:
+        if job.found is not None and job.found is not where_map.regions.get(scene.name):
+            where_map.store_region(scene.name, job.found)
+
+    def finish(scene: bpy.types.Scene, found: advice.FreeRegion) -> str:
+        where_map.store_region(scene.name, found)
+        return f"{found.sensor}: {found.extent or advice.region_lines(found)[0]}"
+
+    return Task(job, finish, "result", progressed)
+
+
+REGION = JobRow(read=of_study(_task), unfinished="Stopped before a place was scored")

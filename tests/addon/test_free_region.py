@@ -1,0 +1,70 @@
+"""*Free Region* and *Compare Built Rig* in Blender: the same as on the command line, drawn."""
+
+import bpy
+import numpy as np
+import pytest
+
+import pe_tools as pt
+from blender_addon import panels, where_map
+from blender_addon.engine import jobs, pe
+from tests.addon import scenes
+from tests.addon.layouts import Window, drawn
+
+
+@pytest.fixture(autouse=True)
+def _one_process(monkeypatch):
+    """No worker processes: they do not look at the few heights that this one looks at."""
+    monkeypatch.setattr("os.cpu_count", lambda: 1)
+
+
+@pytest.fixture
+def asked(car):
+    """The car's scene, its first sensor, and that sensor's region by a figure without a sample."""
+    name = next(iter(scenes.study().rig)).name
+    view = car.perception_entropy.view
+    view.region_loss = 400.0  # nothing is lost but what rules forbid
+    done = bpy.ops.pe.free_region(name=name, figure="blind_sector", places=12)
+    assert done == {"FINISHED"}
+    return car, name, where_map.regions[car.name]
+
+
+def test_the_operator_finds_what_the_engine_finds(asked):
+    _, name, found = asked
+    job = jobs.RegionJob(scenes.study(), name, "blind_sector", allowed=400.0, count=12)
+    for _ in job:
+        pass
+    assert np.array_equal(found.patch, job.found.patch) and len(found.patch)
+    assert found.places == job.found.places
+
+
+def test_the_layer_follows_the_loss_at_once_and_the_panel_tells_it(asked):
+    car, name, found = asked
+    shape = scenes.drawn(car)["region"][""]
+    assert len(shape.faces.points) == 3 * len(found.patch)
+    car.perception_entropy.view.region_loss = 1e-6
+    fewer = scenes.drawn(car)["region"][""]
+    assert len(fewer.faces.points) == 3 * len(found.allowing(1e-6).patch)
+    assert len(fewer.faces.points) < len(shape.faces.points)
+    window = Window(car, car.objects[name])
+    texts = drawn(panels.selected_object.sensor, **vars(window)).texts("operator")
+    assert "pe.free_region" in texts
+    bpy.ops.pe.dismiss(answer="REGION")
+    assert "region" not in scenes.drawn(car)
+
+
+def test_a_built_rig_is_drawn_with_lines_to_the_designed_one(car, tmp_path):
+    study = scenes.study()
+    first, *others = study.rig
+    x, y, z = first.pose.position
+    off = first.moved(pe.Pose((x + 0.02, y, z), first.pose.rpy))
+    pt.export_rig(pe.Rig([off, *others]), "urdf", tmp_path / "built.urdf")
+    done = bpy.ops.pe.compare_built(filepath=str(tmp_path / "built.urdf"))
+    assert done == {"FINISHED"}
+    found = where_map.built[car.name]
+    assert [pair.name for pair in found.worst_first] == [first.name]
+    assert found.worst_first[0].offset[0] == pytest.approx(0.02, abs=1e-5)
+    shape = scenes.drawn(car)["ghosts"][""]
+    assert len(shape.through.points)
+    assert [tag.text for tag in shape.labels] == [first.name]
+    bpy.ops.pe.dismiss(answer="BUILT")
+    assert "ghosts" not in scenes.drawn(car)

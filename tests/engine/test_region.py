@@ -1,0 +1,167 @@
+"""The free region of a sensor: its patch, held to scores at points inside and outside of it."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import pe_core as pe
+import pe_tools as pt
+from pe_core import search
+from pe_core.geometry.surfaces import area_of, cut_below, divided
+from pe_core.study import load_study
+from pe_tools import advice
+from pe_tools.cli.verbs import main
+from pe_tools.jobs import RegionJob, study_on_region
+from tests.engine import shapes
+
+ROOF = "roof"
+OTHER_SHIFT = (0.21, 0.83, 0.47)
+
+
+@pytest.fixture(scope="module")
+def study():
+    """A LiDAR on the roof of a box and a camera at its front."""
+    car = shapes.box_car()
+    lidar = pe.Sensor("roof", shapes.small_lidar(8, 90), pe.Pose((0.4, 0.0, 1.6), (0, 0, 0)))
+    rig = pe.Rig([lidar, shapes.camera(position=(2.2, 0.0, 1.2), name="front")])
+    mount = search.SurfaceMount(car.part_names, standoff=0.1)
+    mounting = search.Mounting({"top": mount}, {"roof": "top"})
+    base = pe.Study(rig, car, shapes.small_space(), samples=65_536)
+    return replace(base, search=replace(base.search, mounting=mounting)).on_mounts()
+
+
+@pytest.fixture(scope="module")
+def found(study):
+    job = RegionJob(study, ROOF, allowed=0.1, count=60, workers=1)
+    for _ in job:
+        pass
+    return job.result
+
+
+def points_in(triangles, count, seed=0):
+    """Random points (count, 3) of triangles, by area."""
+    rng = np.random.default_rng(seed)
+    sides = np.linalg.norm(
+        np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1
+    )
+    chosen = triangles[rng.choice(len(triangles), count, p=sides / sides.sum())]
+    a, b = np.sort(rng.random((2, count)), axis=0)
+    shares = np.stack([a, b - a, 1.0 - b], axis=1)
+    return (shares[:, :, None] * chosen).sum(axis=1)
+
+
+def losses_at(study, name, points, samples=131_072):
+    """What the rig loses at points of the sensor's mount, on voxels that no region was made of."""
+    places = search.OwnPlaces(
+        study.rig, name, study.vehicle, study.search.mounting, limits=study.limits
+    )
+    evaluator = study.evaluator(samples, shift=OTHER_SHIFT)
+    base, *values = evaluator.entropies([study.rig, *(places.at(point) for point in points)])
+    return np.array(values) - base
+
+
+def test_a_cut_triangle_keeps_what_is_below_the_level():
+    triangle = np.array([[[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]])
+    for values, share in (((0, 1, 1), 0.25), ((0, 0, 1), 0.75), ((0, 0, 0), 1.0), ((1, 1, 1), 0)):
+        cut = cut_below(triangle, np.array([values], float), 0.5)
+        assert area_of(cut) == pytest.approx(0.5 * share)
+    barred = cut_below(triangle, np.array([[0.0, np.inf, np.inf]]), 0.5)
+    assert area_of(barred) == pytest.approx(0.125)
+
+
+def test_a_divided_surface_has_its_area_and_short_edges():
+    triangles = shapes.box_car().triangles
+    fine = divided(triangles, 0.3)
+    assert area_of(fine) == pytest.approx(area_of(triangles))
+    assert np.linalg.norm(np.roll(fine, 1, axis=1) - fine, axis=2).max() <= 0.3
+
+
+def test_kriging_follows_values_and_knows_where_it_knows_nothing():
+    at = np.linspace(0.0, 1.0, 15)[:, None]
+    rng = np.random.default_rng(1)
+    noisy = np.sin(4.0 * at[:, 0]) + rng.normal(0.0, 0.05, 15)
+    model = advice.Kriging.fit(at, noisy, np.full(15, 0.05**2), (0.1, 0.3, 1.0))
+    points = np.linspace(0.0, 1.0, 60)[:, None]
+    values, errors = model.at(points)
+    off = np.abs(values - np.sin(4.0 * points[:, 0]))
+    assert np.sqrt(np.mean(off**2)) < 0.05  # better than a single value
+    assert np.mean(off <= 2.0 * errors) >= 0.9
+    _, far = model.at(np.array([[4.0]]))
+    assert far[0] > 3.0 * errors.max()
+
+
+def test_points_of_the_region_lose_at_most_what_is_allowed(study, found):
+    assert 0.0 < found.area < found.mount_area
+    inside = losses_at(study, ROOF, points_in(found.patch, 60))
+    assert np.mean(inside <= found.allowed) >= 0.95
+
+
+def test_points_far_outside_lose_more(study, found):
+    whole = found.corners[found.faces]
+    beyond = found.loss[found.faces].min(axis=1) > 2.0 * found.allowed
+    outside = losses_at(study, ROOF, points_in(whole[beyond], 30))
+    assert np.mean(outside > found.allowed) >= 0.95
+
+
+def test_the_sensor_is_in_its_own_region(study, found):
+    place = search.OwnPlaces(
+        study.rig, ROOF, study.vehicle, study.search.mounting, limits=study.limits
+    ).foot
+    middles = found.patch.mean(axis=1)
+    assert np.linalg.norm(middles - place.point, axis=1).min() < 0.1
+
+
+def test_another_allowed_loss_cuts_the_same_losses(found):
+    areas = [found.allowing(loss).area for loss in (0.03, 0.1, 0.3, 99.0)]
+    assert areas == sorted(areas) and areas[0] < areas[-1]
+    assert areas[-1] <= found.mount_area  # the cabin stands on a part of it
+    wider = found.allowing(0.3)
+    for one, other in zip(found.limitations, wider.limitations, strict=True):
+        assert other.distance >= one.distance
+    assert found.tightest.distance == min(
+        each.distance for each in found.limitations if each.way.unit == "m"
+    )
+
+
+def test_what_a_rule_forbids_is_not_in_the_region(study):
+    box = search.NoGo("hatch", x=(0.6, 3.0))
+    mounting = replace(study.search.mounting, constraints=search.Constraints(no_go=(box,)))
+    held = replace(study, search=replace(study.search, mounting=mounting))
+    job = RegionJob(held, ROOF, allowed=99.0, count=60, workers=1)
+    for _ in job:
+        pass
+    assert len(job.found.patch)
+    forbidden = [each for each in job.found.places if each.reason]
+    assert any("hatch" in each.reason for each in forbidden)
+    assert job.found.patch[:, :, 0].max() < 0.9
+    forward = next(each for each in job.found.limitations if each.way.name == "forward")
+    assert "hatch" in forward.why and forward.distance < 0.3
+
+
+def test_the_patch_is_a_mount_of_the_next_study(study, found, tmp_path):
+    path = tmp_path / "next.toml"
+    pt.export_study(study_on_region(study, found), path)
+    after = load_study(path)
+    mount = after.search.mounting.mount_of(ROOF)
+    assert mount.standoff == 0.1 and mount.orientation == "upright"
+    assert area_of(mount.area.triangles) == pytest.approx(found.area, rel=1e-6)
+    step = search.Parametrization(after.rig, after.search_space())
+    assert step.allowed(after.rig)
+
+
+def test_the_verb_writes_patch_and_data(study, tmp_path, capsys):
+    file = tmp_path / "study.toml"
+    pt.export_study(study, file)
+    given = ["region", str(file), ROOF, "--loss", "400", "--figure", "blind_sector"]
+    for name in ("patch.stl", "data.json"):
+        options = ["--places", "8", "--workers", "1", "-o", str(tmp_path / name)]
+        assert main([*given, *options]) == 0
+    assert "m2" in capsys.readouterr().out
+    data = json.loads((tmp_path / "data.json").read_text())
+    assert data["sensor"] == ROOF and data["allowed_loss"] == 400.0
+    patch = pt.read_mesh(tmp_path / "patch.stl", pe.MeshAxes(up="+z", forward="+x"))
+    assert area_of(patch.triangles) == pytest.approx(data["area_m2"], rel=1e-4)
+    assert main(["region", str(file), "nobody"]) == 1
+    assert "'nobody'" in capsys.readouterr().err

@@ -315,7 +315,7 @@ def both(scene):
     assert now in labels and text.headline.startswith(now)
     assert HEADS[shown.phase][0] in " ".join(labels)
     assert shown.phase in readout_text.state_of(shown)
-    assert f"({before:.3f})" in labels if text.sense else text.change in ("", "no change")
+    assert (before is not None and f"({before:.3f})" in labels) == bool(text.sense)
     if shown.label:
         scene.perception_entropy.view.ground_difference = True
         depsgraph = bpy.context.evaluated_depsgraph_get()

@@ -39,6 +39,30 @@ from {NAME}.overlay import draw_handler
 draw_handler._handlers.hide()
 draw_handler.register()
 """
+FILM = f"""
+from pathlib import Path
+from {NAME} import bridge, film
+window.scene.render.fps = 4
+with bpy.context.temp_override(window=window, area=area, region=region):
+    study = bridge.study_as_drawn(window.scene)
+    story = bridge.story_of(window.scene.perception_entropy.stories[0])
+    film.FilmRender(window.scene, study, story, Path({{path!r}}))
+kept["shown"] = window.screen.areas[0].type
+"""
+RENDERING = "bpy.app.is_job_running('RENDER')"
+
+
+def test_a_film_is_rendered_beside_the_window_and_esc_keeps_what_is_done(stage, tmp_path):
+    stage.do(SHOW)
+    path = tmp_path / "film.webm"
+    assert stage.do(FILM.format(path=str(path)))["shown"] == "VIEW_3D"
+    stage.wait_until("'Append frame 1' in open(" + repr(str(stage.log)) + ").read()")
+    assert stage.do(f"kept['on'] = {RENDERING}")["on"], "the window answers while it renders"
+    stage.point_at_view()
+    stage.key("Escape")
+    stage.wait_until(f"not {RENDERING}")
+    stage.wait_for(path.exists, EFFECT_TIMEOUT_S, "the film")
+    assert path.stat().st_size > 1000 and "Traceback" not in stage.log.read_text()
 
 
 def test_a_story_is_played_from_its_cache(stage, screenshots):

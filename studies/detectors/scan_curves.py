@@ -105,8 +105,9 @@ def fitted_curve(beams: BeamCounts, ap: Floats, start: pe.ApCurve | None = None)
     """Return the curve whose expected AP is nearest to the AP found: least squares.
 
     A coarse grid gives the start; damped Gauss-Newton steps descend from there within `A_BOUNDS`
-    and `B_BOUNDS` (Levenberg and Marquardt), until a step is below `SMALLEST`. `ap` is the AP found
-    at each placement (P,); `start` takes the place of the grid.
+    and `B_BOUNDS` (Levenberg and Marquardt), until a step is below `SMALLEST`, or until the AP of
+    every object is at its own bound, where no step changes anything. `ap` is the AP found at each
+    placement (P,); `start` takes the place of the grid.
     """
     grid = itertools.product(np.geomspace(0.005, 0.4, STARTS), np.linspace(-1.5, 1.0, STARTS))
     start = start or min(
@@ -121,6 +122,8 @@ def fitted_curve(beams: BeamCounts, ap: Floats, start: pe.ApCurve | None = None)
         of_m = average_precision(beams.m, curve)
         free = ((of_m > AP_MIN) & (of_m < AP_MAX)).astype(float)
         slopes = np.stack([beams.shares @ (free * logs), beams.shares @ free], axis=1)
+        if not slopes.any():
+            break
         square = slopes.T @ slopes
         damped = square + damping * (np.diag(np.diag(square)) + TINY * np.eye(2))
         step = np.linalg.solve(damped, slopes.T @ (ap - beams.shares @ of_m))

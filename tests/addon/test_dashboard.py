@@ -127,7 +127,9 @@ def test_figures_are_never_cut_names_give_way(car, width):
     shown_in.region.width = width
     row = search.dashboard(None, 3.25)[0]
     rows = [
-        dashboard.DrawnRow(row, name="Requirements", value="12.3 m2", before=before, sense=1)
+        dashboard.DrawnRow(
+            row, name="Requirements", value="12.3 m2", before=before, sense=1, is_noise=False
+        )
         for before in ("", "45.6")
     ]
     sides = dashboard.RowWidths.of(shown_in, rows)

@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 from mathutils import Vector
 
-from blender_addon import bridge
-from blender_addon.engine import outputs, pe
+from blender_addon.engine import outputs
 from tests.addon import scenes
 from tests.addon.command_line import run_here
 
@@ -15,7 +14,11 @@ from tests.addon.command_line import run_here
 def seen(car):
     place = {"location": (1.5, 0.1, 1.3), "rotation_euler": (0.1, 0.2, -2.0)}
     scenes.add_sensor("eye", "Autoware sample kit", **place)
-    bridge.write_reference(car.perception_entropy, pe.Reference(-1.31, 0.33, 2.8))
+    settings = car.perception_entropy
+    settings.axles_known = True
+    settings.rear_axle_x = -1.31
+    settings.rear_axle_z = 0.33
+    settings.wheelbase = 2.8
     return car
 
 

@@ -12,7 +12,7 @@ from blender_addon.overlay.layer_cache import shown, shown_of
 from tests.addon import scenes
 from tests.thorough import pairs
 
-ON_REQUEST = {"front", "ghosts", "place", "where"}
+ON_REQUEST = {"front", "ghosts", "place", "region", "where"}
 """Layers of what was asked for, another variant, a place (see test_annotations), and of a vehicle
 without sensors (see test_first_steps)."""
 ALL_LAYERS = {layer.name for layer in layers.LAYERS} - ON_REQUEST

@@ -47,7 +47,7 @@ def test_it_is_offered_beside_the_others(ring_kind):
     layout = Layout()
     settings = bpy.context.scene.perception_entropy
     settings.kind_to_add = "toyring"
-    panels.main.draw_add(layout, settings)
+    panels.main.draw_add(layout, settings, simple=False)
     assert layout.notes == [
         ("prop", "kind_to_add"),
         ("operator", "Add"),

@@ -10,6 +10,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
+from pe_core.base.codec import record
 from pe_core.base.errors import InputError
 from pe_core.study.requirement_file import presets
 from pe_tools.cli import run_job
@@ -174,7 +175,7 @@ def test_limits_with_a_number_are_checked_as_a_score_has_them(study, capsys):
     capsys.readouterr()
     assert main(["check", str(study), "--json"]) == NOT_MET
     rows = json.loads(capsys.readouterr().out)["limits"]
-    expected = [row.to_dict() for row in outcome.dashboard if row.wanted is not None]
+    expected = [record(each.row) for each in outcome.dashboard if each.wanted is not None]
     assert rows == expected and [row["met"] for row in rows] == [True, False, True]
     assert main(["check", str(study), "--set", "limits.entropy=90"]) == 0
     lines = capsys.readouterr().out.splitlines()

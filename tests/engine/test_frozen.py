@@ -18,6 +18,8 @@ from tests.engine import shapes
 BUILT_UP = {
     "pe_tools.formats.boxes.labels.Labels",
     "pe_tools.cli.interrupts.Received",
+    "pe_tools.exchange.usd_stage.UsdStage",
+    "pe_tools.exchange.usd_text.Prim",
     "pe_tools.page.pictures.svg.Canvas",
 }
 """Filled while a file is read, signals come or a picture is drawn; so are some that are private."""

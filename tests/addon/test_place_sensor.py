@@ -110,10 +110,7 @@ def test_a_sensor_is_placed_on_both_sides_and_dragged_along_the_surface(bare):
     assert other.location.y == pytest.approx(-first.location.y)
     near = spot_below(bare, 1.9, 0.04)
     stance = surface_pose.Stance(0.1, magnet=True)
-    for moved in (
-        None,
-        first,
-    ):  # the magnet pulls what is seen near the centre line: here is no view
+    for moved in (None, first):  # the magnet needs a view, which is not here
         held = placement.HeldSensor(bpy.context, pe.catalog.load("Pandar64"), stance, moved)
         held.put(near)
         assert held.matrix.translation.y == pytest.approx(near.point.y, abs=1e-6)

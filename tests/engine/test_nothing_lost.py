@@ -12,6 +12,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
+from pe_core.base.codec import record
 from pe_tools import jobs
 from tests.engine.processes import ROOT, Command
 from tests.limits import HANG_S
@@ -28,7 +29,7 @@ def result(folder):
     """Return result.json, after checking that the set is whole and of one run."""
     data = json.loads((folder / "result.json").read_text("utf-8"))
     best = pe.load_study(folder / "study.toml")
-    assert jobs.placements(best.rig) == data["placements"]["after"]
+    assert record(jobs.placements(best.rig)) == data["placements"]["after"]
     assert best.evaluator().score(best.rig).to_dict() == data["after"]
     assert (folder / "history.csv").read_text().count("\n") == len(data["history"]) + 1
     return data

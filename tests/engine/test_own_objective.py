@@ -76,7 +76,7 @@ def test_files_lines_and_page_call_it_by_its_name(tmp_path):
     lines = summary(job.outcome).splitlines()
     assert lines[0].startswith("cable cost  137000.000 -> ")
     page = page_bytes([ReportContext("own", job.outcome)]).decode()
-    assert "cable cost from 137" in page and "Best cable cost so far" in page
+    assert "Cable cost goes from 137" in page and "Best cable cost so far" in page
     assert "Best entropy" not in page
 
 

@@ -33,6 +33,9 @@ VERBS = {
     "export": ["car.toml", "-o", "car.urdf"],
     "import": ["rig.csv", "-o", "imported.toml"],
     "review": ["car.toml", *FEW, "-o", "page"],
+    "region": ["car.toml", "roof", "--places", "4", "--workers", "2", "--set", "samples=1024"],
+    "serve": [],
+    "verify": [],
 }
 """What each verb is given: for `optimize` and `sweep` two worker processes."""
 BEGINNINGS = {"pe": [PE], "-P": [sys.executable, "-P", "-m", "pe_tools"]}

@@ -299,9 +299,14 @@ def test_the_readme_says_in_few_words_what_to_go_by_and_what_a_number_means():
     of_the_study = [str(len(good["placements"])), *(f"{rho:.2f}" for rho in figures)]
     entropy = re.search(r"^entropy +([\d.]+) ", whole, re.MULTILINE)[1]
     of_a_number = [entropy, f"{float(ap_of_entropy(float(entropy))):.2f}", f"{H_BLIND:.2f}"]
-    expected = [*of_the_study, more[0].split()[0], *of_a_number]
+    cameras = json.loads((ROOT / "docs/validity/cameras/results.json").read_text("utf-8"))
+    of_cars = cameras["outcomes"]["car"]
+    seen = of_cars["scores"]["entropy of the seen"]["rho"]
+    rival = of_cars["rivals"]["pixels per degree"]["rho"]
+    of_cameras = [str(len(cameras["scores"])), f"{seen:.2f}", f"{rival:.2f}"]
+    expected = [*of_the_study, more[0].split()[0], *of_a_number, *of_cameras]
     assert re.findall(r"\d+(?:\.\d+)?", told) == expected
-    assert told.index("blind sector") < told.index("Not shown") < told.index("cameras")
+    assert told.index("blind sector") < told.index("Cameras") < told.index("Not shown")
 
 
 @pytest.mark.parametrize(

@@ -132,24 +132,22 @@ def _stored(scene: bpy.types.Scene, state: LiveState) -> ShownScore:
     """Return the stored result. A search is compared with its start, a score as the live score."""
     settings = scene.perception_entropy
     result = settings.result
-    before, now = _scores(result)
+    before, now, figures = _read(result)
     phase = OUT_OF_DATE if settings.result_stale else STORED
     is_search = result.kind == "optimize"
     live = state.score if settings.live.on else None
     if is_search and (live is None or settings.live.against == BEFORE_MOVE):
-        figures = [result.figures[w] for w in ("before", "after") if w in result.figures]
         return ShownScore(
             now,
             phase,
             baseline=Baseline(BEFORE_SEARCH, None, before),
             pair=(before, now),
-            figures=tuple(advice.KeyFigures.from_dict(each) for each in figures),
+            figures=tuple(figures.values()),
             errors=result.change_errors,
         )
-    own = [result.figures["after"]] if "after" in result.figures else []
-    found = [advice.KeyFigures.from_dict(each) for each in own]
+    found = tuple(known for which, known in figures.items() if which == "after")
     if live is None or live.before is None or not state.is_current(live):
-        return ShownScore(now, phase, figures=tuple(found))
+        return ShownScore(now, phase, figures=found)
     compared = background_figures.figures_of(scene)[:-1] if found else []
     return ShownScore(
         now,
@@ -161,6 +159,13 @@ def _stored(scene: bpy.types.Scene, state: LiveState) -> ShownScore:
 
 
 @lru_cache(maxsize=4)
-def _scores(result: bridge.Result) -> tuple[pe.Score, pe.Score]:
-    """Return the scores of a result: before and after a search, of a score twice the same."""
-    return bridge.score_from_dict(result.before), bridge.score_from_dict(result.after)
+def _read(result: bridge.Result) -> tuple[pe.Score, pe.Score, Mapping[str, advice.KeyFigures]]:
+    """Return the scores of a result, before and after a search, of a score twice the same; and its
+    key figures, by "before" and "after"."""
+    figures: dict[str, advice.KeyFigures] = {
+        which: advice.KeyFigures.from_dict(result.figures[which])
+        for which in ("before", "after")
+        if which in result.figures
+    }
+    before, after = (bridge.score_from_dict(data) for data in (result.before, result.after))
+    return before, after, figures

@@ -25,8 +25,7 @@ def compare_built(context: bpy.types.Context, operator: Any) -> OperatorResult:
     """Compare the built rig in another program's file with this one: how far each sensor is off,
     and what that costs. The scene stays as it is"""
     found = rig_of_file(context.scene, chosen_file(operator.filepath), operator.format)
-    lines = [line for line in found.lines if not line.startswith(found.to_choose)]
-    return begin(BUILT, rig=found.rig, lines=lines)
+    return begin(BUILT, rig=found.rig, lines=found.lines_without_models)
 
 
 def _task(_scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> Task:

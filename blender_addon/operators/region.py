@@ -3,13 +3,14 @@
 from typing import Any
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, IntProperty
+from bpy.props import BoolProperty
 
 from .. import bridge, where_map
 from ..engine import advice, jobs, pe
 from .declared import OperatorResult, chosen_sensor, operator
 from .edit_sensors import NAME
 from .jobs import JobRow, Task, begin, of_study
+from .where import FIGURE_AND_PLACES
 
 
 def _lacks(context: bpy.types.Context) -> str | None:
@@ -23,23 +24,10 @@ def _lacks(context: bpy.types.Context) -> str | None:
     unless=_lacks,
     options=frozenset(),
     name=NAME,
-    figure=EnumProperty(
-        name="By",
-        description="Figure of the rig that may lose a little",
-        items=[
-            (key, row.figure.label, row.figure.about) for key, row in jobs.PLACE_FIGURES.items()
-        ],
-    ),
+    **FIGURE_AND_PLACES,
     others=BoolProperty(
         name="Search Others",
         description="Search the other sensors again at places outside, which takes minutes",
-    ),
-    places=IntProperty(
-        name="Places",
-        description="How many places are evaluated; 0: as many as take about 20 s",
-        default=0,
-        min=0,
-        max=20_000,
     ),
 )
 def free_region(context: bpy.types.Context, operator: Any) -> OperatorResult:

@@ -23,6 +23,23 @@ BUILT_SHOWN = "BUILT"
 WHOLE = "WHOLE"  # What is covered, where it is no mount
 PICK = "Pick a Place: click the coloured body. Esc: cancel"
 NEAR_M = 0.4  # A click takes the nearest place, if it is no farther away than this
+FIGURE_AND_PLACES: dict[str, Any] = {
+    "figure": EnumProperty(
+        name="By",
+        description="Figure of the rig by which places are compared",
+        items=[
+            (key, row.figure.label, row.figure.about) for key, row in jobs.PLACE_FIGURES.items()
+        ],
+    ),
+    "places": IntProperty(
+        name="Places",
+        description="How many places are scored; 0: as many as take about 20 s",
+        default=0,
+        min=0,
+        max=20_000,
+    ),
+}
+"""Properties of operators that score a rig at many places."""
 _listed: list[tuple[str, str, str]] = []
 """What the menu lists: Blender reads the texts after the function that made them returned."""
 
@@ -55,21 +72,8 @@ def _lacks(context: bpy.types.Context) -> str | None:
     options=frozenset(),
     invoke=_ask,
     model=MODEL["model"],
-    figure=EnumProperty(
-        name="By",
-        description="Figure of the rig by which places are compared",
-        items=[
-            (key, row.figure.label, row.figure.about) for key, row in jobs.PLACE_FIGURES.items()
-        ],
-    ),
+    **FIGURE_AND_PLACES,
     on=EnumProperty(name="On", description="Surface that is covered", items=_surfaces),
-    places=IntProperty(
-        name="Places",
-        description="How many places are scored; 0: as many as take about 20 s",
-        default=0,
-        min=0,
-        max=20_000,
-    ),
 )
 def where(_context: bpy.types.Context, operator: Any) -> OperatorResult:
     """Score one more sensor all over the body: colours show where it is worth most"""

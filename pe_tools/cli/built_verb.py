@@ -57,9 +57,8 @@ def found_built(study: Study, args: argparse.Namespace, file: str) -> AsBuilt:
     """Return the comparison of a study with the built rig in a file; Ctrl-C ends it."""
     reference = asked_reference(args.rear_axle, study.reference, study.vehicle, file)
     found = import_rig(file, args.format, reference, placed=asked_origin(args))
-    lines = tuple(line for line in found.lines if not line.startswith(tuple(found.to_choose)))
     print_vehicle(study)
-    job = BuiltJob(study, found.rig, lines, args.workers)
+    job = BuiltJob(study, found.rig, found.lines_without_models, args.workers)
     with stop_at_first(job.stop) as received:
         built = drive(job)
     if built is None:

@@ -47,6 +47,11 @@ class ImportedRig:
     to_choose: tuple[str, ...]
     lines: tuple[str, ...]
 
+    @property
+    def lines_without_models(self) -> tuple[str, ...]:
+        """The messages but those about sensors with a stand-in model."""
+        return tuple(line for line in self.lines if not line.startswith(self.to_choose))
+
 
 class ModelledRig(NamedTuple):
     """The rig of a file with the models of its sensors, in the format's frame. `left_out` are those

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import argparse
-import platform
 from collections.abc import Mapping, Sequence
 
 from pe_core.base import dump_json, record
 from pe_core.base.plugins import shipped
 from pe_core.base.table_reader import finite
-from pe_core.version import __version__
 
 from .. import cli as app
 from .. import jobs
-from ..versions import numpy_version
 from ..wording import aligned
 from .golden_case import BASES
 from .verification import Verification, code_digest, machine, verify
@@ -41,15 +38,10 @@ def verify_engine(args: argparse.Namespace, versions: Mapping[str, str] | None) 
 
 def report(found: Verification, versions: Mapping[str, str]) -> app.VerifyAnswer:
     """Return what verify.json holds; `versions` are further ones."""
-    own = {
-        "perception-entropy": __version__,
-        "numpy": numpy_version(),
-        "python": platform.python_version(),
-    }
     return app.VerifyAnswer(
         passed=len(found.results) - len(found.failed),
         failed=len(found.failed),
-        versions={**own, **versions},
+        versions=jobs.run_record(found.seconds, versions).versions,
         machine=machine(),
         digests={"code": code_digest(), "results": found.results_digest},
         bases=BASES,

@@ -83,8 +83,9 @@ class Verification:
     @property
     def failures(self) -> list[str]:
         """A line for each case that is wrong."""
-        return [f"FAILED {each.case.area}, {each.case.name}: {each.first_wrong}"
-                for each in self.failed]  # fmt: skip
+        return [
+            f"FAILED {each.case.area}, {each.case.name}: {each.first_wrong}" for each in self.failed
+        ]
 
     @property
     def in_short(self) -> str:

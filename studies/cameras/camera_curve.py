@@ -9,7 +9,7 @@ import numpy as np
 
 import pe_core as pe
 from pe_core.base import Floats, Ints
-from pe_core.metric import AP_MAX, AP_MIN, RTM3D, average_precision
+from pe_core.metric import RTM3D
 from pe_core.sensors.camera import CAMERA
 
 from ..detectors.scan_curves import A_BOUNDS, B_BOUNDS, BeamCounts, counts_of, fitted_curve
@@ -114,23 +114,18 @@ def _slope(counts: BeamCounts, ap: Floats, fitted: pe.ApCurve, effort: CameraEff
     def slopes(index: Ints) -> Floats:
         if index.ndim == 1:
             return np.asarray(of(tuple(index.tolist())).a)
-        drawn = [tuple(sorted(own)) for own in index.tolist()]  # 462 differ
-        for chosen in drawn:
-            seen = counts.shares[list(chosen)].any(axis=0)
-            at_bound.append(is_at_bound(of(chosen), counts.m[seen]))
-        return np.array([of(chosen).a for chosen in drawn])
+        curves = [of(tuple(sorted(own))) for own in index.tolist()]  # 462 differ
+        at_bound.extend(is_at_bound(curve) for curve in curves)
+        return np.array([curve.a for curve in curves])
 
     _, limits = _with_limits(slopes, len(ap), effort)
     return {"a_interval": _rounded(limits), "at_bound": sum(at_bound)}
 
 
-def is_at_bound(curve: pe.ApCurve, m: Floats) -> bool:
-    """Whether a fit has ended at one of its bounds, or where the AP of every m (N,) is at its
-    own."""
+def is_at_bound(curve: pe.ApCurve) -> bool:
+    """Whether a fit has ended at one of its bounds."""
     ends = [(curve.a, end) for end in A_BOUNDS] + [(curve.b, end) for end in B_BOUNDS]
-    of_m = average_precision(m, curve)
-    is_clipped = bool(((of_m <= AP_MIN) | (of_m >= AP_MAX)).all())
-    return is_clipped or any(abs(value - end) <= SAME for value, end in ends)
+    return any(abs(value - end) <= SAME for value, end in ends)
 
 
 def spanned(counts: BeamCounts) -> list[float]:

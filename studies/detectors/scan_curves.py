@@ -105,9 +105,9 @@ def fitted_curve(beams: BeamCounts, ap: Floats, start: pe.ApCurve | None = None)
     """Return the curve whose expected AP is nearest to the AP found: least squares.
 
     A coarse grid gives the start; damped Gauss-Newton steps descend from there within `A_BOUNDS`
-    and `B_BOUNDS` (Levenberg and Marquardt), until a step is below `SMALLEST`, or until the AP of
-    every object is at its own bound, where no step changes anything. `ap` is the AP found at each
-    placement (P,); `start` takes the place of the grid.
+    and `B_BOUNDS` (Levenberg and Marquardt), until a step is below `SMALLEST`, or until only one
+    of a and b can be told. `ap` is the AP found at each placement (P,); `start` takes the place of
+    the grid.
     """
     grid = itertools.product(np.geomspace(0.005, 0.4, STARTS), np.linspace(-1.5, 1.0, STARTS))
     start = start or min(
@@ -122,11 +122,12 @@ def fitted_curve(beams: BeamCounts, ap: Floats, start: pe.ApCurve | None = None)
         of_m = average_precision(beams.m, curve)
         free = ((of_m > AP_MIN) & (of_m < AP_MAX)).astype(float)
         slopes = np.stack([beams.shares @ (free * logs), beams.shares @ free], axis=1)
-        if not slopes.any():
-            break
         square = slopes.T @ slopes
         damped = square + damping * (np.diag(np.diag(square)) + TINY * np.eye(2))
-        step = np.linalg.solve(damped, slopes.T @ (ap - beams.shares @ of_m))
+        try:
+            step = np.linalg.solve(damped, slopes.T @ (ap - beams.shares @ of_m))
+        except np.linalg.LinAlgError:  # objects of one m alone, and no damping left
+            break
         there = np.clip(at + step, *np.transpose([A_BOUNDS, B_BOUNDS]))
         if np.abs(there - at).max() < SMALLEST:
             break

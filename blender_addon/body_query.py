@@ -56,7 +56,7 @@ def query(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
         _seen.pop(name, None)
 
     with contextlib.suppress(pe.InputError):
-        model = bridge.document_of(scene.perception_entropy, *bridge.SCORED).perception
+        model = bridge.document_of(scene.perception_entropy, *bridge.SCORED_PARTS).perception
         given = pe.Rig(sensors), vehicle, tuple(bodies.values()), model
         engine_process.ask(
             TOPIC,

@@ -34,7 +34,7 @@ def query(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, point: Queried
     sensors = bridge.possible_sensors(sensor_cache.sensors(scene), depsgraph)
     settings = scene.perception_entropy
     try:
-        document = bridge.document_of(settings, *bridge.SCORED)
+        document = bridge.document_of(settings, *bridge.SCORED_PARTS)
         space = document.space
         model = document.perception
         prior = bridge.prior_from_scene(scene)

@@ -81,8 +81,9 @@ from .sensor_records import (
     write_records,
 )
 from .study_table import (
+    LARGEST_INT,
     REFERENCE,
-    SCORED,
+    SCORED_PARTS,
     Keys,
     TableData,
     as_typed,

@@ -25,7 +25,7 @@ KEPT_AT_FIRST = ("blind_ground", "blind_sector")
 """Figures that a search in a new scene does not make worse."""
 TOLERANCE: Keys = ("optimize", "tolerance")
 REFERENCE: Keys = ("reference",)
-SCORED = ("space", "metric", "ap", "fusion")
+SCORED_PARTS = ("space", "metric", "ap", "fusion")
 """Parts of a document that a score needs besides the prior."""
 BEGINS = {
     path: {
@@ -216,14 +216,19 @@ def document_of(settings: PropertyGroup, *parts: str, is_choice: bool = False) -
     return _document(settings.table, parts, is_choice)
 
 
-def signature_of(settings: PropertyGroup) -> list[object]:
-    """Return what a score depends on in a scene's table, including what is wrong."""
-    if parsed(settings.table) is None:
-        return [settings.table]
-    found = json.dumps(study_table(settings.table))
+@lru_cache(maxsize=64)
+def _signature(table: str) -> tuple[object, ...]:
+    if parsed(table) is None:
+        return (table,)
+    found = json.dumps(study_table(table))
     keys = [each.key for each in studies.setting_keys(of_scene=True) if each.setting.scored]
     values = ((key, value_at(found, tuple(key.split(".")))) for key in keys)
-    return [*(each for each in values if each[1] is not None), value_at(found, ("ap",))]
+    return (*(each for each in values if each[1] is not None), value_at(found, ("ap",)))
+
+
+def signature_of(settings: PropertyGroup) -> tuple[object, ...]:
+    """Return what a score depends on in a scene's table, including what is wrong."""
+    return _signature(settings.table)  # it is asked for whenever a panel is drawn
 
 
 def has_mounting_errors(settings: PropertyGroup) -> bool:

@@ -16,8 +16,7 @@ from .prior import prior_from_scene
 from .result import FrontRow, ShownFront, score_from_dict, scored_data, store_outcome
 from .scene_diagnostics import check_placeable, scene_advice
 from .sensor_records import SCORED, SensorRecord, records_of, records_of_scene, rig_of
-from .study_table import SCORED as SCORED_PARTS
-from .study_table import document_of
+from .study_table import SCORED_PARTS, document_of
 from .time import story_signatures
 from .variants import Variant, find_or_add_variant, mark_active, study_of_variant
 

@@ -123,7 +123,7 @@ def read_request(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Scor
         collection = scene.perception_entropy.vehicle
         vehicle = bridge.vehicle_from_collection(collection, depsgraph)  # raises the reason
     settings = scene.perception_entropy
-    document = bridge.document_of(settings, *bridge.SCORED)
+    document = bridge.document_of(settings, *bridge.SCORED_PARTS)
     space = document.space
     model = document.perception
     targets = document.metric

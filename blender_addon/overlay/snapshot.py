@@ -121,7 +121,7 @@ class SnapshotReader:
         space = None
         try:
             space = bridge.document_of(settings, "space").space
-            document = bridge.document_of(settings, *bridge.SCORED)
+            document = bridge.document_of(settings, *bridge.SCORED_PARTS)
             model = document.perception
             targets = document.metric
             key = bridge.prior_key(scene), space, model, targets

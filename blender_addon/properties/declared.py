@@ -21,7 +21,6 @@ from .fields import view
 
 PathOf = Callable[[PropertyGroup], tuple[PropertyGroup, bridge.Keys]]
 
-LARGEST_INT = 2**31 - 1  # The largest whole number that a property can hold
 DRAWN = "reference."
 """Settings whose keys begin so change the picture in the 3D view, and no score."""
 UNITS = {"m": "LENGTH", "m2": "AREA"}
@@ -103,7 +102,7 @@ def _kind_of(
     high = rule.maximum if panel.max is None else panel.max
     low = low if panel.min is None else panel.min
     if isinstance(rule, studies.Whole):
-        high = LARGEST_INT if high is None else min(high, LARGEST_INT)
+        high = bridge.LARGEST_INT if high is None else min(high, bridge.LARGEST_INT)
         return IntProperty, {"min": low, "max": high}
     low, high = (end if math.isfinite(end) else None for end in (low, high))
     return FloatProperty, {"min": low, "max": high, "unit": UNITS.get(rule.unit)}

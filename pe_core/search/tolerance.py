@@ -266,10 +266,13 @@ def _robustness_of(
     evaluator: RigEvaluator, rig: Rig, errors: Tolerance, seed: int
 ) -> RigRobustness:
     off = mounted_off(rig, errors, seed, FRESH)
-    with_errors = evaluator.entropies(off)
     rigs_without = without_each(rig) if len(rig) > 1 else []
-    entropy, *failed = evaluator.entropies([rig, *rigs_without])
-    own, *by_draw = evaluator.residuals([rig, *off])
+    cases = [rig, *off, *rigs_without]
+    entropy, *entropies = evaluator.entropies(cases)
+    with_errors = entropies[: len(off)]
+    failed = entropies[len(off) :]
+    own, *residuals = evaluator.residuals(cases)  # of the same rigs: no sensor is measured again
+    by_draw = residuals[: len(off)]
     of_draws = _error_of_draws(with_errors, errors.draws, len(rig))
     of_voxels = standard_error(np.mean(by_draw, axis=0) - own)
     found = RigRobustness(

@@ -46,7 +46,9 @@ def test_five_calls_score_search_check_and_export(folder, monkeypatch):
         if call[0] == "new":
             text = (folder / "study.toml").read_text("utf-8")
             text = re.sub(r"(?ms)^samples = .*?(?=^\[prior\])", SMALL, text, count=1)
-            (folder / "study.toml").write_text(text.replace("evaluations = 0 ", "evaluations = 4 "))
+            text = text.replace("evaluations = 0 ", "evaluations = 4 ")
+            text = text.replace("samples = 65536 ", "samples = 1024 ")
+            (folder / "study.toml").write_text(text)
         if call[0] == "score":
             assert {"entropy", "coverage", "warnings", "dashboard"} < data.keys()
             assert data["figures"]["after"]["values"] and data["after"]["stderr"] > 0.0

@@ -1,5 +1,7 @@
 """Variants as pictures, in a real window: a wipe between two of them, and Compare."""
 
+import pytest
+
 EFFECT_TIMEOUT_S = 60
 COMPARED_TIMEOUT_S = 180
 SHOWN = (
@@ -10,6 +12,7 @@ ROWS = "bpy.context.window_manager.windows[0].scene.perception_entropy.variants"
 VIEW = "bpy.context.window_manager.windows[0].scene.perception_entropy.view"
 
 
+@pytest.mark.thorough
 def test_two_variants_in_one_view_and_side_by_side(window, screenshots):
     window.press_until("pe.save_variant", lambda: window.state["variants"], "a variant")
     window.press("pe.select_object")

@@ -79,6 +79,7 @@ def test_rigs_are_the_lidars_of_the_studies_that_the_plan_names():
     )
 
 
+@pytest.mark.thorough
 def test_a_short_search_is_kept_and_its_runs_are_gone_on_with_by_resume_alone(
     tmp_path, monkeypatch
 ):

@@ -86,6 +86,7 @@ def test_expected_ap_is_that_of_the_evaluator():
             assert part.expected_ap(TRUE)[k] == pytest.approx(per_class[name].ap, abs=1e-8)
 
 
+@pytest.mark.thorough
 def test_curves_are_fitted_to_odd_placements_and_judged_on_even_ones():
     """Data of one curve give it back; a wrong AP of an even placement changes the error alone."""
     results = results_of(FEW, TRUE)

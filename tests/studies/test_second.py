@@ -248,6 +248,7 @@ def quickly(plan):
     return plan.but(statistics={"permutations": 999, "resamples": 300})
 
 
+@pytest.mark.thorough
 def test_verdicts_of_made_up_runs():
     plan = quickly(full_second_plan())
     results, scores = made_up(plan, 0.05)

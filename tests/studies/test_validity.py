@@ -93,6 +93,7 @@ def test_holm_is_over_all_scores_compared(saved):
         assert min(row["holm"] for row in rows) == pytest.approx(min(1.0, least * len(rows)))
 
 
+@pytest.mark.thorough
 def test_a_changed_score_is_noticed(saved, tmp_path):
     data = copy.deepcopy(saved)
     value = data["results"]["objects/alone/place3d/center/degrees/box/1/fitted"]["value"]

@@ -34,7 +34,7 @@ KINDS = {
         "lidars_good": "LiDARs, one vehicle, good placements",
         "lidars_fixed": "LiDARs, one vehicle",
     },
-    CAMERA.name: {"cameras": "simulated rigs of cameras, cars within 50 m"},
+    CAMERA.name: {"cameras": "simulated rigs of cameras all round, seen cars within 50 m"},
 }
 """By kind of sensor: rigs that had pairs, the first one counts that the table has, and their
 words."""
@@ -87,6 +87,8 @@ class Worth:
         The class whose AP of objects in traffic the pairs were scored by; empty: all, by voxels.
     within : float
         The space of the pairs: x and y within it [m]; 0: the default one.
+    sensors : (int, int)
+        Fewest and most sensors of a rig of the pairs; (0, 0): any number.
     """
 
     kind: str
@@ -100,6 +102,7 @@ class Worth:
     source: str
     of_class: str = ""
     within: float = 0.0
+    sensors: tuple[int, int] = (0, 0)
 
     @property
     def beside(self) -> tuple[str, str, str]:
@@ -119,6 +122,11 @@ class Worth:
             and by.model == PerceptionModel()
             and (targets if self.of_class else not by.targets.are_objects)
         )
+
+    def has_sizes(self, rigs: Sequence[Rig]) -> bool:
+        """Whether rigs have as many sensors as those of the pairs had."""
+        fewest, most = self.sensors
+        return not most or all(fewest <= len(rig) <= most for rig in rigs)
 
     def of_ten(self, difference: float) -> tuple[int, int, int]:
         """Return of how many of ten such pairs the better one had the higher AP: P, low, high."""
@@ -153,7 +161,7 @@ def worth_rows(by: ScoredBy, rigs: Sequence[Rig], one_vehicle: bool) -> dict[str
     (kind,) = kinds
     if kind == LIDAR.name and not (one_vehicle and same_models(rigs)):
         return {}
-    alike = [row for row in worths() if row.is_alike(by)]
+    alike = [row for row in worths() if row.is_alike(by) and row.has_sizes(rigs)]
     return preferred(alike, tuple(KINDS.get(kind, ())))
 
 

@@ -25,7 +25,7 @@ TITLE = "# What a difference in score is worth"
 PLAN = Path(__file__).parents[2] / FOLDER / "plan.md"
 QUICK = DifferenceEffort(resamples=50)
 COLUMNS = ("k", "k_low", "k_high", "largest", "rigs", "pairs", "source")
-SCOPE = ("of_class", "within")
+SCOPE = ("of_class", "within", "sensors")
 """What the scores of a kind are of, where it is less than all classes in the default space."""
 HEAD = """\
 # How often the rig with the better score had the higher AP: P = 1 / (1 + exp(-k d)), d a difference

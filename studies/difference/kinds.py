@@ -119,6 +119,7 @@ def camera_kind(rigs: PublishedRigs, found: Json) -> Kind:
     aps = np.array([own[of_cameras.CARS_OUTCOME] for own in rigs.by_detector.values()])
     groups = [Group("14 rigs", rows, aps)]
     outcome = of_cameras.CARS_OUTCOME
+    numbers = [len(rig.rig) for rig in rigs.rigs]
     return Kind(
         CAMERA_RIGS,
         "cameras",
@@ -126,6 +127,7 @@ def camera_kind(rigs: PublishedRigs, found: Json) -> Kind:
         groups,
         of_class=of_cameras.CLASS_OF[outcome],
         within=of_cameras.WITHIN_M[outcome],
+        sensors=(min(numbers), max(numbers)),
     )
 
 

@@ -53,7 +53,7 @@ def test_the_table_has_the_rows_of_the_study():
     expected = {
         (name, score): (
             (row["k"], *row["interval"], row["largest"], row["rigs"], row["pairs"]),
-            (kind.get("of_class", ""), kind.get("within", 0.0)),
+            (kind.get("of_class", ""), kind.get("within", 0.0), *kind.get("sensors", (0, 0))),
         )
         for name, kind in saved.items()
         for score, row in kind["scores"].items()
@@ -62,7 +62,7 @@ def test_the_table_has_the_rows_of_the_study():
     found = {
         (w.kind, w.score): (
             (w.k, w.k_low, w.k_high, w.largest, w.rigs, w.pairs),
-            (w.of_class, w.within),
+            (w.of_class, w.within, *w.sensors),
         )
         for w in worths()
     }
@@ -99,8 +99,15 @@ def test_nothing_is_said_where_no_pairs_were_alike(changes, rigs, one_vehicle):
     assert worth_rows(study(**changes), rigs, one_vehicle=one_vehicle) == {}
 
 
-def cameras(*fields):
-    return [rig_at(0.0, pe.Camera("camera", 640, 480, field)) for field in fields]
+def cameras(*fields, count=6):
+    """A rig for each field, of so many cameras."""
+    rigs = []
+    for field in fields:
+        model = pe.Camera("camera", 640, 480, field)
+        rigs.append(
+            pe.Rig([pe.Sensor(f"camera {k}", model, pe.Pose((k, 0.0, 2.0))) for k in range(count)])
+        )
+    return rigs
 
 
 def test_rigs_of_cameras_have_their_row_where_cars_within_50_m_are_scored_in_traffic():
@@ -110,6 +117,9 @@ def test_rigs_of_cameras_have_their_row_where_cars_within_50_m_are_scored_in_tra
     assert set(found) == {"traffic_ap"} and found["traffic_ap"].kind == "cameras"
     assert found["traffic_ap"].beside == ("class", "car", "ap")
     assert "cars within 50 m" in worth_text(found["traffic_ap"], 0.02)
+    for count, said in ((3, False), (4, True), (10, True), (11, False)):
+        rigs = [*cameras(1.0), *cameras(1.5, count=count)]
+        assert bool(worth_rows(by, rigs, one_vehicle=False)) is said
 
 
 @pytest.mark.parametrize(

@@ -143,9 +143,10 @@ def test_camera_rigs_are_paired_by_detector():
         for rig, row in zip(RIGS, values.tolist(), strict=True)
     }
     aps = {name: {"car": rng.random(len(RIGS))} for name in ("one", "two")}
-    rigs = SimpleNamespace(digest="a", by_detector=aps)
+    cameras = [SimpleNamespace(rig=range(number)) for number in (6, 4, 9)]
+    rigs = SimpleNamespace(digest="a", by_detector=aps, rigs=cameras)
     kind = kinds.camera_kind(rigs, {"data": "a", "scores": scores})
-    assert (kind.of_class, kind.within) == ("car", 50.0)
+    assert (kind.of_class, kind.within, kind.sensors) == ("car", 50.0, (4, 9))
     found = measured([made_up(2.0), replace(kind, groups=made_up(2.0).groups)], QUICK)
     rows = tomllib.loads(table_text(found))["difference"]
     assert [row.get("of_class") for row in rows] == 3 * [None] + 3 * ["car"]

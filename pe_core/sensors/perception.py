@@ -2,9 +2,9 @@
 
 Whole objects have the curves of their kind (`[ap] model = "paper"`), or those from scans
 (`"scans"`): fitted to the detectors of our own study, docs/validity/own; `python -m
-studies.detectors --curves` writes them. Those of published detectors are fitted to their AP by
-range on one vehicle, and hold over range within one rig. Both are of LiDARs alone: other kinds keep
-the paper's.
+studies.detectors --curves` writes them. Those of published LiDAR detectors are fitted to their AP
+by range on one vehicle, and hold over range within one rig; that of cameras is fitted to changes of
+one published rig (docs/validity/cameras). Kinds and classes that a model lacks keep the paper's.
 """
 
 from collections.abc import Mapping
@@ -28,7 +28,8 @@ PAPER = "paper"
 SCANS = "scans"
 BEVFUSION = "bevfusion"
 CENTERPOINT = "centerpoint"
-CURVE_MODELS = (PAPER, SCANS, BEVFUSION, CENTERPOINT)
+CAMERA_RIGS = "camera_rigs"
+CURVE_MODELS = (PAPER, SCANS, BEVFUSION, CENTERPOINT, CAMERA_RIGS)
 MODEL: str = setting(
     PAPER,
     OneOf(CURVE_MODELS),
@@ -41,6 +42,7 @@ MODEL: str = setting(
             ("Scans", "LiDARs: fitted to detectors that this project trained on simulated scans"),
             ("BEVFusion-L", "LiDARs: fitted to published AP by range, within one rig"),
             ("CenterPoint", "LiDARs: fitted to published AP by range, within one rig"),
+            ("Camera Rigs", "Cameras, cars alone: fitted to changes of one published rig"),
         ),
     ),
     scored=True,
@@ -62,11 +64,15 @@ def scan_curves() -> ClassCurves:
 
 @dataclass(frozen=True, slots=True)
 class DetectorCurve:
-    """A curve of a published detector: root of the mean square error of AP, span of m."""
+    """A curve of a published detector: root of the mean square error of AP, span of m.
+
+    `a_interval` has the 95 % interval of a where the fit has one.
+    """
 
     curve: Annotated[ApCurve, Part(inline=True)]
     rmse: float
     m: tuple[float, float]
+    a_interval: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,8 +123,8 @@ class PerceptionModel:
         in which a blind sensor changes the result.
     objects : mapping of kind to mapping of class to ApCurve
         Curves of whole objects, m counted on the object, in place of the model's.
-    model : {"paper", "scans", "bevfusion", "centerpoint"}
-        Curves of the other objects: the kind's own, or of LiDARs those fitted to detectors.
+    model : {"paper", "scans", "bevfusion", "centerpoint", "camera_rigs"}
+        Curves of the other objects: the kind's own, or those fitted to detectors where there are.
     frames : Frames, optional
         Frames that an entropy is of, and the process noise between them; one frame by default.
     **curves : ApCurve

@@ -34,48 +34,19 @@ KINDS = {
         "lidars_good": "LiDARs, one vehicle, good placements",
         "lidars_fixed": "LiDARs, one vehicle",
     },
-    CAMERA.name: {"cameras": "cameras, by cars within 50 m"},
+    CAMERA.name: {"cameras": "simulated rigs of cameras all round, seen cars within 50 m"},
 }
 """By kind of sensor: rigs that had pairs, the first one counts that the table has, and their
 words."""
-WORTH_OF = {("rig", ENTROPY): ENTROPY, (TRAFFIC, AP): TRAFFIC_AP, ("rig", COVERAGE): COVERAGE}
-"""The score of the table that a row of a comparison shows, by its group and measure."""
+BESIDE = {
+    ENTROPY: ("rig", "", ENTROPY),
+    TRAFFIC_AP: (TRAFFIC, "", AP),
+    COVERAGE: ("rig", "", COVERAGE),
+}
+"""Group, name and measure of the row of a comparison that shows a score of the table."""
+HEIGHT_M = (0.0, 5.0)
+"""What is evaluated above the ground, in the pairs of a row with a distance of its own."""
 OF = 10
-
-
-@dataclass(frozen=True, slots=True)
-class Worth:
-    """A row of the table: P = 1 / (1 + exp(-k d)) for a difference of d in units of the score.
-
-    Attributes
-    ----------
-    kind, score : str
-        Whose pairs they were (`KINDS`), and the figure that differs.
-    k, k_low, k_high : float
-        The slope, and its interval (95 %).
-    largest : float
-        Beyond this a difference counts as it.
-    rigs, pairs : int
-    source : str
-    """
-
-    kind: str
-    score: str
-    k: float
-    k_low: float
-    k_high: float
-    largest: float
-    rigs: int
-    pairs: int
-    source: str
-
-    def of_ten(self, difference: float) -> tuple[int, int, int]:
-        """Return of how many of ten such pairs the better one had the higher AP: P, low, high."""
-        d = min(abs(difference), self.largest)
-        low, own, high = (
-            round(OF / (1.0 + math.exp(-k * d))) for k in (self.k_low, self.k, self.k_high)
-        )
-        return own, low, high
 
 
 class ScoredBy(Protocol):
@@ -98,11 +69,72 @@ class ScoredBy(Protocol):
         """Voxels or objects."""
 
 
-def is_default(by: ScoredBy) -> bool:
-    """Whether scores are made as those of the pairs, but for the side of the voxels."""
-    extents = [(space.x, space.y, space.z) for space in (by.space, PerceptionSpace())]
-    same = extents[0] == extents[1] and by.prior == Prior.road()
-    return same and by.model == PerceptionModel() and not by.targets.are_objects
+@dataclass(frozen=True, slots=True)
+class Worth:
+    """A row of the table: P = 1 / (1 + exp(-k d)) for a difference of d in units of the score.
+
+    Attributes
+    ----------
+    kind, score : str
+        Whose pairs they were (`KINDS`), and the figure that differs.
+    k, k_low, k_high : float
+        The slope, and its interval (95 %).
+    largest : float
+        Beyond this a difference counts as it.
+    rigs, pairs : int
+    source : str
+    of_class : str
+        The class whose AP of objects in traffic the pairs were scored by; empty: all, by voxels.
+    within : float
+        The space of the pairs: x and y within it [m]; 0: the default one.
+    sensors : (int, int)
+        Fewest and most sensors of a rig of the pairs; (0, 0): any number.
+    """
+
+    kind: str
+    score: str
+    k: float
+    k_low: float
+    k_high: float
+    largest: float
+    rigs: int
+    pairs: int
+    source: str
+    of_class: str = ""
+    within: float = 0.0
+    sensors: tuple[int, int] = (0, 0)
+
+    @property
+    def beside(self) -> tuple[str, str, str]:
+        """Group, name and measure of the row of a comparison that it is said beside."""
+        return ("class", self.of_class, AP) if self.of_class else BESIDE[self.score]
+
+    def is_alike(self, by: ScoredBy) -> bool:
+        """Whether scores are made as those of the pairs, but for the side of the voxels."""
+        space = PerceptionSpace()
+        if self.within:
+            along = (-self.within, self.within)
+            space = PerceptionSpace(along, along, HEIGHT_M)
+        targets = by.targets.are_objects and by.targets.traffic
+        return (
+            (by.space.x, by.space.y, by.space.z) == (space.x, space.y, space.z)
+            and by.prior == Prior.road()
+            and by.model == PerceptionModel()
+            and (targets if self.of_class else not by.targets.are_objects)
+        )
+
+    def has_sizes(self, rigs: Sequence[Rig]) -> bool:
+        """Whether rigs have as many sensors as those of the pairs had."""
+        fewest, most = self.sensors
+        return not most or all(fewest <= len(rig) <= most for rig in rigs)
+
+    def of_ten(self, difference: float) -> tuple[int, int, int]:
+        """Return of how many of ten such pairs the better one had the higher AP: P, low, high."""
+        d = min(abs(difference), self.largest)
+        low, own, high = (
+            round(OF / (1.0 + math.exp(-k * d))) for k in (self.k_low, self.k, self.k_high)
+        )
+        return own, low, high
 
 
 @cache
@@ -124,12 +156,13 @@ def worth_rows(by: ScoredBy, rigs: Sequence[Rig], one_vehicle: bool) -> dict[str
     kinds = {sensor.kind for sensor in sensors}
     plain = all(sensor.fusion is None and sensor.curve is None for sensor in sensors)
     solid = all(getattr(sensor.model, "returns", ALL) == ALL for sensor in sensors)
-    if len(kinds) != 1 or not (plain and solid and is_default(by)):
+    if len(kinds) != 1 or not (plain and solid):
         return {}
     (kind,) = kinds
     if kind == LIDAR.name and not (one_vehicle and same_models(rigs)):
         return {}
-    return preferred(worths(), tuple(KINDS.get(kind, ())))
+    alike = [row for row in worths() if row.is_alike(by) and row.has_sizes(rigs)]
+    return preferred(alike, tuple(KINDS.get(kind, ())))
 
 
 def preferred(rows: Sequence[Worth], kinds: Sequence[str]) -> dict[str, Worth]:
@@ -164,14 +197,15 @@ def worth_lines(
     `rows` are those of `compare` and of `compare_figures`, `worth` is of `worth_rows`.
     """
     found = []
+    by_place = {own.beside: own for own in worth.values()}
     for row in rows:
-        score = WORTH_OF.get((row.group, row.measure)) if not row.name else None
-        if score not in worth or not row.order:
+        own = by_place.get((row.group, row.name, row.measure))
+        if own is None or not row.order:
             continue
         first, *others = row.order
         for k in others:
             if row.differ(first, k):
                 by = (row.values[first] or 0.0) - (row.values[k] or 0.0)
-                text = worth_text(worth[score], by)
+                text = worth_text(own, by)
                 found.append(f"{names[first]} before {names[k]}: {text}.")
     return tuple(found)

@@ -52,5 +52,8 @@ def _curve_lines() -> list[str]:
             line = f"  {each.kind:11} {each.of_class:11}a {each.a:6.4f}  b {each.b:+7.4f}"
             if row := rows.get(each.kind, {}).get(each.of_class):
                 line += f"  RMSE {row.rmse:.3f}, m {row.m[0]:g} to {row.m[1]:g}"
+                if row.a_interval is not None:
+                    low, high = row.a_interval
+                    line += f", a {low:.3f} to {high:.3f} (95 %)"
             lines.append(line)
     return lines

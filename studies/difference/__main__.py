@@ -25,6 +25,8 @@ TITLE = "# What a difference in score is worth"
 PLAN = Path(__file__).parents[2] / FOLDER / "plan.md"
 QUICK = DifferenceEffort(resamples=50)
 COLUMNS = ("k", "k_low", "k_high", "largest", "rigs", "pairs", "source")
+SCOPE = ("of_class", "within", "sensors")
+"""What the scores of a kind are of, where it is less than all classes in the default space."""
 HEAD = """\
 # How often the rig with the better score had the higher AP: P = 1 / (1 + exp(-k d)), d a difference
 # in units of the score (nats, AP, share). A row is here by the rule of docs/validity/difference.
@@ -59,7 +61,8 @@ def measured(kinds: Sequence[Kind], effort: DifferenceEffort) -> Json:
             print_progress(f"{kind.label}: {score}")
             rows[score] = worth_of(kind, score, effort)
         row = {"label": kind.label, "source": kind.source, "smallest": kind.smallest}
-        found["kinds"][kind.name] = {**row, "scores": rows}
+        scope = {key: value for key in SCOPE if (value := getattr(kind, key))}
+        found["kinds"][kind.name] = {**row, **scope, "scores": rows}
     return plain(found)
 
 
@@ -72,6 +75,7 @@ def table_text(found: Json) -> str:
                 low, high = row["interval"]
                 values = {**row, "k_low": low, "k_high": high, "source": kind["source"]}
                 own = {key: values[key] for key in COLUMNS}
+                own |= {key: kind[key] for key in SCOPE if key in kind}
                 rows.append({"kind": name, "score": score, **own})
     return HEAD + dumps({"difference": rows})
 

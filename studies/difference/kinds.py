@@ -118,7 +118,17 @@ def camera_kind(rigs: PublishedRigs, found: Json) -> Kind:
         rows[figure] = values
     aps = np.array([own[of_cameras.CARS_OUTCOME] for own in rigs.by_detector.values()])
     groups = [Group("14 rigs", rows, aps)]
-    return Kind(CAMERA_RIGS, "cameras", "docs/validity/cameras", groups)
+    outcome = of_cameras.CARS_OUTCOME
+    numbers = [len(rig.rig) for rig in rigs.rigs]
+    return Kind(
+        CAMERA_RIGS,
+        "cameras",
+        "docs/validity/cameras",
+        groups,
+        of_class=of_cameras.CLASS_OF[outcome],
+        within=of_cameras.WITHIN_M[outcome],
+        sensors=(min(numbers), max(numbers)),
+    )
 
 
 def camera_kind_of(path: Path) -> Kind:

@@ -38,12 +38,20 @@ class DifferenceEffort:
 
 @dataclass(frozen=True, eq=False)
 class Kind:
-    """Rigs of one kind: its name, what it is called, its source, and its groups."""
+    """Rigs of one kind: its name, what it is called, its source, and its groups.
+
+    `of_class` and `within` [m] narrow what its scores are of: objects of a class in traffic, x and
+    y within a distance. Else they are of all classes, voxels, in the default space. `sensors` has
+    the fewest and the most sensors of a rig, where they differ.
+    """
 
     name: str
     label: str
     source: str
     groups: Sequence[Group]
+    of_class: str = ""
+    within: float = 0.0
+    sensors: tuple[int, ...] = ()
 
     @property
     def smallest(self) -> int:

@@ -77,6 +77,18 @@ def test_blender_and_engine_agree_to_the_last_bit(installed, sedan, tmp_path):
     assert isinstance(read(tmp_path / "inside" / "result.json")["entropy"], float)
 
 
+def test_the_engine_in_blender_is_held_to_the_golden_cases_with_the_same_bits(installed, tmp_path):
+    """Another Python, another NumPy and rewritten imports: the values are the same ones."""
+    inside = installed.blender.run(
+        *installed.START, "-b", "--command", "pe", "verify", "-o", tmp_path
+    )
+    assert inside.returncode == 0, output_of(inside)
+    found = read(tmp_path / "verify.json")
+    assert found["failed"] == 0 and found["passed"] >= 50 and "blender" in found["versions"]
+    assert (tmp_path / "verify.html").is_file() and found["machine"]["system"]
+    assert found["digests"]["results"] == alone("verify", "--json")["digests"]["results"]
+
+
 def both_scores(installed, code, sedan, folder) -> tuple[dict, dict]:
     """What Blender and the engine alone say of a scene that a script saves and exports."""
     script = folder / "make.py"

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from pe_tools import advice
 from pe_tools.cli.verbs import main
 from tests.engine import shapes
 
+CAMERA_RESULTS = Path(__file__).parents[2] / "docs/validity/cameras/results.json"
 OWN = pe.ApCurve(0.2, 0.1)
 SCANS = pe.PerceptionModel(model="scans")
 STUDY = """
@@ -137,6 +139,38 @@ def test_curves_of_published_detectors_are_told_with_source_and_span(model, caps
     assert main(["sensors", "--curves"]) == 0
     told = capsys.readouterr().out
     assert f"\n{model}: {known.label}, {known.trust}; {known.source}\n" in told
+
+
+def test_the_curve_of_camera_rigs_is_that_of_the_study_and_of_cars_alone(capsys):
+    """A class enters by the rule of docs/validity/cameras/plan.md: statements 7 and 8 hold."""
+    saved = json.loads(CAMERA_RESULTS.read_text("utf-8"))["curves"]
+    holds = {name for name, row in saved.items() if {*map(row["verdicts"].get, "78")} == {"holds"}}
+    known = detectors()["camera_rigs"]
+    assert set(known.rows) == {"camera"} and set(known.rows["camera"]) == holds == {"car"}
+    row = known.rows["camera"]["car"]
+    car = saved["car"]
+    assert row.curve == pe.ApCurve(car["a"], car["b"]) and row.rmse == car["rmse"]["fitted"]
+    assert row.m == tuple(car["m"]) and row.a_interval == tuple(car["a_interval"])
+    assert str(car["at_bound"]) in known.trust and "within 50 m" in known.trust
+    own = pe.PerceptionModel()
+    chosen = pe.PerceptionModel(model="camera_rigs")
+    assert chosen.object_curve("camera", "car") == row.curve
+    for kind, name in (("camera", "pedestrian"), ("camera", "truck"), ("lidar", "car")):
+        assert chosen.object_curve(kind, name) == own.object_curve(kind, name)
+    assert main(["sensors", "--curves"]) == 0
+    told = capsys.readouterr().out
+    assert f"\ncamera_rigs: {known.label}, {known.trust}; {known.source}\n" in told
+    assert "a 0.047 to 0.439 (95 %)" in told
+
+
+def test_a_study_file_is_scored_by_the_curve_of_camera_rigs(path):
+    """Of cameras alone: cars change, the other classes do not."""
+    path.write_text(f'{STUDY}\n[ap]\nmodel = "camera_rigs"\n', "utf-8")
+    study = pe.load_study(path)
+    study = replace(study, rig=pe.Rig([study.rig["front"]]))
+    paper = replace(study, model=pe.PerceptionModel())
+    after, before = (each.evaluator().score(each.rig).objects.per_class for each in (study, paper))
+    assert {name for name in before if after[name].ap != before[name].ap} == {"car"}
 
 
 def by_definition(m, curve, distance):

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -26,6 +27,8 @@ ROW = Worth(
     source="made up",
 )
 MODEL = shapes.small_lidar(16, 180)
+WITHIN = pe.PerceptionSpace((-50, 50), (-50, 50), (0, 5))
+IN_TRAFFIC = TargetRule("objects", True)
 
 
 def rig_at(x, model=MODEL, **more):
@@ -48,13 +51,20 @@ def test_of_ten_by_hand_and_not_beyond_the_largest():
 def test_the_table_has_the_rows_of_the_study():
     saved = json.loads(RESULTS.read_text("utf-8"))["kinds"]
     expected = {
-        (name, score): (row["k"], *row["interval"], row["largest"], row["rigs"], row["pairs"])
+        (name, score): (
+            (row["k"], *row["interval"], row["largest"], row["rigs"], row["pairs"]),
+            (kind.get("of_class", ""), kind.get("within", 0.0), *kind.get("sensors", (0, 0))),
+        )
         for name, kind in saved.items()
         for score, row in kind["scores"].items()
         if row["in_table"]
     }
     found = {
-        (w.kind, w.score): (w.k, w.k_low, w.k_high, w.largest, w.rigs, w.pairs) for w in worths()
+        (w.kind, w.score): (
+            (w.k, w.k_low, w.k_high, w.largest, w.rigs, w.pairs),
+            (w.of_class, w.within, *w.sensors),
+        )
+        for w in worths()
     }
     assert found == expected
     known = {kind for labels in KINDS.values() for kind in labels}
@@ -62,15 +72,11 @@ def test_the_table_has_the_rows_of_the_study():
 
 
 def test_real_layouts_come_first():
-    rows = [ROW, Worth(**{**vars_of(ROW), "kind": "lidars_layouts", "k": 1.0})]
+    rows = [ROW, replace(ROW, kind="lidars_layouts", k=1.0)]
     kinds = tuple(KINDS["lidar"])
     assert preferred(rows, kinds)["entropy"].kind == "lidars_layouts"
     assert preferred(rows[:1], kinds)["entropy"].kind == "lidars_fixed"
     assert preferred(rows, ("cameras",)) == {}
-
-
-def vars_of(row):
-    return {name: getattr(row, name) for name in Worth.__slots__}
 
 
 @pytest.mark.parametrize(
@@ -93,10 +99,53 @@ def test_nothing_is_said_where_no_pairs_were_alike(changes, rigs, one_vehicle):
     assert worth_rows(study(**changes), rigs, one_vehicle=one_vehicle) == {}
 
 
-def test_rigs_of_cameras_have_the_row_of_cameras_whatever_their_models():
-    rigs = [rig_at(0.0, pe.Camera("camera", 640, 480, fov)) for fov in (1.0, 1.5)]
-    found = worth_rows(study(), rigs, one_vehicle=False)
-    assert {worth.kind for worth in found.values()} == {"cameras"} and "entropy" not in found
+def cameras(*fields, count=6):
+    """A rig for each field, of so many cameras."""
+    rigs = []
+    for field in fields:
+        model = pe.Camera("camera", 640, 480, field)
+        rigs.append(
+            pe.Rig([pe.Sensor(f"camera {k}", model, pe.Pose((k, 0.0, 2.0))) for k in range(count)])
+        )
+    return rigs
+
+
+def test_rigs_of_cameras_have_their_row_where_cars_within_50_m_are_scored_in_traffic():
+    """Whatever their models; the pairs were scored so, and nothing else is said to be."""
+    by = study(space=WITHIN, targets=IN_TRAFFIC)
+    found = worth_rows(by, cameras(1.0, 1.5), one_vehicle=False)
+    assert set(found) == {"traffic_ap"} and found["traffic_ap"].kind == "cameras"
+    assert found["traffic_ap"].beside == ("class", "car", "ap")
+    assert "cars within 50 m" in worth_text(found["traffic_ap"], 0.02)
+    for count, said in ((3, False), (4, True), (10, True), (11, False)):
+        rigs = [*cameras(1.0), *cameras(1.5, count=count)]
+        assert bool(worth_rows(by, rigs, one_vehicle=False)) is said
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"space": WITHIN},
+        {"targets": IN_TRAFFIC},
+        {"space": WITHIN, "targets": TargetRule("objects")},
+        {"space": pe.PerceptionSpace((-50, 50), (-40, 40), (0, 5)), "targets": IN_TRAFFIC},
+        {"space": WITHIN, "targets": IN_TRAFFIC, "prior": pe.Prior.highway()},
+        {"space": WITHIN, "targets": IN_TRAFFIC, "model": pe.PerceptionModel(model="camera_rigs")},
+    ],
+    ids=["default", "voxels", "far", "alone", "narrow", "prior", "curve"],
+)
+def test_rigs_of_cameras_that_are_scored_otherwise_have_no_row(changes):
+    assert worth_rows(study(**changes), cameras(1.0, 1.5), one_vehicle=False) == {}
+
+
+def test_a_row_of_a_class_is_said_beside_that_class_alone():
+    own = replace(ROW, score="traffic_ap", of_class="car", within=50.0)
+    values = (0.5, 0.6, 0.7)
+    errors = row_of(values, 0.001).errors
+    for group, name, count in (("class", "car", 2), ("class", "truck", 0), ("in traffic", "", 0)):
+        row = ComparedRow(group, name, "ap", values, errors=errors, factor=2.13)
+        assert len(worth_lines(["a", "b", "c"], [row], {"traffic_ap": own})) == count
 
 
 def row_of(values, error, measure="entropy", group="rig"):
@@ -113,7 +162,8 @@ def test_a_line_for_each_difference_from_the_best_that_is_shown():
     part = ComparedRow("zone", "near", "entropy", row.values, errors=row.errors)
     assert worth_lines(["a", "b", "c"], [part], {"entropy": ROW}) == ()
     ap = row_of((0.5, 0.6, 0.7), 0.001, "ap", "in traffic")
-    assert len(worth_lines(["a", "b", "c"], [ap], {"traffic_ap": ROW})) == 2
+    traffic = replace(ROW, score="traffic_ap")
+    assert len(worth_lines(["a", "b", "c"], [ap], {"traffic_ap": traffic})) == 2
 
 
 def test_within_two_standard_errors_no_difference_is_shown():

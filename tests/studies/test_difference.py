@@ -3,6 +3,7 @@
 import json
 import math
 import tomllib
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -142,8 +143,14 @@ def test_camera_rigs_are_paired_by_detector():
         for rig, row in zip(RIGS, values.tolist(), strict=True)
     }
     aps = {name: {"car": rng.random(len(RIGS))} for name in ("one", "two")}
-    rigs = SimpleNamespace(digest="a", by_detector=aps)
+    cameras = [SimpleNamespace(rig=range(number)) for number in (6, 4, 9)]
+    rigs = SimpleNamespace(digest="a", by_detector=aps, rigs=cameras)
     kind = kinds.camera_kind(rigs, {"data": "a", "scores": scores})
+    assert (kind.of_class, kind.within, kind.sensors) == ("car", 50.0, (4, 9))
+    found = measured([made_up(2.0), replace(kind, groups=made_up(2.0).groups)], QUICK)
+    rows = tomllib.loads(table_text(found))["difference"]
+    assert [row.get("of_class") for row in rows] == 3 * [None] + 3 * ["car"]
+    assert "beside the AP of class *car*" in page_of(found)
     assert kind.smallest == 14 and len(pairs_of(kind.groups, "entropy").d) == 2 * 91
     with pytest.raises(InputError):
         kinds.camera_kind(rigs, {"data": "b", "scores": scores})

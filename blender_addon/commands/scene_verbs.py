@@ -24,7 +24,7 @@ def check_scene(source: SceneStudies, args: argparse.Namespace) -> app.Answer:
         raise pe.InputError("check", "stories", "one for a film", 1 + len(others))
     args.output = None
     args.stories = args.stories or ""
-    answer = app.check_study(study, args)
+    answer = app.check_study(study, args, source)
     with quiet_blender():
         film.write_film(bpy.context.scene, study, story, path)
     app.tell(f"wrote {path}")

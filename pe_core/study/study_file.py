@@ -14,6 +14,7 @@ from ..base.json_schema import schema_of
 from ..base.setting import REQUIRED, OneOf, Setting, Several, is_angle, value_in_file
 from ..base.table_reader import dumps, inline, load_toml
 from ..scene.rig import Rig, SensorModel
+from ..scene.vehicle import Vehicle
 from .document import Document
 from .mounting_file import areas_of
 from .study import Study
@@ -84,13 +85,18 @@ def read_rig_line(text: str, source: str = "rig") -> Rig:
 
 
 def study_from_dict(
-    data: Any, source: str = "study", folder: Path | None = None, *, starts_anywhere: bool = False
+    data: Any,
+    source: str = "study",
+    folder: Path | None = None,
+    *,
+    starts_anywhere: bool = False,
+    vehicle: Vehicle | None = None,
 ) -> Study:
     """Build a study from the plain data of its file; paths in it are relative to `folder`. For
-    `starts_anywhere` see `load_study`."""
+    `starts_anywhere` see `load_study`; a `vehicle` takes the place of the mesh that is named."""
     node = Node(data, source, folder=folder or Path())
     try:
-        study = read(Document, node).study(node)
+        study = read(Document, node).study(node, vehicle)
         study.designs()
         if study.requirements:
             study.checker()  # zones that cannot be placed are bad input, too

@@ -51,7 +51,7 @@ def check(source: StudyFiles, args: argparse.Namespace) -> Answer:
     """Hold a study to its requirements and stories; the exit status says whether all are met."""
     if args.list is not None:
         return list_checks(args)
-    return check_study(source.study(args), args)
+    return check_study(source.study(args), args, source)
 
 
 def list_checks(args: argparse.Namespace) -> Answer:
@@ -70,7 +70,7 @@ def list_checks(args: argparse.Namespace) -> Answer:
     return answered(args, data, lines), DONE
 
 
-def check_study(study: Study, args: argparse.Namespace) -> Answer:
+def check_study(study: Study, args: argparse.Namespace, source: StudyFiles) -> Answer:
     """Hold a study to its requirements, stories and limits, and to the presets that are named; with
     ``--stories`` to stories alone. After Ctrl-C the verdicts that were found are printed, and
     written to the file."""
@@ -86,6 +86,7 @@ def check_study(study: Study, args: argparse.Namespace) -> Answer:
     if note := curve_note([study]):
         tell(note)
     job = CheckJob(study)
+    source.share_evaluators(job)
     with stop_at_first(job.stop) as received:
         drive(job)
     verdicts = job.verdicts

@@ -99,7 +99,7 @@ def explain(source: StudyFiles, args: argparse.Namespace) -> Answer:
             told += mends or [NOT_BLIND] * (not place.in_vehicle)
         return answered(args, answer, told), DONE
     name = advice.class_of(study.prior, args.class_name)
-    outcome = scored(study, args.workers)
+    outcome = scored(study, args.workers, source)
     seen = advice.outlook(study.sight(), study.rig, name)
     rows = advice.sensor_rows(outcome.after, study.rig, study.vehicle, seen)
     of_rig = advice.rig_words(outcome.after, seen, study.rig, outcome.warnings)
@@ -173,10 +173,12 @@ def _beside(studies: Mapping[str, Study], key: str | None) -> dict[str, Study]:
     return {name: first.with_other_rig(catalog.rig_on(known, first.vehicle))}
 
 
-def scored(study: Study, workers: int | None) -> Outcome:
-    """Score a study, with progress; Ctrl-C ends it."""
+def scored(study: Study, workers: int | None, source: StudyFiles | None = None) -> Outcome:
+    """Score a study, with progress and by the evaluators that its source keeps; Ctrl-C ends it."""
     print_vehicle(study)
     job = ScoreJob(study, workers)
+    if source is not None:
+        source.share_evaluators(job)
     with stop_at_first(job.stop) as received:
         outcome = drive(job)
     if outcome is None:

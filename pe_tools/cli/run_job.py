@@ -81,6 +81,9 @@ class Host(Protocol):
     def notes(self) -> tuple[Advice, ...]:
         """Return warnings about the study."""
 
+    def share_evaluators(self, job: jobs.Job) -> None:
+        """Give a job the evaluators that earlier ones made, if they are kept."""
+
 
 def _page(*, is_front: bool) -> More:
     """Return the page beside the results of a search, or of a front."""
@@ -113,6 +116,7 @@ def run_study(study: Study, host: Host, args: argparse.Namespace) -> Answer:
             count = jobs.resume(job, Path(folder))
             tell(f"going on after {count:,} placements")
     job.notes = host.notes()
+    host.share_evaluators(job)
     if folder is not None:
         own = jobs.FRONT_NAMES if is_front else jobs.result_names(study, args.kind)
         added = [name for each in more for name in each.names]

@@ -15,10 +15,11 @@ import numpy as np
 
 from pe_core.base import dump_json, parse_json, record
 from pe_core.base.errors import InputError, require_keys, require_name, shown
+from pe_core.base.recent_cache import RecentCache
 from pe_core.base.table_reader import dotted, finite, inline
 from pe_core.study import Study, load_study_data
 
-from ..jobs import placements
+from ..jobs import Job, StudyEvaluators, placements
 from ..sweep import SOURCE, changed_study, read_changes
 from .answers import ReplyError, ServeReply, SessionState
 from .command import Parser, file_error
@@ -27,11 +28,12 @@ from .options import OptionRow, options
 from .study_source import StudyFiles, naming_study, with_changes
 from .terminal import BAD_INPUT, DONE, USAGE, Answer, one_line, printable, show
 
-SERVED = ("score", "explain", "check", "where", "export")
+SERVED = ("score", "explain", "check", "where", "region", "export")
 """Verbs of the command that a session has, too, on its study."""
 REQUEST = "request"
 MAX_LINE_BYTES = 1 << 20
 """Longer lines are refused: no request needs them, and one without end would fill the memory."""
+OPTION = "-"  # Begins a flag
 HEAD = ("id", "do")
 OF_POSE = ("position", "rotation")
 
@@ -57,6 +59,8 @@ class SessionStudy(StudyFiles):
     def __init__(self, host: StudyFiles) -> None:
         self._host = host
         self._study: Study | None = None
+        # Two: a check of presets beside the study's own requirements is another problem.
+        self._evaluators = RecentCache[StudyEvaluators](2)
         self.name = "session"
         self.versions = host.versions
         self.notes = host.notes  # type: ignore[method-assign]
@@ -79,6 +83,13 @@ class SessionStudy(StudyFiles):
     def study(self, args: argparse.Namespace) -> Study:
         """Return the study with the changes of one request."""
         return self.changed(self.current, args, self.name)
+
+    def share_evaluators(self, job: Job) -> None:
+        """Give a job the evaluators of the last one, where only the rig has changed since: what
+        has not moved is not measured again."""
+        kept = self._evaluators.made(job.evaluators.key, lambda: job.evaluators)
+        job.evaluators = kept
+        job.as_drawn = kept.as_drawn
 
     @contextlib.contextmanager
     def naming(self, _: argparse.Namespace) -> Iterator[None]:
@@ -117,7 +128,7 @@ class Session:
             verb.add(verbs, self._source)
             names = verb.options.replace("|", " ").split()
             flags = (known[name] for name in names)
-            self._verbs[verb.name] = {row.flags[-1].lstrip("-"): row for row in flags}
+            self._verbs[verb.name] = {row.flags[-1].lstrip(OPTION): row for row in flags}
 
     def reply(self, line: bytes) -> ServeReply:
         """Answer a request. Bad input is a reply with an error."""
@@ -238,6 +249,11 @@ def _changes(key: str, table: Any) -> list[str]:
 def _words(key: str, row: OptionRow, value: Any) -> list[str]:
     """Return an option as it is typed."""
     flag = row.flags[-1]
+    if not flag.startswith(OPTION):  # an argument without a flag, such as the sensor of `region`
+        word = _word(key, value)
+        if word.startswith(OPTION):
+            raise InputError(REQUEST, key, "a text that is no option", shown(word))
+        return [word]
     action = row.arguments.get("action")
     if action == "store_true":
         if not isinstance(value, bool):
@@ -247,7 +263,7 @@ def _words(key: str, row: OptionRow, value: Any) -> list[str]:
         return [f"{flag}={each}" for each in _changes(key, value)]
     values = [_word(key, each) for each in (value if isinstance(value, list) else [value])]
     if isinstance(value, list) and action != "append":
-        if wrong := [each for each in value if isinstance(each, str) and each.startswith("-")]:
+        if wrong := [each for each in value if isinstance(each, str) and each.startswith(OPTION)]:
             raise InputError(REQUEST, key, "texts that are no options", shown(wrong[0]))
         return [flag, *values]
     return [f"{flag}={each}" for each in values]

@@ -16,7 +16,7 @@ from pe_core.search.goals import Start
 from pe_core.study import RESULT, STUDY, StateInWeather, Study, load_study, load_study_data
 
 from ..advice import Advice
-from ..jobs import export_study, read_search
+from ..jobs import Job, export_study, read_search
 from ..known_defects import mended_since
 from ..sweep import KeyChange, changed_study, read_changes
 from .run_job import More
@@ -104,6 +104,9 @@ class StudyFiles:
         """Return warnings about the source."""
         return ()
 
+    def share_evaluators(self, job: Job) -> None:
+        """Give a job the evaluators of earlier ones: none here, a command has one job."""
+
 
 @not_noting_inputs()
 def tell_mended_defects(folder: Path) -> None:
@@ -152,12 +155,17 @@ def with_changes(study: Study, changes: Sequence[KeyChange], source: str) -> Stu
     The vehicle, and how its mesh was read, stay unless a key of [vehicle] is changed."""
     if not changes:
         return study
+    vehicle = study.vehicle
+    if any(change.path[0] == VEHICLE for change in changes):
+        vehicle = None
     with TemporaryDirectory() as name, not_noting_inputs():
         folder = Path(name)
-        export_study(study, folder / STUDY)
+        export_study(study, folder / STUDY, with_mesh=vehicle is None)
         data = load_study_data(folder / STUDY)
-        changed = changed_study(data, changes, source, folder, starts_anywhere=True)
-    if any(change.path[0] == VEHICLE for change in changes):
+        changed = changed_study(
+            data, changes, source, folder, starts_anywhere=True, vehicle=vehicle
+        )
+    if vehicle is None:
         return changed
     kept = {field: getattr(study, field) for field in (VEHICLE, *OF_MESH)}
     return replace(changed, **kept)

@@ -36,7 +36,7 @@ from .lens_pictures import alike
 from .merging import gone_lines, is_there, is_turned_so
 from .portable import ORIGIN, ForeignRig, MergeTarget, PortableRig, PortableSensor, merged_lines
 from .portable_kinds import CAMERA, LIDAR, RADAR
-from .sensor_names import said_kind
+from .sensor_names import model_by_name, said_kind
 
 BASE = "base_link"
 KIT = "sensor_kit_base_link"
@@ -44,6 +44,7 @@ TO_KIT = "sensors_calibration.yaml"
 IN_KIT = "sensor_kit_calibration.yaml"
 FRAMES = {CAMERA: "/camera_link", LIDAR: "_base_link", RADAR: "/radar_link"}
 """Suffixes of frame names, by kind."""
+TYPE = "type"
 HEAD = "# Metres and radians; R = Rz(yaw) Ry(pitch) Rx(roll); x forward, y left, z up.\n"
 NO_INFO = "the kit has no camera_info of it; its lens is not written"
 ODD_INFO = "its camera_info has a lens that is not read; it is kept"
@@ -55,11 +56,13 @@ AT_FRAME = "no model is known: its frame is taken as the centre of its scan"
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """A file of a kit: frames on one parent, which is on base_link."""
+    """A file of a kit: frames on one parent, which is on base_link. `types`: what TIER IV's kits
+    say of a frame as its `type`, such as pandar_xt32, by frame."""
 
     text: YamlText
     parent: str
     frames: Mapping[str, Pose]
+    types: Mapping[str, str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,11 +117,14 @@ def _head(path: Path, parents: Collection[str]) -> tuple[YamlText, str]:
 def _unit(yaml: YamlText, parent: str) -> Unit:
     table = Table(yaml.data, yaml.source).table(parent)
     frames = {}
+    types = {}
     for name in table.names:
         row = table.table(name)
+        if isinstance(row.raw(TYPE, None), str):
+            types[name] = row.text(TYPE)
         position, angles = (foreign.named_numbers(row, keys) for keys in (XYZ, RPY))
         frames[name] = foreign.pose_from(yaml.source, row.path, position, angles)
-    return Unit(yaml, parent, frames)
+    return Unit(yaml, parent, frames, types)
 
 
 def _model_in(text: str) -> str:
@@ -149,9 +155,12 @@ def _axes_comment(frame: str, pose: Pose, *, optical: bool) -> str:
     return OPTICAL_AXES if optical else BODY_AXES
 
 
-def _kind_of(frame: str) -> str | None:
-    """Return the kind that a frame's name says. The suffix of LiDARs is that of many other frames:
-    of these, the rest of the name decides."""
+def _kind_of(frame: str, type_name: str) -> str | None:
+    """Return the kind that a frame's type says, or else its name. The suffix of LiDARs is that of
+    many other frames: of these, the rest of the name decides."""
+    stated = said_kind(type_name)
+    if stated in FRAMES:
+        return stated
     kind = next((kind for kind, suffix in FRAMES.items() if frame.endswith(suffix)), None)
     said = said_kind(frame.removesuffix(FRAMES.get(kind or "", "")))
     if kind in (None, LIDAR) and said is not None:
@@ -177,12 +186,14 @@ def read(path: Path) -> ForeignRig:
     }
     parents = {unit.parent for unit in units}
     poses |= {name: pose for name, pose in base.frames.items() if name not in parents}
+    types = {frame: name for unit in (base, *units) for frame, name in unit.types.items()}
     comments = {frame: both for unit in (base, *units) for frame, both in _comments(unit).items()}
     sensors = []
     for frame, pose in poses.items():
         text, axes = comments.get(frame, ("", ""))
-        model = _model_in(text) or None
-        sensor = PortableSensor(frame, pose, _kind_of(frame), model, entry=frame)
+        type_name = types.get(frame, "")
+        model = _model_in(text) or model_by_name(type_name)
+        sensor = PortableSensor(frame, pose, _kind_of(frame, type_name), model, entry=frame)
         if sensor.kind == CAMERA and _is_optical_here(frame, pose, axes):
             sensor = turned_to_body(sensor)
         sensors.append(replace(sensor, name=frame.removesuffix(_suffix_of(frame))))
@@ -315,19 +326,22 @@ def _patched(
         new_axes = axes
         if sensor.kind == CAMERA and changed:
             new_axes = _axes_comment(frame, on_vehicle, optical=optical)
-        new_text = _new_text(sensor, text, is_moved=bool(changed))
+        typed = model_by_name(unit.types.get(frame, ""))
+        new_text = _new_text(sensor, text, typed, is_moved=bool(changed))
         if (new_text, new_axes) != (text, axes):
             comments[unit.parent, frame] = "; ".join(filter(None, [new_text, new_axes]))
     return unit.text.edited(values, comments, ((unit.parent,), added))
 
 
-def _new_text(sensor: PortableSensor, text: str, *, is_moved: bool) -> str:
+def _new_text(sensor: PortableSensor, text: str, typed: str | None, *, is_moved: bool) -> str:
     """Return the comment of a frame of a kit with its model, if the comment has one. A LiDAR that
-    moved gets one: the frame is at the base of this model's housing."""
+    moved gets one: the frame is at the base of this model's housing. So does a sensor whose type
+    in the file says another model, `typed`."""
     old = _model_in(text)
     new = sensor.known_model or ""
     if not old:
-        is_placed_by_model = is_moved and bool(_height(sensor))
+        is_placed_by_model = is_moved and bool(_height(sensor)) and new != typed
+        is_placed_by_model |= typed is not None and new in catalog.entries() and new != typed
         return "; ".join(filter(None, [new, text])) if is_placed_by_model else text
     if new in catalog.entries():
         return text.replace(old, new)

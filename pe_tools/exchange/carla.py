@@ -1,8 +1,10 @@
 """CARLA's objects.json, from which its ROS bridge spawns sensors. Coordinates are right-handed,
-angles are in degrees."""
+angles are in degrees. Autoware's interface to CARLA has a file of that name with a list of sensors
+alone: its numbers are in CARLA's own coordinates, which are left-handed."""
 
 import math
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -66,6 +68,9 @@ TURNS = Number(1e-3, cap=1e6)
 """Points per second, and rotations per second."""
 SPAWN = "spawn_point"
 LISTS = ("sensors", "objects")
+MIRRORED = ("y", "pitch", "yaw")
+"""Coordinates that have the other sign in CARLA's own frame, whose y axis is to the right."""
+OWN_FRAME = "a list of sensors alone: read in CARLA's own coordinates, y to the right"
 ACROSS = "horizontal_fov"
 UPWARDS = "vertical_fov"
 RADAR_FOV_DEG = 30.0
@@ -84,7 +89,8 @@ def write(sensors: PortableRig, into: MergeTarget | None) -> Export:
     lines += [f"{s.name}: CARLA has no {s.kind}; left out" for s in named if s not in supported]
     vehicle, key = _place_of_sensors(FILE, document)
     rows = vehicle.setdefault(key, [])
-    merge_rows(rows, supported, into, _row, pose_keys=(SPAWN,), figure_keys=FIGURES)
+    row = partial(_row, is_own=_is_own_frame(document))
+    merge_rows(rows, supported, into, row, pose_keys=(SPAWN,), figure_keys=FIGURES)
     for sensor in named:
         low, high = sensor.scan.fov if sensor.scan is not None else (0.0, 0.0)
         if abs(math.degrees(low + high)) >= TINY_DEG:
@@ -97,6 +103,8 @@ def write(sensors: PortableRig, into: MergeTarget | None) -> Export:
 def _place_of_sensors(source: object, document: Any) -> tuple[dict[str, Any], str]:
     """Return the object that holds the sensors, and the key of its list of sensors. It is the first
     object with such a list, or else the first vehicle."""
+    if _is_own_frame(document):
+        return document, LISTS[0]
     objects = document.get("objects") if isinstance(document, dict) else None
     mappings = [mapping for mapping in objects or () if isinstance(mapping, dict)]
     for mapping in mappings:
@@ -109,9 +117,15 @@ def _place_of_sensors(source: object, document: Any) -> tuple[dict[str, Any], st
     return vehicle, LISTS[0]
 
 
-def _row(sensor: PortableSensor) -> dict[str, Any]:
+def _is_own_frame(document: Any) -> bool:
+    """Whether a document is a list of sensors alone, in CARLA's own coordinates."""
+    return isinstance(document, dict) and "objects" not in document and LISTS[0] in document
+
+
+def _row(sensor: PortableSensor, *, is_own: bool) -> dict[str, Any]:
     row: dict[str, Any] = {"type": f"sensor.{TYPES[sensor.kind or '']}", "id": sensor.name}
-    row[SPAWN] = values.pose_numbers(sensor.pose, degrees=True)
+    numbers = values.pose_numbers(sensor.pose, degrees=True)
+    row[SPAWN] = {key: _signed(key, value, is_own) for key, value in numbers.items()}
     if sensor.picture is not None and sensor.picture.size is not None:
         width, height = sensor.picture.size
         fov = math.degrees(2.0 * math.atan(width / (2.0 * sensor.picture.fx)))
@@ -134,24 +148,31 @@ def _row(sensor: PortableSensor) -> dict[str, Any]:
     return row
 
 
+def _signed(key: str, value: float, is_own: bool) -> float:
+    """Return a coordinate of CARLA's own frame in the right-handed one, or the other way round."""
+    return 0.0 - value if is_own and key in MIRRORED else value
+
+
 def read(path: Path) -> ForeignRig:
     """Read the sensors of the first vehicle that has a list of sensors, one with a spawn point."""
     document = json_of(path)
     vehicle, key = _place_of_sensors(path, document)
     rows = json_rows(path, vehicle.get(key, []), f"{vehicle.get('id', 'vehicle')}.{key}")
-    sensors = tuple(_sensor(path, row) for row in rows)
+    is_own = _is_own_frame(document)
+    sensors = tuple(_sensor(path, row, is_own) for row in rows)
     if not any("spawn_point" in row for row in rows):
         raise InputError(path, "objects", "a vehicle with sensors", "none")
-    return ForeignRig(sensors, document=document)
+    return ForeignRig(sensors, [OWN_FRAME] if is_own else [], document)
 
 
-def _sensor(path: Path, row: Table) -> PortableSensor:
+def _sensor(path: Path, row: Table, is_own: bool) -> PortableSensor:
     type_name = row.text("type")
     if SPAWN not in row:  # a pseudo sensor: CARLA's own view of the world
         return PortableSensor(row.text("id"), ORIGIN, "pseudo", entry=row.data)
     spawn = row.table(SPAWN)
-    position = values.named_numbers(spawn, XYZ)
-    angles = [spawn.number(key, 0.0) for key in RPY]
+    numbers = dict(zip(XYZ, values.named_numbers(spawn, XYZ), strict=True))
+    numbers |= {key: spawn.number(key, 0.0) for key in RPY}
+    position, angles = ([_signed(key, numbers[key], is_own) for key in keys] for keys in (XYZ, RPY))
     pose = values.pose_from(path, row.field(SPAWN), position, angles, degrees=True)
     kind = _kind(type_name.removeprefix("sensor."), row.text("id"))
     sensor = PortableSensor(row.text("id"), pose, kind, entry=row.data)

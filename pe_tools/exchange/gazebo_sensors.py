@@ -15,6 +15,7 @@ from .foreign_values import ForeignNumbers
 from .gazebo import picture_in, scan_in
 from .portable import ORIGIN, PortableSensor
 from .portable_kinds import CAMERA, LIDAR
+from .sensor_names import FRAME_NAMES
 
 RANGES = ("min_range", "max_range")  # Attributes of the ranges in the own element
 TAG = CAMERA  # Tag of a camera in a sensor
@@ -27,6 +28,8 @@ KIND_BY_TYPE = {
 }
 """Kinds by the type of a Gazebo sensor. Others are left out: a segmentation, bounding box or
 logical camera returns ground truth, not a measurement."""
+UNTELLING = frozenset({"link", *FRAME_NAMES})
+"""Names of links that do not tell what sensor is on them."""
 ROTATIONS = ("euler_rpy", "quat_xyzw")
 
 
@@ -71,7 +74,8 @@ def sensor_elements(blocks: Iterable[Element]) -> list[tuple[Element, Element]]:
 
 
 def read_sensors(path: Path, at: LinkBlock, poses: Mapping[str, Pose]) -> list[PortableSensor]:
-    """Return the sensors of a link. A single one has the name of its link, several have their own.
+    """Return the sensors of a link. A single one has the name of its link, if that is not one that
+    any link may have; several have their own.
     `poses` are those of all frames that a pose can be relative to."""
     elements = sensor_elements(at.blocks)
     if len(elements) > 1:
@@ -87,7 +91,10 @@ def read_sensors(path: Path, at: LinkBlock, poses: Mapping[str, Pose]) -> list[P
             sensors.append(replace(sensor, entry=entry))
         return sensors
     only = elements[0][0] if elements else None
-    sensor = _sensor(path, at.link, at=at, element=only, poses=poses)
+    name = at.link
+    if only is not None and at.link in UNTELLING:
+        name = only.get("name") or at.link
+    sensor = _sensor(path, name, at=at, element=only, poses=poses)
     sensor = replace(sensor, entry=LinkEntry(at.link, sensor.pose))
     own = next((e for block in at.blocks if (e := block.find(OWN)) is not None), None)
     return [sensor if own is None else _with_own(path, sensor, own)]

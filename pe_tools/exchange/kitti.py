@@ -88,8 +88,12 @@ def read(path: Path) -> ForeignRig:
     rotation = checked_rotation(path, TO_CAMERA[0], product(rectified, to_camera[:, :3]))
     shift = turned(rectified, to_camera[:, 3].tolist())
     sensors = [PortableSensor("velodyne", Pose((0.0, 0.0, 0.0)), LIDAR)]
+    empty = []
     for key in sorted(key for key in rows if key[:1] == "P" and key[1:].isdigit()):
         p = _matrix(path, rows, (key,), (3, 4))
+        if not p.any():  # a data set in KITTI's form that has fewer cameras
+            empty.append(key)
+            continue
         lens, note = pinhole_of(path, key, p[:, :3])
         z = -float(p[2, 3])
         y = -(float(p[1, 3]) + lens.cy * z) / lens.fy
@@ -101,7 +105,8 @@ def read(path: Path) -> ForeignRig:
         sensors.append(
             PortableSensor(name, pose, CAMERA, model=None, picture=Picture(lens), told=note)
         )
-    return ForeignRig(tuple(sensors))
+    lines = [f"{', '.join(empty)}: all numbers are 0; no such camera is read"] if empty else []
+    return ForeignRig(tuple(sensors), lines)
 
 
 def _rows(path: Path) -> dict[str, list[float]]:

@@ -33,8 +33,12 @@ ENDS = ("frame-id", "child-frame-id")
 EQUALS = re.compile(r"(--[a-z-]+)=")  # Between an option and its value, in place of a blank
 NODE = re.compile(r"<node\b([^<]*)")
 ATTRIBUTE = re.compile(r"""(?<![\w.:-])([\w.:-]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
-CALL = re.compile(rf"{PUBLISHER}[\"']?([^<\"'\n]*)")
-"""Nodes of a launch file up to the next tag, their attributes, and calls in other files."""
+QUOTED = r"""(?<=[\s=])"[^"\n<]*"|(?<=[\s=])'[^'\n<]*'"""
+CONTINUED = r"\\\r?\n"  # The end of a line that goes on in the next one
+CALL = re.compile(rf"{PUBLISHER}[\"']?((?:[^<\"'\n\\]|{CONTINUED}|{QUOTED})*)")
+"""Nodes of a launch file up to the next tag, their attributes, and calls in other files: the
+arguments of a shell, some of which may be in quotes."""
+REMARK = re.compile(r"^[ \t]*#.*$", re.MULTILINE)  # A line of a script that is not run
 END = re.compile(r"\s+(&&?|\|\|?|>>?|2>&1|#|--ros-args)(\s|$)|\s*;")
 """What is behind the arguments of a call: the shell's end of a command, or ROS's own arguments."""
 OLD_NODE = re.compile(r"<node\b[^<]*\btype\s*=")  # A node of ROS 1
@@ -226,6 +230,7 @@ def _calls(text: str) -> list[LaunchCall]:
             calls.append(LaunchCall.at(span, attributes.get("args", "")))
     if "<node" in text:
         return calls
+    text = REMARK.sub(lambda remark: " " * len(remark[0]), text)
     return [LaunchCall.at(call.span(1), call[1]) for call in CALL.finditer(text)]
 
 
@@ -253,7 +258,7 @@ def _transform(path: Path, field: str, args: str) -> tuple[str, str, Pose]:
 
 
 def _words(args: str) -> list[str]:
-    return shlex.split(EQUALS.sub(r"\1 ", args))
+    return shlex.split(EQUALS.sub(r"\1 ", re.sub(CONTINUED, " ", args)))
 
 
 def _positional(words: Sequence[str]) -> dict[str, str]:

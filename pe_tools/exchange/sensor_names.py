@@ -10,9 +10,9 @@ from .portable_kinds import CAMERA, LIDAR, RADAR, ULTRASONIC
 
 MODEL_NAMES = {
     "Velodyne VLP-16 Hi-Res": ("vlp 16 hi res", "puck hi res"),
-    "Velodyne VLP-16 Puck": ("vlp 16", "puck lite", "puck"),
+    "Velodyne VLP-16 Puck": ("vlp 16", "puck lite", "puck", "velodyne 16"),
     "Velodyne VLP-32C Ultra Puck": ("vlp 32", "vlp 32 c", "ultra puck"),
-    "Velodyne VLS-128 Alpha Prime": ("vls 128", "vls", "alpha prime"),
+    "Velodyne VLS-128 Alpha Prime": ("vls 128", "vls", "alpha prime", "velodyne 128"),
     "Velodyne HDL-32E": ("hdl 32", "hdl 32 e"),
     "Velodyne HDL-64E S2.1 (SZTAKI unit)": ("hdl 64 s 2", "hdl 64 e s 2"),
     "Velodyne HDL-64E S3 datasheet (1/3 deg upper block, 1/2 deg lower block)": (

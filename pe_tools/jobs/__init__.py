@@ -7,7 +7,7 @@ from .checkpoint import read_search, resume
 from .folder import FileSet, check_files, prepare_folder
 from .front_files import FRONT_JSON, FRONT_NAMES, FRONT_PAGE, front_dict, write_front
 from .front_job import FrontJob, FrontJournals, has_front
-from .job import HistoryRow, Job, Outcome, Progress, StartEnd, best_so_far
+from .job import HistoryRow, Job, Outcome, Progress, StartEnd, StudyEvaluators, best_so_far
 from .region_job import RegionJob, region_mount, study_on_region
 from .result_record import FrontRecord, OpenTable, PlacedSensors, ResultRecord, placements
 from .results import SearchState, add_to_result, condition_lines

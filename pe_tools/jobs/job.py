@@ -5,6 +5,7 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Executor, Future, wait
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, TypeVar
 
 from pe_core.base.errors import InputError, require_kind
@@ -18,6 +19,7 @@ from pe_core.scoring import RigEvaluator
 from pe_core.scoring.requirements import CheckStep, RequirementChecker, Verdict
 from pe_core.scoring.sampling import CENTERED, SEARCHED, Shift
 from pe_core.scoring.score import NO_DIFFERENCE, ObjectScore, Score, ScoreStopped, is_noise
+from pe_core.scoring.sight import Sight
 from pe_core.search import EvaluatedRig, KeyFigures, Reading, Robustness, Value, dashboard
 from pe_core.search.figures import BLIND_GROUND, BLIND_SECTOR, ENTROPY, FIGURES, TRAFFIC_AP
 from pe_core.study.condition_table import (
@@ -47,6 +49,18 @@ AsDrawn = Callable[[Study], RequirementChecker]
 Watch = Callable[[float], bool]  # Takes the progress of a work, 0 to 1; returns whether it goes on
 WAIT_S = 0.03
 """How long a job waits for its thread before it yields: a frame of a responsive window."""
+EVALUATED = (
+    "space",
+    "prior",
+    "vehicle",
+    "model",
+    "targets",
+    "frames",
+    "samples",
+    "requirements",
+    "reference",
+)
+"""Fields of a study that its evaluators depend on; the rig is none of them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -300,7 +314,7 @@ ProgressSteps = Generator[Progress, None, T | None]
 
 
 class StudyEvaluators:
-    """The evaluators of a study's rigs, each made once; jobs of other rigs may share them.
+    """What evaluates a study's rigs, each made once; jobs of other rigs may share it.
 
     A search evaluates its candidates on a sample of its own. Its result fits that sample, so all
     that is reported of it is evaluated on another one.
@@ -311,6 +325,33 @@ class StudyEvaluators:
         self._workers = workers
         self._own: dict[tuple[int, Shift], RigEvaluator] = {}
         self._in_traffic: dict[tuple[int, Shift], RigEvaluator] = {}
+
+    @property
+    def key(self) -> tuple[Any, ...]:
+        """What these depend on: studies with equal keys are scored by the same evaluators."""
+        study = self._study
+        fields = (getattr(study, name) for name in EVALUATED)
+        return (self._workers, study.search.samples, *fields)
+
+    @cached_property
+    def sight(self) -> Sight:
+        """What rigs see of the ground."""
+        return self._study.sight()
+
+    def as_drawn(self, _: Study) -> RequirementChecker:
+        """Return what holds rigs to the study's requirements as drawn."""
+        return self._checker
+
+    @cached_property
+    def _checker(self) -> RequirementChecker:
+        study = self._study
+        return RequirementChecker(
+            study.requirements,
+            study.vehicle,
+            model=study.model,
+            reference=study.reference,
+            space=study.space,
+        )
 
     def on(self, samples: int, shift: Shift = CENTERED) -> RigEvaluator:
         """Return the evaluator of the study's own targets, with a number of samples."""
@@ -479,7 +520,7 @@ class Job:
         self, rigs: Sequence[Rig], waiting: Progress
     ) -> ProgressSteps[tuple[KeyFigures, ...]]:
         """Return the key figures of rigs on the study's vehicle; none where it has no ground."""
-        sight = self.study.sight()
+        sight = self.evaluators.sight
 
         def work(_: Watch) -> tuple[KeyFigures, ...]:
             with suppress(InputError):

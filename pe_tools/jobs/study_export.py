@@ -22,7 +22,9 @@ from ..formats.meshes import Mesh, write_mesh
 from .folder import FileSet, Write
 
 
-def export_study(study: Study, path: str | Path, *, replace_study: bool = False) -> None:
+def export_study(
+    study: Study, path: str | Path, *, replace_study: bool = False, with_mesh: bool = True
+) -> None:
     """Write a portable study: the study file, and the files that it names beside it.
 
     Parameters
@@ -33,6 +35,9 @@ def export_study(study: Study, path: str | Path, *, replace_study: bool = False)
     replace_study : bool
         Whether the user has agreed to replace the file at `path`, even one that this program did
         not write. This does not apply to the files beside it.
+    with_mesh : bool
+        Whether the vehicle's mesh is written, too; without it the study is read again only together
+        with a vehicle.
 
     Raises
     ------
@@ -42,11 +47,11 @@ def export_study(study: Study, path: str | Path, *, replace_study: bool = False)
     """
     path = Path(path)
     with FileSet(path.parent, (path.name,) if replace_study else ()) as files:
-        for name, write in study_writers(study, path.name).items():
+        for name, write in study_writers(study, path.name, with_mesh=with_mesh).items():
             files.add(name, write)
 
 
-def study_writers(study: Study, name: str) -> dict[str, Write | bytes]:
+def study_writers(study: Study, name: str, *, with_mesh: bool = True) -> dict[str, Write | bytes]:
     """Return the content of a study file, and writers of the files beside it, by file name."""
     path = Path(name)
     writers = dict[str, Write | bytes]()
@@ -54,7 +59,8 @@ def study_writers(study: Study, name: str) -> dict[str, Write | bytes]:
         vehicle = study.vehicle
         mesh = Mesh(vehicle.triangles, np.asarray(vehicle.parts), tuple(vehicle.part_names))
         study = study.with_mesh(MESH if name == STUDY else path.with_suffix(".npz").name)
-        writers[str(study.mesh)] = lambda at: write_mesh(at, mesh)
+        if with_mesh:
+            writers[str(study.mesh)] = lambda at: write_mesh(at, mesh)
     search = study.search
     if (areas := areas_mesh(search.mounting)) is not None:
         file = AREAS if name == STUDY else path.with_suffix(f".{AREAS}").name

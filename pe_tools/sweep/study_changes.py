@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from pe_core.base.errors import InputError, one_of, shown
 from pe_core.base.table_reader import dotted
+from pe_core.scene import Vehicle
 from pe_core.study import Study, study_from_dict
 
 PART = r"""(?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*')"""
@@ -164,12 +165,15 @@ def changed_study(
     folder: Path,
     *,
     starts_anywhere: bool = False,
+    vehicle: Vehicle | None = None,
 ) -> Study:
     """Return the study of plain data with changes; the data stay. Errors name keys as they were
-    typed. For `folder` and `starts_anywhere` see `study_from_dict`."""
+    typed. For the other parameters see `study_from_dict`."""
     changed = dict(copy.deepcopy(data)) if changes else dict(data)
     paths = {set_value(changed, change, source).path: change for change in changes}
-    return named_study(changed, paths, source, folder, starts_anywhere=starts_anywhere)
+    return named_study(
+        changed, paths, source, folder, starts_anywhere=starts_anywhere, vehicle=vehicle
+    )
 
 
 def named_study(
@@ -179,11 +183,14 @@ def named_study(
     folder: Path,
     *,
     starts_anywhere: bool = False,
+    vehicle: Vehicle | None = None,
 ) -> Study:
     """Return the study of plain data in which changes were made, by where they are. An error at
     ``sensor[0].model`` names ``sensor.roof.model``, if that was typed."""
     try:
-        return study_from_dict(data, source, folder, starts_anywhere=starts_anywhere)
+        return study_from_dict(
+            data, source, folder, starts_anywhere=starts_anywhere, vehicle=vehicle
+        )
     except InputError as error:
         field = error.field
         for path, change in changes.items():

@@ -75,6 +75,7 @@ LOST = {
     "osi": EVERY_BEAM,
     "driveworks": f"beams of roof; {RANGES}; fusion group of roof; AP curve of eye",
     "kitti": f"beams of roof; {RANGES}; fusion group of roof; AP curve of eye",
+    "usd": "AP curve of eye",
 }
 P0 = "718.856 0 607.1928 0 0 718.856 185.2157 0 0 0 1 0"
 P2 = "718.856 0 607.1928 45.38225 0 718.856 185.2157 -0.1130887 0 0 1 0.003779761"

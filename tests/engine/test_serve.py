@@ -46,7 +46,28 @@ WRONG = [
     {"do": "where"},
     {"do": "where", "model": "none"},
     {"do": "export"},
+    {"do": "region"},
+    {"do": "region", "sensor": "tail"},
+    {"do": "region", "sensor": "--help"},
 ]
+
+
+def test_evaluators_are_kept_until_another_key_than_the_rig_s_is_changed(served):
+    """A requirement and the prior change what evaluates; a study by itself agrees."""
+    changes = {"prior.model": "highway", 'requirement."child behind".body': "adult"}
+    _, *replies = served(
+        {"do": "load", "study": "study.toml"},
+        {"do": "score"},
+        {"do": "check"},
+        {"do": "set", "changes": changes},
+        {"do": "score"},
+        {"do": "check"},
+    )
+    typed = [f"--set={key}={value}" for key, value in changes.items()]
+    alone = json.loads(pe("score", "study.toml", *typed, "--json").stdout)
+    checked = json.loads(pe("check", "study.toml", *typed, "--json").stdout)
+    assert replies[3]["answer"]["after"] == alone["after"] != replies[0]["answer"]["after"]
+    assert replies[4]["answer"] == checked
 
 
 @pytest.fixture(scope="module")
@@ -81,15 +102,17 @@ def without_run(data):
 
 
 def test_bits_are_those_of_the_command(served):
-    """A moved sensor, and a key that is set, as if they stood on the command line."""
-    loaded, moved, changed, scored, asked = served(
+    """A moved sensor, and a key that is set, as if they stood on the command line; a session keeps
+    what evaluates its study, so it has scored before."""
+    loaded, before, moved, changed, scored, asked = served(
         {"id": "a", "do": "load", "study": "study.toml"},
+        {"do": "score"},
         {"do": "move", "sensor": "roof", **POSE},
         {"do": "set", "changes": {"sensor.roof.model": "Hesai Pandar64"}},
         {"do": "score"},
         {"id": 7, "do": "explain", "at": [8, -0.00001]},
     )
-    assert [each["status"] for each in (loaded, moved, changed, scored, asked)] == [0] * 5
+    assert [each["status"] for each in (loaded, before, moved, changed, scored, asked)] == [0] * 6
     assert (loaded["id"], moved["id"], asked["id"]) == ("a", None, 7)
     assert moved["answer"]["sensors"]["roof"] == POSE
     assert loaded["answer"]["vehicle"] == moved["answer"]["vehicle"] is not None
@@ -98,6 +121,8 @@ def test_bits_are_those_of_the_command(served):
     alone = json.loads(pe("score", "study.toml", *typed, "--json").stdout)
     own = scored["answer"]
     assert own["after"] == alone["after"] and own["figures"] == alone["figures"]
+    assert own["requirements"] == alone["requirements"]
+    assert before["answer"]["after"] != own["after"]
     assert without_run(own).keys() == without_run(alone).keys()
     place = json.loads(
         pe("explain", "study.toml", *typed, "--at", "8", "-0.00001", "--json").stdout

@@ -11,6 +11,7 @@ import pe_core as pe
 from . import literal
 from .condition_rows import four_states_in_three_weathers
 from .embree import Embree
+from .live_rows import live_camera, live_candidate, live_tilted, live_upright
 from .many_rows import full_score_of_four_lidars, full_score_of_many, time_against_sensors
 from .mesh_rows import read_glb, read_obj, read_ply
 from .object_rows import (
@@ -234,6 +235,10 @@ ROWS: dict[str, Callable[[], Timing]] = {
         full_score,
         samples_free,
         samples_on_car,
+        live_upright,
+        live_tilted,
+        live_camera,
+        live_candidate,
         rays,
         rays_close,
         rays_from_roof,

@@ -25,6 +25,8 @@ ZONE_ROWS = 2
 WORD_GAP = 0.3
 MIN_WIDTH = 236.0
 MAX_COLUMNS = 64
+MAX_SHARE = 1.0 / 3.0
+"""Of the width between toolbar and sidebar that the plate takes at most, beyond `MIN_WIDTH`."""
 ALERT: Rgba = (1.0, 0.84, 0.35, 1.0)
 SENSE_COLORS: dict[int, Rgba] = {BETTER: (0.42, 0.75, 1.0, 1.0), WORSE: (1.0, 0.62, 0.25, 1.0)}
 ARROWS = {BETTER: "\N{DOWNWARDS ARROW}", WORSE: "\N{UPWARDS ARROW}"}
@@ -67,9 +69,10 @@ def draw() -> None:
         rows = rows_of(shown, live_state(scene.name).note, view_outdated=is_late)
         if is_simple(scene):
             rows = [row._replace(words=tuple((plain(t), c) for t, c in row.words)) for row in rows]
-        box = draw_rows(
-            rows, viewport.beside_toolbar(context), viewport.above_hud(context), viewport.ui_scale()
-        )
+        scale = viewport.ui_scale()
+        left = viewport.beside_toolbar(context)
+        widest = max(MIN_WIDTH * scale, MAX_SHARE * (viewport.sidebar_left(context) - left))
+        box = draw_rows(wrapped(rows, widest, scale), left, viewport.above_hud(context), scale)
     viewport.reserve_plate(context.region.as_pointer(), PLATE_NAME, box)
 
 
@@ -107,6 +110,28 @@ def _rows_of_score(shown: ShownScore, view_outdated: bool) -> list[TextRow]:
         coverage,
         *zones,
     ]
+
+
+def wrapped(rows: list[TextRow], widest: float, scale: float) -> list[TextRow]:
+    """Return rows that are no wider than `widest` [px]: what is too wide goes on in a row below. A
+    single word may be wider."""
+    return [part for row in rows for part in _parts_of(row, widest, scale)]
+
+
+def _parts_of(row: TextRow, widest: float, scale: float) -> list[TextRow]:
+    parts = [row._replace(words=())]
+    for text, color in row.words:
+        is_begun = False
+        for word in text.split(" "):
+            now = parts[-1].words
+            joined = (*now[:-1], (f"{now[-1][0]} {word}", color)) if is_begun else now
+            longer = row._replace(words=joined if is_begun else (*now, (word, color)))
+            if now and _width(longer, scale) > widest:
+                parts.append(row._replace(words=((word, color),)))
+            else:
+                parts[-1] = longer
+            is_begun = True
+    return parts
 
 
 def draw_rows(rows: list[TextRow], left: float, bottom: float, scale: float) -> viewport.PlateBox:

@@ -98,11 +98,18 @@ def draw_legends(
         Surroundings(room, [*blenders, *plates], _box_of(context, vehicle), GAP * scale / 2.0),
         MAX_SHARE * right * height - sum(map(_area, plates)),
     )
-    for legend, box, (_, full) in zip(legends, boxes, sizes, strict=True):
-        if box is not None:
-            is_whole = box[3] - box[1] >= full
-            _draw_legend(legend if is_whole else graphics.ColorKey(legend.title), box, scale)
-    return [*blenders, *(box for box in boxes if box is not None)]
+    for legend, placed in zip(legends, boxes, strict=True):
+        if placed is not None:
+            shown = graphics.ColorKey(legend.title) if placed.is_folded else legend
+            _draw_legend(shown, placed.box, scale)
+    return [*blenders, *(placed.box for placed in boxes if placed is not None)]
+
+
+class PlacedPlate(NamedTuple):
+    """Where a plate is drawn [px], and whether it is folded into its title."""
+
+    box: PlateBox
+    is_folded: bool
 
 
 class Surroundings(NamedTuple):
@@ -116,11 +123,12 @@ class Surroundings(NamedTuple):
 
 def folded(
     sizes: Sequence[tuple[float, float]], title: float, around: Surroundings, area: float
-) -> list[PlateBox | None]:
+) -> list[PlacedPlate | None]:
     """Return where plates go: as `arranged`, but a plate that does not fit beside the vehicle folds
     into its title, `title` high; the last first, until all together cover no more than `area`
     [px²]. A title that fits nowhere beside the vehicle is left out."""
     heights = [height for _, height in sizes]
+    is_folded = [False] * len(sizes)
     for last in range(len(sizes) - 1, -2, -1):
         now = [(width, height) for (width, _), height in zip(sizes, heights, strict=True)]
         boxes = arranged(now, around.room, around.taken, around.vehicle, around.gap)
@@ -129,7 +137,11 @@ def folded(
         if last < 0 or (covered <= area and not any(over)):
             break
         heights[last] = title
-    return [None if is_over else box for box, is_over in zip(boxes, over, strict=True)]
+        is_folded[last] = True
+    return [
+        None if box is None or is_over else PlacedPlate(box, is_title)
+        for box, is_over, is_title in zip(boxes, over, is_folded, strict=True)
+    ]
 
 
 def _area(box: PlateBox) -> float:

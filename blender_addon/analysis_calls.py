@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from . import engine_calls
-from .engine import advice, geometry, graphics, pe, sight, text
+from .engine import advice, graphics, pe, sight, text
 from .engine_calls import Problem
 from .overlay.layer_cache import LayerCache
 from .overlay.layers import LAYERS
@@ -29,10 +29,9 @@ def key_figures(problem: Problem, rigs: Sequence[pe.Rig]) -> list[advice.KeyFigu
 
 def warnings(
     sensors: list[pe.Sensor], vehicle: pe.Vehicle | None, space: pe.PerceptionSpace
-) -> tuple[str, tuple[advice.Advice, ...]]:
-    """Return a line about the vehicle, and the warnings about sensors on it."""
-    line = "" if vehicle is None else geometry.vehicle_line(vehicle)
-    return line, advice.warnings(sensors, vehicle, space, pe.Prior.uniform())
+) -> tuple[advice.Advice, ...]:
+    """Return the warnings about sensors on a vehicle."""
+    return advice.warnings(sensors, vehicle, space, pe.Prior.uniform())
 
 
 def outlook(study: pe.Study) -> advice.Outlook:

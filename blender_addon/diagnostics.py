@@ -12,10 +12,11 @@ from typing import NamedTuple
 import bpy
 
 from . import analysis_calls, bridge, engine_process, sensor_cache, signals, vehicle_cache
-from .engine import advice, jobs, pe
+from .engine import advice, geometry, jobs, pe
 
 IDLE_DELAY_S = 1.0  # How long the scene has to be idle until the checks run
 WARNINGS = "warnings"
+VEHICLE_LINE = "vehicle in a line"
 EXPLANATION = "words"
 """Topics of requests."""
 
@@ -79,19 +80,39 @@ def run_checks() -> None:
     except pe.InputError:  # a score reports it
         space = pe.PerceptionSpace()
 
-    def deliver(found: tuple[str, tuple[advice.Advice, ...]]) -> None:
+    def deliver(warnings: tuple[advice.Advice, ...]) -> None:
         if name in bpy.data.scenes:
-            line, warnings = found
             settings = bpy.data.scenes[name].perception_entropy
             found_now = (*own, *warnings)
             kept = warnings_of_result(settings, found_now)
             bridge.store_warnings(settings, (*found_now, *kept))
-            _vehicle_lines[name] = line
             signals.view_changed.emit()
 
+    _describe_vehicle(name, vehicle)
     given = sensors, vehicle, space
     engine_process.ask(WARNINGS, analysis_calls.warnings, given, deliver, fail=lambda _: None)
     _explain_stored(scene, depsgraph)
+
+
+def _describe_vehicle(name: str, vehicle: pe.Vehicle | None) -> None:
+    """Have a scene's vehicle told in a line, without waiting for maps and checks."""
+    if vehicle is None:
+        engine_process.drop(VEHICLE_LINE)
+        _vehicle_lines.pop(name, None)
+        return
+
+    def deliver(line: str) -> None:
+        _vehicle_lines[name] = line
+        signals.view_changed.emit()
+
+    engine_process.ask(
+        VEHICLE_LINE,
+        geometry.vehicle_line,
+        (vehicle,),
+        deliver,
+        fail=lambda _: None,
+        lane=engine_process.FOLLOWS_MOUSE,
+    )
 
 
 def warnings_of_result(

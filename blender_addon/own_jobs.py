@@ -113,7 +113,7 @@ def rig_job(study: pe.Study, name: str, path: Path, into: str | None, replace: b
 
 
 def _facts(outcome: jobs.Outcome, _watch: OnProgress) -> exchange.SceneFacts:
-    return exchange.SceneFacts(outcome.study.vehicle, jobs.score_facts(outcome))
+    return exchange.SceneFacts(outcome.study.vehicle, jobs.score_facts(jobs.result_dict(outcome)))
 
 
 def write_rig(

@@ -23,7 +23,7 @@ from ..exchange import (
     rig_format,
 )
 from ..formats import read_mesh
-from ..jobs import export_study, prepare_folder, score_facts
+from ..jobs import export_study, prepare_folder, result_dict, score_facts
 from ..outputs import OF_EXAMPLE, export_scene, output_files, scene_output, scene_outputs
 from .answers import FilesAnswer
 from .explain_verbs import scored
@@ -77,7 +77,7 @@ def export(source: StudyFiles, args: argparse.Namespace) -> Answer:
             into=args.into,
             placed=asked_origin(args),
             replace=args.replace or args.output is None,
-            facts=_facts(study, to),
+            facts=_facts(source, args, study, to),
         )
     for line in lines:
         tell(line)
@@ -85,11 +85,20 @@ def export(source: StudyFiles, args: argparse.Namespace) -> Answer:
     return answered(args, FilesAnswer(written=files), (f"wrote {path}" for path in files)), DONE
 
 
-def _facts(study: Study, name: str) -> SceneFacts | None:
-    """Return the vehicle and what a score finds, for a format that has room for them."""
-    if rig_format(name).write_scene is None:
+def _facts(
+    source: StudyFiles, args: argparse.Namespace, study: Study, name: str
+) -> SceneFacts | None:
+    """Return the vehicle and what a score finds, for a format that has room for them: of the result
+    beside the study, if that is still of it, else of a score."""
+    row = rig_format(name)
+    is_there = args.output is not None and Path(args.output).exists()
+    is_refused = (args.into is not None and not row.merges) or (is_there and not args.replace)
+    if row.write_scene is None or is_refused:  # `export_rig` says so before anything is scored
         return None
-    return SceneFacts(study.vehicle, score_facts(scored(study, None)))
+    result = source.stored_result(study, args)
+    if result is None:
+        result = result_dict(scored(study, None, source))
+    return SceneFacts(study.vehicle, score_facts(result))
 
 
 def import_study(_: StudyFiles, args: argparse.Namespace) -> Answer:

@@ -1,12 +1,12 @@
 """Where a command line's studies come from: from files, or in Blender from the open scene."""
 
 import argparse
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TextIO
+from typing import Any, TextIO
 
 from pe_core.base.errors import InputError, require_name, shown
 from pe_core.base.files import read_bytes
@@ -16,7 +16,7 @@ from pe_core.search.goals import Start
 from pe_core.study import RESULT, STUDY, StateInWeather, Study, load_study, load_study_data
 
 from ..advice import Advice
-from ..jobs import Job, export_study, read_search
+from ..jobs import Job, export_study, read_search, stored_result
 from ..known_defects import mended_since
 from ..sweep import KeyChange, changed_study, read_changes
 from .run_job import More
@@ -103,6 +103,11 @@ class StudyFiles:
     def notes(self) -> tuple[Advice, ...]:
         """Return warnings about the source."""
         return ()
+
+    def stored_result(self, study: Study, args: argparse.Namespace) -> Mapping[str, Any] | None:
+        """Return the result beside the study's file; None where it is not of this study."""
+        path = getattr(args, "study", None)
+        return None if path is None else stored_result(Path(path).parent, study)
 
     def share_evaluators(self, job: Job) -> None:
         """Give a job the evaluators of earlier ones: none here, a command has one job."""

@@ -114,5 +114,6 @@ class ResultRecord:
     stopped: bool
     warnings: tuple[Advice, ...]
     history: tuple[OpenTable, ...]
+    study_sha256: Annotated[str, Part(about="Of the study with the rig of the result")]
     inputs: InputsRecord
     run: RunMetadata

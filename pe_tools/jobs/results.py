@@ -4,6 +4,8 @@ The files of a run are one set. `FileSet` writes them together, with result.json
 import json
 import platform
 from collections.abc import Collection, Iterable, Mapping
+from contextlib import suppress
+from dataclasses import fields
 from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
@@ -11,8 +13,11 @@ from typing import Any, TypeVar
 import numpy as np
 
 from pe_core.base.codec import record, write
-from pe_core.base.files import csv_text
-from pe_core.base.table_reader import dump_json, finite
+from pe_core.base.errors import InputError
+from pe_core.base.files import csv_text, read_bytes
+from pe_core.base.input_files import not_noting_inputs
+from pe_core.base.table_reader import Table, dump_json, finite, parse_json
+from pe_core.scoring.requirements import VerdictSummary
 from pe_core.search import AXES, EvaluatedRig, Value
 from pe_core.study.condition_table import ConditionScore, ConditionTable
 from pe_core.study.file_names import (
@@ -119,6 +124,7 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
             }
             for row in outcome.history
         ),
+        study_sha256=fingerprint(study),
         inputs=InputsRecord(**(outcome.inputs or inputs_of(start))),
         run=run_record(outcome.seconds, host or {}),
     )
@@ -129,18 +135,37 @@ def _ends(both: tuple[T, T] | None) -> dict[BeforeOrAfter, T] | None:
     return None if both is None else {"before": both[0], "after": both[1]}
 
 
-def score_facts(outcome: Outcome) -> dict[str, Any]:
-    """Return what a score found as plain data, for files of other programs that have the rig: the
+def score_facts(result: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a result, as `result_dict` has it, says to other programs that get the rig: the
     study's fingerprint, the figures of the dashboard, and the verdicts."""
+    after = result["after"]
+    verdicts = result.get("requirements") or ()
+    keys = [field.name for field in fields(VerdictSummary)]
     facts = {
-        "study": fingerprint(outcome.study),
-        "voxels": outcome.after.voxels,
-        "stderr": outcome.after.stderr,
-        "coverage": outcome.after.coverage,
-        "figures": [record(each.row) for each in outcome.dashboard],
-        "verdicts": [record(each.summary) for each in outcome.verdicts],
+        "study": result["study_sha256"],
+        "voxels": after["voxels"],
+        "stderr": after["stderr"],
+        "coverage": after["coverage"],
+        "figures": result["dashboard"],
+        "verdicts": [{key: row[key] for key in keys} for row in verdicts],
     }
     return finite(facts)  # type: ignore[no-any-return]
+
+
+@not_noting_inputs()
+def stored_result(folder: Path, study: Study) -> Mapping[str, Any] | None:
+    """Return the data of the result that a folder holds; None where it is not of this study as it
+    is now, or of another version of the program."""
+    path = folder / RESULT
+    with suppress(InputError):  # another program's file of that name, or none
+        data = parse_json(path, read_bytes(path))
+        if not isinstance(data, dict) or "study_sha256" not in data:
+            return None
+        table = Table(data, str(path))
+        version = table.table("run").table("versions").text(PROGRAM)
+        if version == __version__ and table.text("study_sha256") == fingerprint(study):
+            return data
+    return None
 
 
 def _value(figure: SearchedFigure, value: Value) -> dict[str, float | None]:

@@ -37,12 +37,16 @@ def stop(process: subprocess.Popen) -> None:
 
 
 def run(
-    command: Sequence[str], timeout_s: float, env: Mapping[str, str] | None = None
+    command: Sequence[str],
+    timeout_s: float,
+    env: Mapping[str, str] | None = None,
+    given: str | None = None,
 ) -> subprocess.CompletedProcess[str]:
-    """Run a command to its end; its whole group is killed when that takes too long."""
+    """Run a command to its end, with a text on its standard input if one is given; its whole group
+    is killed when that takes too long."""
     process = subprocess.Popen(
         command,
-        stdin=subprocess.DEVNULL,
+        stdin=subprocess.DEVNULL if given is None else subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -50,7 +54,7 @@ def run(
         start_new_session=True,
     )
     try:
-        stdout, stderr = process.communicate(timeout=patience(timeout_s))
+        stdout, stderr = process.communicate(given, timeout=patience(timeout_s))
     except BaseException:
         stop(process)
         raise

@@ -17,9 +17,11 @@ class Blender:
     command: str
     env: dict[str, str] = field(default_factory=dict)
 
-    def run(self, *arguments, timeout_s: float = HANG_S) -> subprocess.CompletedProcess[str]:
-        """Run ``blender ARGUMENTS`` to its end."""
-        return process.run([self.command, *map(str, arguments)], timeout_s, self.env)
+    def run(
+        self, *arguments, timeout_s: float = HANG_S, given: str | None = None
+    ) -> subprocess.CompletedProcess[str]:
+        """Run ``blender ARGUMENTS`` to its end, with a text on its standard input."""
+        return process.run([self.command, *map(str, arguments)], timeout_s, self.env, given)
 
     def with_resources(self, folder: Path) -> "Blender":
         """Return the same Blender with a user folder of its own."""
@@ -42,9 +44,12 @@ class Installed:
             *self.START, "-b", "--python-exit-code", 3, "--python", script, "--", *arguments
         )
 
-    def pe(self, blend: Path, *arguments) -> subprocess.CompletedProcess[str]:
-        """Run ``blender -b BLEND --command pe ARGUMENTS``."""
-        return self.blender.run(*self.START, "-b", blend, "--command", "pe", *arguments)
+    def pe(
+        self, blend: Path, *arguments, given: str | None = None
+    ) -> subprocess.CompletedProcess[str]:
+        """Run ``blender -b BLEND --command pe ARGUMENTS``, with a text on its standard input."""
+        command = (*self.START, "-b", blend, "--command", "pe", *arguments)
+        return self.blender.run(*command, given=given)
 
 
 def output_of(answer: subprocess.CompletedProcess[str]) -> str:

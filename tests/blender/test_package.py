@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.blender.runner import output_of
+
 HERE = Path(__file__).resolve().parent
 OPERATORS = ["add_sensor", "score", "optimize", "export_study", "render_review"]
 
@@ -32,6 +34,11 @@ def test_names_stay_english_where_blender_has_a_translation(report, code):
     found = report["translated"][code]
     assert found["names"] > 400 and len(found["in_blender_s"]) > 20
     assert not found["in_our_context"]
+
+
+def test_blender_s_own_tool_finds_the_zip_valid(blender, extension_zip):
+    answer = blender.run("--factory-startup", "--command", "extension", "validate", extension_zip)
+    assert answer.returncode == 0, output_of(answer)
 
 
 def test_engine_is_the_one_inside(report):

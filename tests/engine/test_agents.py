@@ -61,7 +61,7 @@ def test_every_request_of_the_session_is_answered(folder, monkeypatch):
     stdin = SimpleNamespace(buffer=io.BytesIO("\n".join(block("json")).encode()))
     monkeypatch.setattr(sys, "stdin", stdin)
     replies = [json.loads(line) for line in pe("serve").stdout.splitlines()]
-    assert [each["id"] for each in replies] == [1, 2, 3, 4, 5, 6, 7, 8]
+    assert [each["id"] for each in replies] == [1, 2, 3, 4, 5, 6, 7]
     assert [each.get("error") for each in replies] == [None] * len(replies)
     for reply in replies:
         assert f"`{reply['do']}`" in AGENTS

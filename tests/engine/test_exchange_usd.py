@@ -1,8 +1,10 @@
 """OpenUSD: stages of other programs are read where they are, by hand and against usd-core; NVIDIA's
 validator passes what is written, and fails it with a wrong number of emitters."""
 
+import json
 import math
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -16,7 +18,9 @@ from pe_core import catalog
 from pe_core.base.errors import InputError
 from pe_tools.exchange import SceneFacts, rig_files
 
+from .processes import pe as pe_command
 from .shapes import box_car, camera, lidar_on_roof, small_lidar
+from .test_docs_examples import STUDY
 
 WITHIN = 1e-6
 HEAD = '#usda 1.0\n(\n    defaultPrim = "World"\n    metersPerUnit = {}\n    upAxis = "{}"\n)\n'
@@ -365,3 +369,26 @@ def test_a_changed_emitter_is_not_hidden_by_the_catalogue(tmp_path):
     found, lines = rig_of(path)
     lowest = math.degrees(found["roof"].model.elevations.min())
     assert lowest == pytest.approx(-25.0) and "roof: its emitters" in lines
+
+
+def test_figures_are_of_the_result_beside_the_study_while_it_is_of_it(tmp_path):
+    """The stored result is marked by another coverage, to know it again."""
+    body = box_car()
+    pt.write_mesh(tmp_path / "box.npz", pe.Mesh(body.triangles, body.parts, body.part_names))
+    (tmp_path / "study.toml").write_text(STUDY, "utf-8")
+    out = tmp_path / "out"
+    assert pe_command("score", tmp_path / "study.toml", "-o", out).returncode == 0
+    result = out / "result.json"
+    scored = json.loads(result.read_text("utf-8"))
+    result.write_text(json.dumps(scored | {"after": scored["after"] | {"coverage": 0.125}}))
+
+    def stated(*changes):
+        rig = tmp_path / "rig.usda"
+        call = (out / "study.toml", "--to", "usd", "-o", rig, "--replace", *changes)
+        assert pe_command("export", *call).returncode == 0
+        return float(re.search(r'"coverage" = (\S+)', rig.read_text("utf-8"))[1])
+
+    assert stated() == 0.125
+    assert stated("--set", "samples=2048") != 0.125
+    result.write_text("{}")
+    assert stated() == scored["after"]["coverage"]

@@ -1,6 +1,7 @@
 """What the engine's process finds out for panels and views: figures, warnings, shapes of layers."""
 
-from collections.abc import Sequence
+from collections import defaultdict
+from collections.abc import Generator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -53,22 +54,29 @@ def bodies_seen(
     return advice.see_bodies(rig, vehicle, bodies, model, kernel_caches=_beams.made(vehicle, dict))
 
 
-_layers = LayerCache()
+_layers: defaultdict[str, LayerCache] = defaultdict(LayerCache)
+"""By lane: no two threads use the same one."""
 
 
 def layer_shapes(
     request: ViewRequest, layer: str, rough: bool, names: Sequence[str]
-) -> list[graphics.LayerShape]:
-    """Return the shapes of a layer by these names; approximate ones where `rough`."""
-    make = next(each.shape for each in LAYERS if each.name == layer)
+) -> Generator[None, None, list[graphics.LayerShape]]:
+    """Return the shapes of a layer by these names; approximate ones where `rough`. Pause where a
+    shape does."""
+    row = next(each for each in LAYERS if each.name == layer)
     request = replace(request, moving=rough)
-    return [make(request, _layers, name) for name in names]
+    shapes = list[graphics.LayerShape]()
+    for name in names:
+        shape = row.shape(request, _layers[row.lane], name)
+        if isinstance(shape, Generator):
+            shape = yield from shape
+        shapes.append(shape)
+    return shapes
 
 
 def clear() -> None:
     """Drop all that is kept: where the engine has no process, another file is opened."""
-    global _layers
-    _layers = LayerCache()
+    _layers.clear()
     _sight.clear()
     _beams.clear()
     engine_calls.clear()

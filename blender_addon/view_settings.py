@@ -219,6 +219,12 @@ class ViewSettings:
         "How much the figure may lose, in its unit: the region follows at once; 0: as asked",
         precision=3, step=0.1,
     )  # fmt: skip
+    show_steepest: bool = _switch(
+        False,
+        "Best Way",
+        "Show in which direction the selected sensor gains most, along its mount and turned, and "
+        "the best place within 20 cm: M moves it there. Nothing is shown that might be noise",
+    )
     show_labels: bool = _switch(True, "Names", "Write each sensor's name beside it")
     show_bodies: bool = _switch(
         True, "Test Bodies", "Write beside each test body which sensors see it, and with how much"

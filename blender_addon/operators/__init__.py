@@ -22,6 +22,7 @@ from . import (
     region,
     running_job,
     shortcuts,
+    steepest_way,
     suggest,
     surroundings,
     upright,
@@ -36,6 +37,7 @@ from .fix_warnings import FIX_LABELS
 from .imports import menu_of_rigs
 from .requirements import ShownVerdict, shown_verdicts
 from .rows import ROW_LISTS
+from .steepest_way import shown_way
 
 
 def register() -> None:

@@ -1,18 +1,35 @@
 """Keys of the extension in 3D views; Blender's preferences list them, and can change them."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import bpy
 
 CTRL_ALT: dict[str, Any] = {"ctrl": True, "alt": True}
 LIVE = {"data_path": "scene.perception_entropy.live.on"}
-SHORTCUTS: tuple[tuple[str, str, dict[str, Any], dict[str, Any]], ...] = (
-    ("pe.look_back", "ESC", {}, {}),
-    ("wm.context_toggle", "L", CTRL_ALT, LIVE),
-    ("pe.place_sensor", "P", CTRL_ALT, {}),
-    ("pe.ghost_variant", "V", CTRL_ALT, {}),
+IN_VIEW = ("3D View", "VIEW_3D")
+IN_OBJECT_MODE = ("Object Mode", "EMPTY")
+"""Names and spaces of Blender's key maps. That of a mode is asked first: a key of Blender's own in
+it would be taken before one of the view."""
+
+
+class Shortcut(NamedTuple):
+    """An operator's key. Where the operator is not possible, the key does what Blender's does."""
+
+    operator: str
+    key: str
+    modifiers: dict[str, Any] = {}
+    properties: dict[str, Any] = {}
+    keymap: tuple[str, str] = IN_VIEW
+
+
+SHORTCUTS = (
+    Shortcut("pe.look_back", "ESC"),
+    Shortcut("wm.context_toggle", "L", CTRL_ALT, LIVE),
+    Shortcut("pe.place_sensor", "P", CTRL_ALT),
+    Shortcut("pe.ghost_variant", "V", CTRL_ALT),
+    Shortcut("pe.take_better_place", "M", keymap=IN_OBJECT_MODE),
 )
-"""Operator, key, modifiers and properties. Of Ctrl Alt, Blender uses none of these letters."""
+"""Of Ctrl Alt, Blender uses none of these letters."""
 
 _items: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []
 
@@ -21,15 +38,17 @@ def register() -> None:
     """Add the keys, where there is a window."""
     keys = bpy.context.window_manager.keyconfigs.addon
     if keys is not None:  # there are none without a window
-        add_to(keys.keymaps.new(name="3D View", space_type="VIEW_3D"))
+        add_to(keys)
 
 
-def add_to(keymap: bpy.types.KeyMap) -> None:
-    """Add the keys to a key map."""
-    for operator, key, modifiers, properties in SHORTCUTS:
-        item = keymap.keymap_items.new(operator, key, "PRESS", **modifiers)
-        for name, value in properties.items():
-            setattr(item.properties, name, value)
+def add_to(keys: bpy.types.KeyConfig) -> None:
+    """Add the keys to a configuration of keys."""
+    for row in SHORTCUTS:
+        name, space = row.keymap
+        keymap = keys.keymaps.new(name=name, space_type=space)
+        item = keymap.keymap_items.new(row.operator, row.key, "PRESS", **row.modifiers)
+        for prop, value in row.properties.items():
+            setattr(item.properties, prop, value)
         _items.append((keymap, item))
 
 

@@ -16,7 +16,7 @@ GroundSight = sight.GroundSight
 T = TypeVar("T")
 MAX_TRIANGLES = 50_000
 """A vehicle of more is simplified for drawing: a picture shows no more detail."""
-MAX_KEPT = {"casts": 24, "compared": 2, "scale": 16}
+MAX_KEPT = {"casts": 24, "compared": 2, "evaluators": 3, "scale": 16}
 """How many results of a sort are kept, those used last; otherwise one."""
 
 
@@ -72,6 +72,16 @@ class LayerCache:
         """Return what holds rigs to the requirements, and why others cannot be placed, by name."""
         key = request.requirements_key, request.body_key, request.reference, request.prior_key
         return self._keep("checker", key, lambda: _checker(request))
+
+    def evaluator(
+        self, request: ViewRequest, sample: Hashable, make: Callable[[], pe.RigEvaluator]
+    ) -> pe.RigEvaluator:
+        """Return what scores rigs on a sample."""
+        return self._keep("evaluators", (request.body_key, request.prior_key, sample), make)
+
+    def surfaces(self, request: ViewRequest) -> dict[Any, Any]:
+        """Return the surfaces of mounts of the vehicle that are known, to be added to."""
+        return self._keep("surfaces", request.body_key, dict)
 
     def met_before(
         self, request: ViewRequest, verdicts: Sequence[requirements.Verdict]

@@ -1,6 +1,6 @@
 """The table of layers: a row a layer, in the order in which they are drawn."""
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Generator, Hashable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any, cast
@@ -8,7 +8,7 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from ..engine import graphics, kinds, motion, pe
+from ..engine import advice, engine_process, graphics, kinds, motion, pe
 from ..view_settings import ALL, BY_CHANNEL, BY_SENSOR, RIG, ViewSettings
 from . import ground_layers, heatmap, regions
 from .annotations import (
@@ -24,6 +24,7 @@ from .layer_cache import LayerCache
 from .place_colors import place_colors, region_patch
 from .request import SceneSensor, ViewRequest
 from .requirement_zones import requirement_zones
+from .way_arrow import way_arrow
 
 WHOLE_RIG = ""
 OTHER_RIG = "\0other variant"
@@ -37,9 +38,16 @@ OCCLUDED_ALPHA = 0.35
 """Opacity of blocked beams behind the vehicle: many of them would hide all else."""
 FRUSTUM_M = 1.0
 UNSELECTED_ALPHA = 0.6
+STEERING = "steering"
+"""A lane of its own: the best way of a dragged sensor waits for no map."""
+MOVED_SAMPLES = 16_384
+IDLE_SAMPLES = 65_536
+"""Voxels of the best way while something moves, and of an idle scene."""
 
 LayerKeys = Callable[[ViewRequest], dict[str, Hashable]]
-LayerMaker = Callable[[ViewRequest, LayerCache, str], graphics.LayerShape]
+ShapeSteps = Generator[None, None, graphics.LayerShape]
+LayerMaker = Callable[[ViewRequest, LayerCache, str], graphics.LayerShape | ShapeSteps]
+"""What makes a shape, at once or in steps."""
 ZONES: dict[str, Any] = {"on_ground": True, "edged": True}
 
 
@@ -51,7 +59,8 @@ class Layer:
     Each name has a key of everything that the shape depends on; a shape with an unchanged key is
     not made again. `shape` makes a shape from request, cache and name. `rough`: the shape is
     approximate while something moves. `on_ground`: it is drawn in front of the ground. `edged`: its
-    lines have a dark edge, because their background has many colours.
+    lines have a dark edge, because their background has many colours. `lane`: where the engine
+    makes it; a shape that pauses between its steps is given up there when something moves.
     """
 
     name: str
@@ -62,6 +71,7 @@ class Layer:
     rough: bool = False
     on_ground: bool = False
     edged: bool = False
+    lane: str = engine_process.BEHIND
 
 
 def _wiped(keys: LayerKeys, shape: LayerMaker) -> tuple[LayerKeys, LayerMaker]:
@@ -71,7 +81,9 @@ def _wiped(keys: LayerKeys, shape: LayerMaker) -> tuple[LayerKeys, LayerMaker]:
         other = keys(request.of_other).get(WHOLE_RIG) if request.is_wiped else None
         return keys(request) if other is None else {**keys(request), OTHER_RIG: other}
 
-    def either(request: ViewRequest, cache: LayerCache, name: str) -> graphics.LayerShape:
+    def either(
+        request: ViewRequest, cache: LayerCache, name: str
+    ) -> graphics.LayerShape | ShapeSteps:
         return shape(request.of_other if name == OTHER_RIG else request, cache, WHOLE_RIG)
 
     return both, either
@@ -335,6 +347,27 @@ def _region(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.La
     return region_patch(found, [each.sensor for each in request.counted])
 
 
+def _steepest_keys(request: ViewRequest) -> dict[str, Hashable]:
+    return {} if request.steered is None else {WHOLE_RIG: request.steered.key}
+
+
+def _steepest(request: ViewRequest, cache: LayerCache, _name: str) -> ShapeSteps:
+    """Pause after each score; return the arrow, while something moves without turns and ghost."""
+    steered = request.steered
+    assert steered is not None  # the layer has no key without one
+    study = steered.study
+    places = advice.places_of(study, steered.name, anywhere=True, surfaces=cache.surfaces(request))
+    samples = MOVED_SAMPLES if request.moving else IDLE_SAMPLES
+    own = cache.evaluator(request, samples, lambda: study.evaluator(samples, 1))
+    screen = None
+    if not request.moving:
+        screen = cache.evaluator(request, "screen", lambda: advice.screen_of(study, 1))
+    found = yield from advice.steepest_steps(
+        places, own, with_turns=not request.moving, screen=screen
+    )
+    return way_arrow(found, study.rig[steered.name])
+
+
 def _requirement_keys(request: ViewRequest) -> dict[str, Hashable]:
     if not request.requirements:
         return {}
@@ -431,6 +464,16 @@ LAYERS = (
     ),
     Layer("where", "Where?", _where_keys, _where, on_ground=True),
     Layer("region", "Free Region", _region_keys, _region, line_px=2.2, edged=True),
+    Layer(
+        "steepest",
+        "Best Way",
+        _steepest_keys,
+        _steepest,
+        line_px=2.2,
+        rough=True,
+        edged=True,
+        lane=STEERING,
+    ),
     Layer("mounts", "Mounts", _mount_keys, _mounts, line_px=1.4, edged=True),
     Layer("focus", "Focus", _focus_keys, _focus, line_px=1.4, edged=True),
     Layer("frustums", "Camera Views", _view_keys, _views),

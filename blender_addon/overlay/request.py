@@ -46,6 +46,16 @@ class MountFaces:
     strong: bool = False
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class SteeredSensor:
+    """The sensor whose best way is shown, by name, and the study that says where it may go. `key`
+    identifies both."""
+
+    name: str
+    study: pe.Study
+    key: Hashable
+
+
 @dataclass(frozen=True, slots=True)
 class ViewRequest:
     """A snapshot of a scene: everything that the layers depend on.
@@ -89,6 +99,7 @@ class ViewRequest:
     rate_hz: float = 24.0
     where: jobs.PlaceMap | None = None
     region: advice.FreeRegion | None = None
+    steered: SteeredSensor | None = None
 
     @property
     def counted(self) -> tuple[SceneSensor, ...]:

@@ -57,8 +57,10 @@ def on_moving() -> None:
 
 
 def on_live_score() -> None:
-    """The baseline of the live score may have changed: difference maps have the same one."""
-    if any(scene.perception_entropy.view.ground_difference for scene in bpy.data.scenes):
+    """The baseline of the live score may have changed: difference maps have the same one. The best
+    way of a moved sensor is requested once it has its score."""
+    views = [scene.perception_entropy.view for scene in bpy.data.scenes]
+    if any(view.ground_difference or view.show_steepest for view in views):
         schedule()
 
 
@@ -127,6 +129,7 @@ def _request(scene: str, layer: Layer, request: ViewRequest) -> None:
     }
     if _requested.get((scene, layer.name)) == (keys, rough):
         return
+    _, was_rough = _requested.get((scene, layer.name), ({}, rough))
     _requested[scene, layer.name] = keys, rough
     missing = [name for name in keys if name not in wanted]
 
@@ -143,8 +146,11 @@ def _request(scene: str, layer: Layer, request: ViewRequest) -> None:
             raise problem
 
     given = request, layer.name, rough, missing
+    topic = _topic(scene, layer.name)
+    if rough and not was_rough and layer.lane != engine_process.BEHIND:
+        engine_process.drop(topic)  # the fine shape would keep the first rough one waiting
     engine_process.ask(
-        _topic(scene, layer.name), analysis_calls.layer_shapes, given, deliver, fail=fail
+        topic, analysis_calls.layer_shapes, given, deliver, fail=fail, lane=layer.lane
     )
 
 

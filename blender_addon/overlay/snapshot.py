@@ -3,6 +3,7 @@
 import contextlib
 import time
 from collections.abc import Hashable
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import bpy
@@ -11,11 +12,12 @@ import numpy as np
 from .. import best_so_far, bridge, location_query, sensor_cache, vehicle_cache, where_map
 from ..choices import LimitBox
 from ..engine import graphics, pe, studies
+from ..engine_calls import rig_key
 from ..live import BEFORE_SEARCH, live_state, shown_score
 from ..view_settings import MIN_LENGTH_M, ViewSettings
 from .annotations import MENDS
 from .layers import LAYERS
-from .request import MountFaces, SceneSensor, ViewRequest
+from .request import MountFaces, SceneSensor, SteeredSensor, ViewRequest
 
 BEST_SO_FAR = "best so far"
 SLOW_S = 0.05
@@ -39,11 +41,12 @@ class SnapshotReader:
         self._inputs: dict[str, ScoringInputs] = {}
         self._bodies: dict[str, vehicle_cache.CachedVehicle] = {}
         self._faces: dict[str, dict[Hashable, np.ndarray]] = {}
+        self._steered: dict[str, SteeredSensor] = {}
         self._took_s = 0.0
 
     def clear(self) -> None:
         """Drop everything: another file is opened."""
-        for cached in (self._inputs, self._bodies, self._faces):
+        for cached in (self._inputs, self._bodies, self._faces, self._steered):
             cached.clear()
         self._took_s = 0.0
 
@@ -83,6 +86,7 @@ class SnapshotReader:
             reference=_reference(scene),
             where=where_map.maps.get(scene.name),
             region=where_map.regions.get(scene.name),
+            steered=self._steered_sensor(scene, depsgraph, sensors, vehicle, moving=moving),
             **(_requirements(scene) | _story(scene)),
         )
 
@@ -135,6 +139,45 @@ class SnapshotReader:
         self._inputs[scene.name] = known
         return known
 
+    def _steered_sensor(
+        self,
+        scene: bpy.types.Scene,
+        depsgraph: bpy.types.Depsgraph,
+        sensors: tuple[SceneSensor, ...],
+        vehicle: pe.Vehicle | None,
+        *,
+        moving: bool,
+    ) -> SteeredSensor | None:
+        """Return the active sensor, to show its best way. While something moves it is that of the
+        last live score, as the study was when the scene was idle."""
+        known = self._steered.pop(scene.name, None)
+        view = scene.perception_entropy.view
+        active = depsgraph.view_layer.objects.active
+        names = [each.sensor.name for each in sensors if each.selected and each.counted]
+        if not view.show_steepest or active is None or active.name not in names:
+            return None
+        rig = pe.Rig([each.sensor for each in sensors if each.counted])
+        if known is not None and known.name != active.name:
+            known = None
+        if known is not None and not _is_scored(scene, rig, moving):
+            self._steered[scene.name] = known
+            return known
+        inputs = self._inputs[scene.name]
+        try:
+            if moving and known is not None:
+                study = known.study.with_rig(rig)
+            else:
+                objects = sensor_cache.sensors(scene)
+                study = bridge.study_from_scene(scene, depsgraph, vehicle, objects)
+                study = replace(study, prior=inputs.prior or study.prior)
+        except pe.InputError:
+            return None
+        own = study.search
+        where = own.mounting, own.free.get(active.name), own.limits.get(active.name), study.limits
+        key = active.name, rig_key(rig), self._bodies[scene.name].key, inputs.key, where
+        self._steered[scene.name] = SteeredSensor(active.name, study, key)
+        return self._steered[scene.name]
+
     def _vehicle(
         self, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, moving: bool
     ) -> vehicle_cache.CachedVehicle:
@@ -146,6 +189,15 @@ class SnapshotReader:
         if known is None or found.key != known.key:
             self._took_s = time.perf_counter() - start
         return found
+
+
+def _is_scored(scene: bpy.types.Scene, rig: pe.Rig, moving: bool) -> bool:
+    """Whether the live score has followed to a rig. Without a live score nothing is known of one
+    that moves."""
+    if not scene.perception_entropy.live.on:
+        return not moving
+    score = live_state(scene.name).score
+    return score is not None and rig_key(score.rig) == rig_key(rig)
 
 
 def view_of(scene: bpy.types.Scene) -> ViewSettings:

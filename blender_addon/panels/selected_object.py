@@ -4,6 +4,7 @@ from bpy.types import Context, Object, PropertyGroup, UILayout
 
 from .. import where_map
 from ..bridge import holder_of, in_surroundings
+from ..operators import shown_way
 from ..panel_text import draw_label, is_simple
 from ..properties import AXIS_LABELS
 from ..sensor_kinds import has_view
@@ -85,6 +86,10 @@ def draw_region(layout: UILayout, context: Context, obj: Object) -> None:
     """Draw the button that finds a sensor's free region; of a known one, how far it may go."""
     row = layout.row(align=True)
     row.operator("pe.free_region", icon="SNAP_FACE").name = obj.name
+    layout.prop(context.scene.perception_entropy.view, "show_steepest")
+    if (way := shown_way(context)) is not None and way.better is not None:
+        text = f"Move {way.better.distance * 100.0:.0f} cm: {way.better.change:+.3f} nats"
+        layout.operator("pe.take_better_place", text=text, icon="TRACKING_FORWARDS_SINGLE")
     found = where_map.regions.get(context.scene.name)
     if found is None or found.sensor != obj.name:
         return

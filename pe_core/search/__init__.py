@@ -6,6 +6,7 @@ from .dispatch import Call, WorkerDied, evaluate_all, run_tasks
 from .domains import (
     AXES,
     POSITION_AXES,
+    MountSurface,
     pose_from_values,
     pose_values,
     snap_to_mount,

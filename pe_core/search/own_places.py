@@ -13,16 +13,23 @@ import numpy as np
 
 from ..base.arrays import Floats
 from ..base.errors import InputError, require_name, shown
-from ..geometry.poses import dot
+from ..geometry.poses import cross, dot
 from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
-from .domains import ANY_ANGLE, POSITION_AXES, TURNS, MountSurface, SurfaceDomain, rounded_length
+from .domains import (
+    ANY_ANGLE,
+    POSITION_AXES,
+    BoxDomain,
+    MountSurface,
+    SurfaceDomain,
+    rounded_length,
+)
 from .limit import FigureLimits
 from .mounts import Mounting, SlotMount, SurfaceMount
-from .parametrization import Parametrization
+from .parametrization import Parametrization, surface_of
 from .placement import Placement, housings_of
 from .places import IN_BODY, SurfacePlace, surface_points
-from .search_space import Rule, SearchSpace
+from .search_space import SPAN, Rule, SearchSpace
 
 BODY_MOUNT = "body"
 """Name of the mount that a sensor without one is on."""
@@ -66,13 +73,21 @@ class OwnPlaces:
         Those on what can be built, and that the rig keeps now, forbid places.
     bounds : mapping of axis to (low, high)
         Of the sensor's position [m].
+    axes : sequence of str, optional
+        Axes of the ground frame along which a sensor without a mount moves. By default it moves
+        over the whole body.
+    anywhere : bool
+        Whether a sensor that is not on its mount is moved as if it were, as far from it as it is
+        now: one that is being dragged.
+    surfaces : dict of SurfaceMount to MountSurface, optional
+        Surfaces that are known of this vehicle; new ones are added.
 
     Attributes
     ----------
     mount : SurfaceMount or SlotMount
     mount_name : str
     surface : MountSurface or None
-        None for a list of slots.
+        None for a list of slots, and along axes.
     followers : tuple of str
         All sensors of the rig that follow another.
     broken : tuple of str
@@ -88,17 +103,24 @@ class OwnPlaces:
         *,
         limits: FigureLimits,
         bounds: Mapping[str, tuple[float, float]] | None = None,
+        axes: Sequence[str] | None = None,
+        anywhere: bool = False,
+        surfaces: dict[SurfaceMount, MountSurface] | None = None,
     ) -> None:
         require_name("region", "sensor", name, [sensor.name for sensor in rig])
         _refuse_follower(name, mounting)
         self.rig = rig
         self.name = name
         self.vehicle = vehicle
-        if mounting.mount_of(name) is None:
-            mounting = _on_body(rig, name, vehicle, mounting)
-        self.mount_name = mounting.on[name]
-        self.mount = mounting.mounts[self.mount_name]
+        surfaces = {} if surfaces is None else surfaces
+        is_boxed = axes is not None and mounting.mount_of(name) is None
+        if not is_boxed and (anywhere or mounting.mount_of(name) is None):
+            mounting = _at_distance_now(rig, name, vehicle, mounting, surfaces=surfaces)
+        self.mount_name = mounting.on.get(name, "")
+        self.mount = mounting.mount_of(name)
         own = {axis: span for axis, span in (bounds or {}).items() if axis in POSITION_AXES}
+        if is_boxed:
+            own = {axis: own.get(axis, SPAN) for axis in axes or ()}
         is_slots = isinstance(self.mount, SlotMount)
         following = [link[1] for link in mounting.pairs]
         following += [follower for group in mounting.groups for follower in group[1:]]
@@ -111,13 +133,13 @@ class OwnPlaces:
             fixed=tuple(s.name for s in rig if s.name != name and s.name not in following),
             figure_limits=limits,
         )
-        self._parametrization = Parametrization(rig, self._space)
+        self._parametrization = Parametrization(rig, self._space, surfaces)
         self._start = self._parametrization.start.vector
         now = self._space.placement(rig)
         rules = self._parametrization.rules
         self._rules = tuple(rule for rule in rules if not rule.broken(now))
         self.broken = tuple(self._named(rule) for rule in rules if rule not in self._rules)
-        domain = self._parametrization.domain_of(name)
+        domain = self._domain = self._parametrization.domain_of(name)
         self.surface = domain.surface if isinstance(domain, SurfaceDomain) else None
 
     @property
@@ -158,11 +180,39 @@ class OwnPlaces:
         """Return the rig with the sensor at the nearest point of the surface to (3,) [m]."""
         return self._parametrization.candidate((*map(float, point), *self._start[3:])).rig
 
+    def moved(self, offset: Floats) -> Rig:
+        """Return the rig with the sensor moved by an offset (3,) [m], and on its surface again; a
+        sensor without one keeps its bounds. Slots have no offsets: `InputError`."""
+        if self.surface is not None:
+            return self.at(np.array(self._start[:3]) + offset)
+        if not isinstance(self._domain, BoxDomain):
+            raise InputError("region", "mount", "a surface", "a list of slots")
+        vector = list(self._start)
+        for number, axis in enumerate(self._domain.axes):
+            if axis in POSITION_AXES:
+                further = vector[number] + float(offset[POSITION_AXES.index(axis)])
+                vector[number] = self._domain.variables[number].clipped(further)
+        return self._parametrization.candidate(vector).rig
+
+    def tangents(self) -> Floats:
+        """Return orthogonal unit directions (K, 3) in which the sensor may move: two in its
+        surface, or its axes; none in slots."""
+        if self.surface is None:
+            axes = self._domain.axes
+            return np.eye(3)[[k for k, axis in enumerate(POSITION_AXES) if axis in axes]]
+        normal = np.array(self.foot.normal)
+        first = np.array(next(iter(self.directions().values())))
+        first = first - float(dot(first, normal)) * normal
+        first = first / np.sqrt(dot(first, first))
+        return np.array([first, cross(normal, first)])
+
     def turned(self, axis: str, angle: float) -> Rig:
         """Return the rig with the sensor turned by an angle about an axis of its mount's frame:
-        "roll", "pitch" or "yaw" [rad]."""
+        "roll", "pitch" or "yaw" [rad]. Slots have no angles: `InputError`."""
+        if axis not in self._domain.axes:
+            raise InputError("region", "mount", "a surface", "a list of slots")
         vector = list(self._start)
-        vector[3 + TURNS.index(axis)] += angle
+        vector[self._domain.axes.index(axis)] += angle
         return self._parametrization.candidate(vector).rig
 
     def reason(self, rig: Rig) -> str:
@@ -216,20 +266,32 @@ def _refuse_follower(name: str, mounting: Mounting) -> None:
         raise InputError("region", "sensor", f"{leader!r}, which it follows", shown(name))
 
 
-def _on_body(rig: Rig, name: str, vehicle: Vehicle | None, mounting: Mounting) -> Mounting:
-    """Return the mounting with a sensor on the whole body, as far from it as it is now."""
+def _at_distance_now(
+    rig: Rig,
+    name: str,
+    vehicle: Vehicle | None,
+    mounting: Mounting,
+    *,
+    surfaces: dict[SurfaceMount, MountSurface],
+) -> Mounting:
+    """Return the mounting with a sensor as far from its mount as it is now; without a mount it is
+    on the whole body."""
+    mount = mounting.mount_of(name)
+    if isinstance(mount, SlotMount):
+        return mounting
     if vehicle is None:
         raise InputError(
             "region", "vehicle", "a vehicle with a surface, or a list of slots", "none"
         )
-    on_body = SurfaceMount(vehicle.part_names, 0.0, max_slope=math.pi)
-    surface = MountSurface(f"sensor {name!r}", on_body, vehicle)
+    own = mounting.on.get(name, "")
+    if mount is None:
+        own = f"{BODY_MOUNT} of {name}" if BODY_MOUNT in mounting.mounts else BODY_MOUNT
+        mount = SurfaceMount(vehicle.part_names, 0.0, max_slope=math.pi)
+    surface = surface_of(own, mount, vehicle, surfaces)
     housing = housings_of(rig).get(name)
     domain = SurfaceDomain(
-        name, on_body, surface, rig[name].pose, housing=housing, bounds={}, anywhere=True
+        name, mount, surface, rig[name].pose, housing=housing, bounds={}, anywhere=True
     )
     away = domain.base(rig[name].pose) - np.array(domain.start[:3])
-    on_body = replace(on_body, standoff=rounded_length(float(np.sqrt(dot(away, away)))))
-    own = f"{BODY_MOUNT} of {name}" if BODY_MOUNT in mounting.mounts else BODY_MOUNT
-    mounts = {**mounting.mounts, own: on_body}
-    return replace(mounting, mounts=mounts, on={**mounting.on, name: own})
+    mount = replace(mount, standoff=rounded_length(float(np.sqrt(dot(away, away)))))
+    return replace(mounting, mounts={**mounting.mounts, own: mount}, on={**mounting.on, name: own})

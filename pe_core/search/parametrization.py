@@ -8,7 +8,7 @@ Linked sensors, mirror images and groups that move as one, have the variables of
 """
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -138,7 +138,7 @@ def rig_on_mounts(rig: Rig, space: SearchSpace) -> Rig:
     """Return a rig whose sensors are on their mounts: one that is not takes the nearest pose there.
     Mirror images and groups follow their leaders. `InputError` as of `Parametrization`."""
     mounting = space.mounting
-    surfaces = dict[str, MountSurface]()
+    surfaces = dict[SurfaceMount, MountSurface]()
     _check_names(rig, mounting)
     poses = {sensor.name: _pose_on_mount(sensor, space, surfaces) for sensor in rig}
     links = [Follower(second, first) for first, second in mounting.pairs]
@@ -151,7 +151,9 @@ def rig_on_mounts(rig: Rig, space: SearchSpace) -> Rig:
     return rig.with_poses([poses[sensor.name] for sensor in rig])
 
 
-def _pose_on_mount(sensor: Sensor, space: SearchSpace, surfaces: dict[str, MountSurface]) -> Pose:
+def _pose_on_mount(
+    sensor: Sensor, space: SearchSpace, surfaces: dict[SurfaceMount, MountSurface]
+) -> Pose:
     """Return a sensor's pose if it is on its mount or has none; else the nearest pose there."""
     mount = space.mounting.mount_of(sensor.name)
     if mount is None or sensor.name in space.fixed:
@@ -191,13 +193,15 @@ class Parametrization:
     start: Candidate
     rules: tuple[Rule, ...]
 
-    def __init__(self, rig: Rig, space: SearchSpace) -> None:
+    def __init__(
+        self, rig: Rig, space: SearchSpace, surfaces: dict[SurfaceMount, MountSurface] | None = None
+    ) -> None:
         self.space = space.checked(rig)
         self._followers = followers(rig, space.mounting, space.vehicle)
         following = {follower.name for follower in self._followers}
-        surfaces: dict[str, MountSurface] = {}
+        known = {} if surfaces is None else surfaces
         free = (sensor for sensor in rig if sensor.name not in following)
-        self._domains = {each.name: _domain(each, space, surfaces) for each in free}
+        self._domains = {each.name: _domain(each, space, known) for each in free}
         self.variables = tuple(v for domain in self._domains.values() for v in domain.variables)
         self.blocks = tuple(_blocks(self._domains.values()))
         self.positions = [(n, axis) for n, domain in self._domains.items() for axis in domain.axes]
@@ -268,7 +272,9 @@ def _blocks(domains: Iterable[Domain]) -> Iterator[range]:
         start += count
 
 
-def _domain(sensor: Sensor, space: SearchSpace, surfaces: dict[str, MountSurface]) -> Domain:
+def _domain(
+    sensor: Sensor, space: SearchSpace, surfaces: dict[SurfaceMount, MountSurface]
+) -> Domain:
     mounting = space.mounting
     name = sensor.name
     mount = mounting.mount_of(name)
@@ -279,13 +285,25 @@ def _domain(sensor: Sensor, space: SearchSpace, surfaces: dict[str, MountSurface
     if isinstance(mount, SlotMount):
         return SlotDomain(who, mount, sensor.pose)
     if isinstance(mount, SurfaceMount):
-        key = mounting.on[name]
-        if key not in surfaces:
-            surfaces[key] = MountSurface(f"mount {key!r}", mount, space.vehicle)
+        surface = surface_of(mounting.on[name], mount, space.vehicle, surfaces)
         return SurfaceDomain(
-            who, mount, surfaces[key], sensor.pose, housing=space.housings.get(name), bounds=bounds
+            who, mount, surface, sensor.pose, housing=space.housings.get(name), bounds=bounds
         )
     return BoxDomain(sensor.pose, bounds)
+
+
+def surface_of(
+    name: str,
+    mount: SurfaceMount,
+    vehicle: Vehicle | None,
+    surfaces: dict[SurfaceMount, MountSurface],
+) -> MountSurface:
+    """Return the surface of a mount, made once for all stand-offs; `surfaces` are of one vehicle.
+    `InputError` as `MountSurface`."""
+    key = replace(mount, standoff=0.0)
+    if key not in surfaces:
+        surfaces[key] = MountSurface(f"mount {name!r}", mount, vehicle)
+    return surfaces[key]
 
 
 def feasible_start(parametrization: Parametrization, seed: int = 0) -> Candidate:

@@ -22,6 +22,8 @@ from .mountable import Consensus, Rounding, SensorSpread, consensus_of
 from .ranking import costs_nothing, disagreement, gain_sentence, moved_words, ranking, search_cost
 from .score_comparison import OTHER_HARDWARE, TRAFFIC, ComparedRow, compare
 from .score_comparison import compare_figures, difference_error, hardware_note
+from .steepest_way import BetterPlace, Slope, SteepestWay, steepest_lines, steepest_steps
+from .steepest_way import places_of, screen_of, steepest_way, way_text
 from .summary import WHERE, Outlook, class_of, lone_reach, object_words, objects_looked_at, outlook
 from .summary import rig_words
 from .warnings import condition_warnings, curve_note, curve_warnings, hidden_sensors, hidden_words

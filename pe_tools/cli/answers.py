@@ -95,7 +95,8 @@ class CurvesAnswer:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExplainAnswer:
-    """A score in words; or what is asked with ``--at``: a place, or a body there."""
+    """A score in words; or what is asked with ``--at``: a place, or a body there; or with
+    ``--sensor`` where a sensor gains most."""
 
     score: Annotated[Score | None, AtTimes] = None
     outlook: Annotated[OpenTable, Part(inline=True)]
@@ -105,6 +106,7 @@ class ExplainAnswer:
     place: Annotated[OpenTable | None, AtTimes] = None
     body: Annotated[OpenTable | None, AtTimes] = None
     suggestions: Annotated[OpenRows | None, AtTimes] = None
+    steepest: Annotated[OpenTable | None, AtTimes] = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,7 +58,8 @@ def _cell(row: ComparedRow, k: int) -> str:
 
 
 def explain(source: StudyFiles, args: argparse.Namespace) -> Answer:
-    """Describe a study's score and warnings; with ``--at``, query one location instead."""
+    """Describe a study's score and warnings; with ``--at``, query one location instead; with
+    ``--sensor``, tell where a sensor gains most."""
     study = source.study(args)
     at = args.at
     with_body = args.body is not None
@@ -68,6 +69,7 @@ def explain(source: StudyFiles, args: argparse.Namespace) -> Answer:
     nowhere = at is None
     turned = args.heading is not None
     of_class = args.class_name is not None
+    with_sensor = args.of_sensor is not None
     sampled = any(change.path == ("samples",) for change in read_changes(args.set))
     for option, is_idle, expected, found in (
         ("--suggest", args.suggest and with_body, "--at X Y, a place to mend", "--body"),
@@ -76,6 +78,8 @@ def explain(source: StudyFiles, args: argparse.Namespace) -> Answer:
         ("--heading", turned and not with_body, "--body NAME, which it turns", "none"),
         ("--samples", sampled and not nowhere, "no --at: a place has no sample", "--at"),
         ("--class", of_class and not nowhere, "no --at: it says whose reach is told", "--at"),
+        ("--sensor", with_sensor and not nowhere, "no --at: it tells a sensor's way", "--at"),
+        ("--sensor", with_sensor and of_class, "no --class: it tells a sensor's way", "--class"),
     ):
         if is_idle:
             raise InputError("command line", option, expected, found)
@@ -98,6 +102,8 @@ def explain(source: StudyFiles, args: argparse.Namespace) -> Answer:
             mends = [line for each in suggested.items() for line in suggestion_lines(*each)]
             told += mends or [NOT_BLIND] * (not place.in_vehicle)
         return answered(args, answer, told), DONE
+    if with_sensor:
+        return _steepest_way(study, args)
     name = advice.class_of(study.prior, args.class_name)
     outcome = scored(study, args.workers, source)
     seen = advice.outlook(study.sight(), study.rig, name)
@@ -115,6 +121,17 @@ def explain(source: StudyFiles, args: argparse.Namespace) -> Answer:
     first = f"{what} entropy {with_error(score.entropy, score.stderr)}; lower is better"
     lines = [first, *of_rig, *advice.sensor_table(rows), *warned(outcome)]
     return answered(args, data, lines), DONE
+
+
+def _steepest_way(study: Study, args: argparse.Namespace) -> Answer:
+    """Tell where a sensor gains most."""
+    places = advice.places_of(study, args.of_sensor)
+    print_vehicle(study)
+    found = advice.steepest_way(
+        places, study.evaluator(workers=args.workers), screen=advice.screen_of(study, args.workers)
+    )
+    answer = ExplainAnswer(outlook={}, steepest=found.to_dict())
+    return answered(args, answer, advice.steepest_lines(found)), DONE
 
 
 def _same_body(one: Vehicle | None, other: Vehicle | None) -> bool:

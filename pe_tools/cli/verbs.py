@@ -237,9 +237,9 @@ VERBS = (
     Verb(
         "explain",
         SCORE,
-        "a study's score in words, or one place of it",
+        "a study's score in words, one place of it, or the steepest way of a sensor",
         ONE,
-        options=f"at body heading suggest class {COMMON} workers",
+        options=f"at body heading suggest class of_sensor {COMMON} workers",
         function=explain,
         answer=ExplainAnswer,
     ),

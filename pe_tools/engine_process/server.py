@@ -40,7 +40,10 @@ class _RunningRequest:
         self.running = self.function(*self.arguments)
         for drop in self.cancels if hasattr(self.running, "cancel") else ():
             self.running.cancel(drop)
-        yield from steps_of(self.running)
+        for step in steps_of(self.running):
+            yield step
+            if True in self.cancels and not hasattr(self.running, "cancel"):
+                return  # dropped: nobody waits for the rest
 
 
 class _Lane(threading.Thread):

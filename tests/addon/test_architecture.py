@@ -63,8 +63,8 @@ live: analysis_calls bridge change_events choices engine engine_calls engine_pro
 best_so_far: engine
 variant_pictures:
 overlay: choices engine engine_calls view_settings viewport
-overlay.snapshot: best_so_far bridge choices engine live location_query overlay sensor_cache
-    vehicle_cache view_settings where_map
+overlay.snapshot: best_so_far bridge choices engine engine_calls live location_query overlay
+    sensor_cache vehicle_cache view_settings where_map
 overlay.scheduler: analysis_calls engine engine_process overlay overlay.snapshot sensor_cache
     viewport
 overlay.surroundings: engine overlay viewport

@@ -27,6 +27,7 @@ def found():
     return notebook.page_run()
 
 
+@pytest.mark.thorough
 def test_cells_give_what_the_page_shows(found):
     assert len(found) > 12
     assert notebook.refreshed(PAGE, found) == PAGE

@@ -58,7 +58,7 @@ def ask(
     if bpy.app.background:
         engine_process.call_here(function, arguments, deliver, fail, step=step)
         return
-    _engine.ask(topic, function, arguments, deliver, fail, step=step, lane=lane)
+    _engine.ask(topic, function, arguments, deliver, fail=fail, step=step, lane=lane)
     if not bpy.app.timers.is_registered(deliver_all):
         bpy.app.timers.register(deliver_all, first_interval=POLL_S, persistent=True)
 

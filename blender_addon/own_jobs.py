@@ -108,7 +108,7 @@ def _write_scene(
 def rig_job(study: pe.Study, name: str, path: Path, into: str | None, replace: bool) -> ExportJob:
     """Return the job that scores a study and writes its rig in a format that has the figures."""
     stage = f"exporting {exchange.rig_format(name).title}"
-    write = partial(write_rig, study, name, path, into, replace)
+    write = partial(write_rig, study, name, path, into, replace=replace)
     return ExportJob(study, stage, _facts, write, scored=True)
 
 

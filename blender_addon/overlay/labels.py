@@ -131,7 +131,7 @@ def folded(
     is_folded = [False] * len(sizes)
     for last in range(len(sizes) - 1, -2, -1):
         now = [(width, height) for (width, _), height in zip(sizes, heights, strict=True)]
-        boxes = arranged(now, around.room, around.taken, around.vehicle, around.gap)
+        boxes = arranged(now, around.room, around.taken, around.vehicle, gap=around.gap)
         covered = sum(_area(box) for box in boxes if box is not None)
         over = [box is None or _overlap(box, around.vehicle) > 0.0 for box in boxes]
         if last < 0 or (covered <= area and not any(over)):

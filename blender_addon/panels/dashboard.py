@@ -79,7 +79,7 @@ def draw_dashboard(layout: UILayout, context: Context) -> None:
     judged = [row.met for row in rows if row.met is not None]
     draw_label(wanted, f"{sum(judged)} of {len(judged)} met" if judged else "Wanted")
     errors = {} if shown is None else shown.change_errors()
-    drawn = [drawn_row(scene, row, figures, entropies, errors) for row in rows]
+    drawn = [drawn_row(scene, row, figures, entropies, errors=errors) for row in rows]
     sides = RowWidths.of(context, drawn)
     for each in drawn:
         draw_row(column, context, each, sides)

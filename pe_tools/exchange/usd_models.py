@@ -163,7 +163,7 @@ def _lidar(values: PrimValues, sensor: PortableSensor, _: tuple[int, int] | None
     if far is None:
         far = DEFAULT_RANGE_M
         lines.append(f"{sensor.name}: no range in the file; the schema's {far:g} m stands in")
-    sensor = _scanned(values, sensor, states, NEAR_M if near is None else near, far)
+    sensor = _scanned(values, sensor, states, near=NEAR_M if near is None else near, far=far)
     return _with_own_emitters(sensor, lines), lines
 
 
@@ -220,14 +220,14 @@ def _scanned(
     azimuths, elevations = states[0]
     offsets = _wrapped(azimuths + start)
     if len(states) == 1 and is_whole:
-        return replace(sensor, scan=_scan(elevations, offsets, ticks, near, far))
+        return replace(sensor, scan=_scan(elevations, offsets, ticks, near=near, far=far))
     beams = _beams(states, ticks, start)
     if not is_whole:
         turned = (beams[:, 0] - first) % FULL_DEG
         beams = beams[turned <= (last - first) % FULL_DEG + 1e-6]
     if not len(beams):
         raise InputError(values.source, values.field(CORE), "beams within its azimuths", "none")
-    scan = _scan(beams[:, 1], _wrapped(beams[:, 0]), 1, near, far)
+    scan = _scan(beams[:, 1], _wrapped(beams[:, 0]), 1, near=near, far=far)
     return replace(sensor, scan=scan)
 
 
@@ -293,11 +293,11 @@ def _physx_scan(values: PrimValues) -> Scan | None:
         elevations = np.zeros(1)
     columns = max(1, round(across / step))
     if across >= FULL_DEG:
-        return _scan(elevations, np.zeros_like(elevations), columns, near, far)
+        return _scan(elevations, np.zeros_like(elevations), columns, near=near, far=far)
     azimuths = np.linspace(-across / 2.0, across / 2.0, columns)
     require_at_most(values.source, "rays", len(azimuths) * len(elevations), MAX_BEAMS, noun="rays")
     up = np.repeat(elevations, len(azimuths))
-    return _scan(up, np.tile(azimuths, len(elevations)), 1, near, far)
+    return _scan(up, np.tile(azimuths, len(elevations)), 1, near=near, far=far)
 
 
 def _radar(values: PrimValues, sensor: PortableSensor, _: tuple[int, int] | None) -> Read:

@@ -73,7 +73,7 @@ def read_stage(path: Path) -> UsdStage:
     up = root.metadata.get("upAxis", "Y")
     world = np.eye(4) if up == "Z" else Y_UP.copy()
     prims: dict[str, PlacedPrim] = {}
-    for placed in _placed(path, whole, "", world, composing.lines):
+    for placed in _placed(path, whole, "", world, lines=composing.lines):
         place = placed.world.copy()
         place[:3, 3] *= unit
         prims[placed.path] = replace(placed, world=place)

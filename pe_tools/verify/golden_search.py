@@ -187,7 +187,7 @@ def _in_ranges() -> pe.SearchSpace:
     no_go = pe.Mounting(constraints=pe.Constraints(no_go=[pe.NoGo("rear", x=(-9.0, 0.5))]))
     free = {name: tuple(ranges) for name in "ab"}
     return pe.SearchSpace.on_vehicle(
-        _rig_in_ranges(), scenes.body(), free, dict.fromkeys("ab", ranges), no_go
+        _rig_in_ranges(), scenes.body(), free, dict.fromkeys("ab", ranges), mounting=no_go
     )
 
 

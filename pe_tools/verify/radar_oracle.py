@@ -31,7 +31,7 @@ def expected_detections(
     ):
         name = objects.class_names[label]
         box = _Box(center, size, yaw, RCS_DBSM[name])
-        m = sum(_of_mode(mode, rotation, eye, box, triangles) for mode in table["mode"])
+        m = sum(_of_mode(mode, rotation, eye, box, triangles=triangles) for mode in table["mode"])
         found.append(min(m, table.get("list_length", math.inf)))
     return np.array(found)
 

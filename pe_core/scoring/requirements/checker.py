@@ -194,7 +194,9 @@ class _CheckedSet:
         pairs = dict(zip(self._numbers, self._pairs, strict=True))
         for number in sorted([*pairs, *self._grounds]):
             if number in pairs:
-                verdict = body_verdict(*pairs[number], results[number], rig, self._vehicle, preview)
+                verdict = body_verdict(
+                    *pairs[number], results[number], rig, vehicle=self._vehicle, preview=preview
+                )
                 if verdict.at_least:
                     for grown in self._growths[number].margins(results[number], rig, cases):
                         margin, at_least = grown

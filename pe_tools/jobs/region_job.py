@@ -250,6 +250,7 @@ class RegionJob(Job):
             sample="" if self.row.exact else f"{level.samples:,} {unit}",
             not_held=self._not_held,
             is_coarse=not is_last,
+            foot=None if self._places.surface is None else self._places.foot.point,
         )
         if not count or len(level.with_loss) < 2:
             return region

@@ -24,6 +24,7 @@ ON_SLOTS = "SLOTS"
 """Kinds of mounts."""
 BY_PARTS = "PARTS"
 BY_GROUP = "GROUP"
+BY_MESH = "MESH"
 """Which faces a surface is made of."""
 
 PRIORS = (

@@ -7,7 +7,7 @@ from .apply_variant import apply_records, shown_collection
 from .conditions import as_drawn, conditions_of, read_states, shown_motions, shown_state, with_drawn
 from .fingerprint import Fingerprint, fingerprint
 from .limits import NONE, keep_property, limit_of, limit_property, limits_of, put_limit
-from .loading import load_into
+from .loading import load_into, write_mount
 from .mirroring import (
     clear_mirrors,
     follow_mirrors,

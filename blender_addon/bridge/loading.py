@@ -10,9 +10,10 @@ from types import MappingProxyType
 from typing import Any
 
 import bpy
+import numpy as np
 from bpy.types import Collection, Object, PropertyGroup, Scene
 
-from ..choices import BY_GROUP, BY_PARTS, ON_SLOTS
+from ..choices import BY_GROUP, BY_MESH, BY_PARTS, ON_SLOTS
 from ..engine import catalog, kinds, pe, search, studies
 from .apply_variant import apply_records
 from .conditions import write_conditions
@@ -195,26 +196,46 @@ def _write_options(settings: PropertyGroup, options: Sequence[TableData]) -> Non
 def _write_mounts(scene: Scene, mounts: Mapping[str, search.AnyMount]) -> None:
     settings = scene.perception_entropy
     settings.mounts.clear()
-    members = settings.vehicle.all_objects
     for name, mount in mounts.items():
         row = settings.mounts.add()
         row.name = name
-        if isinstance(mount, pe.SlotMount):
-            row.kind = ON_SLOTS
-            row.slots = _slots(scene, name, mount)
-            continue
-        table = studies.write(mount)
-        for key in ("parts", "area"):  # objects, or painted faces
-            table.pop(key, None)
-        write_table(row, table)
-        if mount.area is None:
-            row.faces = BY_PARTS
-            for part in mount.parts:
-                row.parts.add().part = members.get(part)
-        else:
-            row.faces = BY_GROUP
-            row.group = name
-            paint_area(list(members), name, mount.area.triangles)
+        write_mount(scene, row, mount)
+
+
+def write_mount(scene: Scene, row: PropertyGroup, mount: search.AnyMount) -> None:
+    """Write a mount to its row. An area that is no faces of the vehicle becomes a mesh beside
+    it."""
+    members = scene.perception_entropy.vehicle.all_objects
+    if isinstance(mount, pe.SlotMount):
+        row.kind = ON_SLOTS
+        row.slots = _slots(scene, row.name, mount)
+        return
+    table = studies.write(mount)
+    for key in ("parts", "area"):  # objects, or painted faces
+        table.pop(key, None)
+    write_table(row, table)
+    if mount.area is None:
+        row.faces = BY_PARTS
+        for part in mount.parts:
+            row.parts.add().part = members.get(part)
+        return
+    row.faces = BY_GROUP
+    row.group = row.name
+    if not paint_area(list(members), row.name, mount.area.triangles):
+        row.faces = BY_MESH
+        row.area = _area_object(scene, row.name, mount.area.triangles)
+
+
+def _area_object(scene: Scene, name: str, triangles: np.ndarray) -> Object:
+    """Return a new mesh of faces (F, 3, 3) in the ground frame, drawn as wire and not rendered."""
+    mesh = bpy.data.meshes.new(name)
+    corners = triangles.reshape(-1, 3)
+    mesh.from_pydata(corners.tolist(), [], np.arange(len(corners)).reshape(-1, 3).tolist())
+    obj = bpy.data.objects.new(name, mesh)
+    obj.display_type = "WIRE"
+    obj.hide_render = True
+    scene.collection.objects.link(obj)
+    return obj
 
 
 def _slots(scene: Scene, name: str, mount: pe.SlotMount) -> Collection:

@@ -11,7 +11,7 @@ from typing import TypeAlias
 import numpy as np
 from bpy.types import Collection, Depsgraph, Mesh, Object, PropertyGroup, Scene
 
-from ..choices import BY_PARTS, ON_SLOTS, ON_SURFACE, LimitBox
+from ..choices import BY_MESH, BY_PARTS, ON_SLOTS, ON_SURFACE, LimitBox
 from ..engine import pe, search, studies
 from .rig import pose_of
 from .sensor_records import SensorRecord
@@ -21,6 +21,7 @@ from .vehicle import drawn_meshes, placed_triangles, triangles_of
 
 MountSettings: TypeAlias = PropertyGroup
 CORNERS = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
+AREA_DECIMALS = 5  # A mesh in single precision holds an area exactly to 0.01 mm
 PAINTED = 0.5
 """A vertex with a larger weight counts as painted."""
 
@@ -64,8 +65,7 @@ def mount_of_row(scene: Scene, depsgraph: Depsgraph, row: MountSettings) -> sear
         return pe.SlotMount(_slots(row, depsgraph))
     if row.faces == BY_PARTS:
         return read_row(pe.SurfaceMount, row, f"mount {row.name!r}", parts=part_names(row))
-    vehicle = scene.perception_entropy.vehicle
-    faces = painted_area(vehicle, depsgraph, row)
+    faces = area_faces(scene, depsgraph, row)
     if not len(faces):
         raise area_problem(row)
     area = pe.MountArea(faces, studies.AREAS, (row.name,))
@@ -186,6 +186,20 @@ def painted_area(vehicle: Collection, depsgraph: Depsgraph, mount: PropertyGroup
     return np.concatenate([area for _, area in areas]) if areas else np.empty((0, 3, 3))
 
 
+def area_faces(scene: Scene, depsgraph: Depsgraph, mount: PropertyGroup) -> np.ndarray:
+    """Return the faces (F, 3, 3) of a mount that is no part of the vehicle [m]: painted, or those
+    of a mesh of its own, to 0.01 mm; an empty array where there are none."""
+    if mount.faces != BY_MESH:
+        return painted_area(scene.perception_entropy.vehicle, depsgraph, mount)
+    obj = mount.area
+    if obj is None or obj.type != "MESH":
+        return np.empty((0, 3, 3))
+    own = obj.evaluated_get(depsgraph)
+    triangles = placed_triangles(triangles_of(own.to_mesh()), np.array(own.matrix_world, float))
+    own.to_mesh_clear()
+    return np.round(triangles, AREA_DECIMALS) + 0.0
+
+
 def _chosen(obj: Object, mesh: Mesh, mount: PropertyGroup) -> np.ndarray:
     """Return a mask (F,) of the triangles of a mesh that belong to the mount."""
     count = len(mesh.loop_triangles) if mesh.loop_triangles else _triangulated(mesh)
@@ -210,6 +224,8 @@ def _triangulated(mesh: Mesh) -> int:
 
 def area_problem(mount: PropertyGroup) -> pe.InputError:
     """Return the error of a surface that has no faces."""
+    if mount.faces == BY_MESH:
+        return pe.InputError("scene", f"mount {mount.name!r}: mesh", "a mesh with faces", "none")
     field = f"mount {mount.name!r}: vertex group {mount.group!r}"
     expected = "faces of the vehicle that are painted in it, with weights above 0.5"
     return pe.InputError("scene", field, expected, "none")
@@ -219,6 +235,10 @@ def mount_key(row: PropertyGroup) -> Hashable:
     """Return a cache key of a mount's faces, besides the vehicle; None for a list of slots."""
     if row.kind != ON_SURFACE:
         return None
+    if row.faces == BY_MESH:
+        obj = row.area
+        own = () if obj is None else (obj.name, len(obj.data.vertices), str(obj.matrix_world))
+        return row.faces, own
     return row.faces, tuple(part_names(row)) if row.faces == BY_PARTS else row.group
 
 
@@ -229,7 +249,7 @@ def mount_faces(
     if row.faces == BY_PARTS:
         wanted = [n for n, name in enumerate(vehicle.part_names) if name in part_names(row)]
         return vehicle.triangles[np.isin(vehicle.parts, wanted)]
-    return painted_area(scene.perception_entropy.vehicle, depsgraph, row)
+    return area_faces(scene, depsgraph, row)
 
 
 def bounds_box(

@@ -245,8 +245,11 @@ def mesh_of(name: str, triangles: np.ndarray) -> Mesh:
     return mesh
 
 
-def paint_area(objects: Sequence[Object], name: str, area: np.ndarray) -> None:
-    """Paint the faces (F, 3, 3) of an area in a vertex group on the meshes of a vehicle."""
+def paint_area(objects: Sequence[Object], name: str, area: np.ndarray) -> bool:
+    """Paint the faces (F, 3, 3) of an area in a vertex group on the meshes of a vehicle. Return
+    False, with nothing painted, where a corner of it is no vertex of theirs."""
+    found: dict[Object, list[int]] = {}
+    seen = set[bytes]()
     wanted = {corner.tobytes() for corner in np.ascontiguousarray(area.reshape(-1, 3) + 0.0)}
     for obj in objects:
         if obj.type != "MESH":
@@ -256,6 +259,11 @@ def paint_area(objects: Sequence[Object], name: str, area: np.ndarray) -> None:
         obj.data.vertices.foreach_get("co", points)
         local = points.reshape(-1, 3).astype(float) + residual_of(obj.data)
         placed = placed_points(local, ground_from_object) + 0.0
-        vertices = [n for n, point in enumerate(placed) if point.tobytes() in wanted]
+        found[obj] = [n for n, point in enumerate(placed) if point.tobytes() in wanted]
+        seen |= {placed[n].tobytes() for n in found[obj]}
+    if seen != wanted:
+        return False
+    for obj, vertices in found.items():
         if vertices:
             obj.vertex_groups.new(name=name).add(vertices, 1.0, "REPLACE")
+    return True

@@ -4,12 +4,15 @@ from typing import Any
 
 import bpy
 from bpy.props import BoolProperty
+from mathutils import Vector
 
-from .. import bridge, where_map
+from .. import bridge, signals, where_map
 from ..engine import advice, jobs, pe
-from .declared import OperatorResult, chosen_sensor, operator
+from .declared import OperatorResult, Refused, chosen_sensor, operator
 from .edit_sensors import NAME
 from .jobs import JobRow, Task, begin, of_study
+from .mounts import put_on_mount
+from .rows import new_row
 from .where import FIGURE_AND_PLACES
 
 
@@ -57,3 +60,36 @@ def _task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -
 
 
 REGION = JobRow(read=of_study(_task), unfinished="Stopped before a place was scored")
+
+
+def _no_region(context: bpy.types.Context) -> str | None:
+    return None if where_map.regions.get(context.scene.name) else "Ask Free Region first"
+
+
+@operator(
+    "Use as Mount",
+    mode="Mounts are added in Object Mode",
+    unless=_no_region,
+    signal=signals.study_changed,
+)
+def use_as_mount(context: bpy.types.Context) -> str:
+    """Make the free region the mount of its sensor, as a mesh beside the vehicle: a search then
+    stays inside"""
+    scene = context.scene
+    found = where_map.regions.get(scene.name)
+    obj = None if found is None else scene.objects.get(found.sensor)
+    if found is None or obj is None:
+        raise Refused("The sensor of the region is gone")
+    loss = scene.perception_entropy.view.region_loss
+    found = found.allowing(loss) if loss > 0.0 else found
+    mount = jobs.region_mount(found)
+    row = new_row(scene, "mounts", f"{found.sensor} region")
+    bridge.write_mount(scene, row, mount)
+    context.view_layer.update()
+    before = Vector(obj.matrix_world.translation)
+    if not found.holds_sensor:  # the region errs to the safe side, and the sensor has to be on it
+        put_on_mount(scene, context.evaluated_depsgraph_get(), obj, row.name)
+    obj.perception_entropy.mount = row.name
+    moved = (obj.matrix_world.translation - before).length
+    note = f", moved {moved * 100.0:.0f} cm onto it" if moved else ""
+    return f"{obj.name} is on {row.name}, {found.area:.2f} m2{note}"

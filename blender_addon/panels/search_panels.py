@@ -4,7 +4,7 @@ from typing import Any
 
 from bpy.types import Context, PropertyGroup, UILayout
 
-from ..choices import BY_GROUP, BY_PARTS, EXPECTED_AP, OBJECTS, ON_SLOTS, RANDOM
+from ..choices import BY_GROUP, BY_MESH, BY_PARTS, EXPECTED_AP, OBJECTS, ON_SLOTS, RANDOM
 from ..engine import advice
 from ..live import shown_score
 from ..panel_text import is_simple
@@ -20,7 +20,7 @@ from .layout import (
 )
 from .variant_panels import draw_front
 
-ICONS = {BY_PARTS: "OBJECT_DATA", BY_GROUP: "WPAINT_HLT"}
+ICONS = {BY_PARTS: "OBJECT_DATA", BY_GROUP: "WPAINT_HLT", BY_MESH: "MESH_DATA"}
 ELSEWHERE = ("objective", "evaluations", "seed", "search_samples", "search_conditions")
 """Settings of a search that are drawn before the others, or in another panel."""
 SLOTS_ICON = "OUTLINER_COLLECTION"
@@ -73,7 +73,7 @@ def draw_mount(layout: UILayout, mount: PropertyGroup) -> None:
             column.prop(row, "part", text="")
         column.operator("pe.mount_parts", icon="RESTRICT_SELECT_OFF")
     else:
-        draw_properties(layout, mount, ("group",))
+        draw_properties(layout, mount, ("group" if mount.faces == BY_GROUP else "area",))
     draw_declared(layout, mount, "optimize.mount")
 
 

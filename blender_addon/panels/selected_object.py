@@ -89,10 +89,12 @@ def draw_region(layout: UILayout, context: Context, obj: Object) -> None:
     layout.prop(context.scene.perception_entropy.view, "show_steepest")
     if (way := shown_way(context)) is not None and way.better is not None:
         text = f"Move {way.better.distance * 100.0:.0f} cm: {way.better.change:+.3f} nats"
-        layout.operator("pe.take_better_place", text=text, icon="TRACKING_FORWARDS_SINGLE")
+        layout.operator("pe.take_better_place", text=text, translate=False, icon="FORWARD")
     found = where_map.regions.get(context.scene.name)
     if found is None or found.sensor != obj.name:
         return
+    if found.mount is not None:
+        row.operator("pe.use_as_mount", text="", icon="MOD_SHRINKWRAP")
     row.operator("pe.dismiss", text="", icon="X").answer = "REGION"
     view = context.scene.perception_entropy.view
     layout.prop(view, "region_loss")

@@ -9,7 +9,7 @@ from typing import Any
 from bpy.types import Collection, Context, Object, PropertyGroup
 
 from .. import bridge
-from ..choices import BY_GROUP, BY_PARTS, ON_SLOTS, ON_SURFACE, REGION_ITEMS, free_name
+from ..choices import BY_GROUP, BY_MESH, BY_PARTS, ON_SLOTS, ON_SURFACE, REGION_ITEMS, free_name
 from ..engine import geometry, kinds, motion, pe
 from ..sensor_kinds import OwnCamera, OwnLidar, OwnTable, own_kinds
 from .callbacks import changed, model_suggestions, redraw
@@ -36,6 +36,7 @@ FACES = (
     (BY_PARTS, "Parts", "Objects of the vehicle, all of their faces"),
     (BY_GROUP, "Painted", "Faces of the vehicle's meshes whose corners all weigh more than a half "
      "in a vertex group"),
+    (BY_MESH, "Mesh", "Faces of a mesh beside the vehicle, such as a free region"),
 )  # fmt: skip
 
 
@@ -174,6 +175,7 @@ class PE_MountSettings(SurfaceMountFields, Tabled, PropertyGroup):
         search_options={"SUGGESTION"},
         update=redraw,
     )
+    area: pointer("Mesh", "Mesh object whose faces are the mount", Object, update=redraw)
     slots: pointer(
         "Slots",
         "Each empty of the collection is a slot with a position and angles",

@@ -15,12 +15,14 @@ from pe_core.base.arrays import Flags, Floats, Ints
 from pe_core.base.values import rounded
 from pe_core.geometry.surfaces import area_of, cut_below
 from pe_core.scene.rig import Rig
+from pe_core.scene.vehicle import closest_points
 from pe_core.scoring.score import SURE
 from pe_core.search import FIGURES, Figure, SurfaceMount, SurfacePlace
 
 EDGE = "the edge of the mount"
 BY_LOSS = "the loss"
 PATCH_DECIMALS = 5
+ON_PATCH_M = 1e-3
 METRE_UNIT = "m"
 DEGREE_UNIT = "deg"
 USUAL_LOSSES = 4.0
@@ -109,6 +111,7 @@ class FreeRegion:
     `sample`: On what was evaluated, as text: "32,768 voxels"; empty where figures are exact.
     `not_held`: What the rig breaks as it is: it forbids nothing.
     `with_others`: Whether the other sensors were searched again at each place.
+    `foot`: The point of the mount below the sensor as it is [m]; None in a slot.
     """
 
     rig: Rig
@@ -129,6 +132,7 @@ class FreeRegion:
     not_held: tuple[str, ...] = ()
     is_coarse: bool = False
     with_others: bool = False
+    foot: tuple[float, float, float] | None = None
 
     @property
     def row(self) -> Figure:
@@ -174,6 +178,16 @@ class FreeRegion:
         normals = np.array([place.normal for place in self.places])
         nearest: Floats = normals[square.argmin(axis=1)]
         return nearest
+
+    @property
+    def holds_sensor(self) -> bool:
+        """Whether the sensor is on the patch where it is now, nearer than `ON_PATCH_M`."""
+        return self.foot is not None and self.off_patch(np.array(self.foot)) <= ON_PATCH_M
+
+    def off_patch(self, point: Floats) -> float:
+        """Return how far a point (3,) is from the patch [m]; inf where the patch is empty."""
+        away = closest_points(point, self.patch) - point
+        return float(np.sqrt((away**2).sum(axis=1).min(initial=np.inf)))
 
     @property
     def area(self) -> float:

@@ -14,7 +14,7 @@ from typing import Any, TypeAlias, TypeVar
 import numpy as np
 
 from pe_core.base.arrays import Floats
-from pe_core.base.values import rounded
+from pe_core.base.values import error_text, rounded
 from pe_core.geometry.poses import Pose
 from pe_core.scene.rig import Rig
 from pe_core.scoring.sampling import SEARCHED
@@ -386,4 +386,4 @@ def steepest_lines(found: SteepestWay) -> list[str]:
 
 
 def _error(found: Slope | BetterPlace) -> str:
-    return f"(+- {found.error:.3f})" if found.error else "(on all voxels)"
+    return f"(+- {error_text(found.error)})" if found.error else "(on all voxels)"

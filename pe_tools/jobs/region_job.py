@@ -70,7 +70,7 @@ OTHERS = 12
 OTHERS_EVALUATIONS = 150
 SPREAD = 3
 """At how many places outside the others are searched again, how long each, and which: the first of
-every so many, by their loss."""
+every so many, by their loss; of fewer where there are few."""
 CLOSE = 4  # Of the places nearest to the allowed loss, each so many is confirmed
 COVER_SHARE = 0.4
 """Share of the places that cover the mount evenly; the others gather at the region's end."""
@@ -250,6 +250,7 @@ class RegionJob(Job):
             sample="" if self.row.exact else f"{level.samples:,} {unit}",
             not_held=self._not_held,
             is_coarse=not is_last,
+            foot=None if self._places.surface is None else self._places.foot.point,
         )
         if not count or len(level.with_loss) < 2:
             return region
@@ -339,7 +340,8 @@ class RegionJob(Job):
         held = replace(study, search=replace(study.search, goals=replace(goals, fixed=fixed)))
         outside = [each for each in level.with_loss if (each.place.value or 0.0) > self.allowed]
         outside.sort(key=lambda each: each.place.value or 0.0)
-        chosen = outside[: SPREAD * OTHERS : SPREAD]
+        step = min(max(len(outside) // OTHERS, 1), SPREAD)
+        chosen = outside[: step * OTHERS : step]
         searched = as_objective(self.row.measured(study, SAMPLES, SEARCHED)).under(constraints)
         gains: list[float] = []
         for number, placed in enumerate(chosen):

@@ -6,7 +6,7 @@ import pytest
 
 import pe_tools as pt
 from blender_addon import panels, where_map
-from blender_addon.engine import jobs, pe
+from blender_addon.engine import jobs, pe, search
 from tests.addon import scenes
 from tests.addon.layouts import Window, drawn
 
@@ -50,6 +50,25 @@ def test_the_layer_follows_the_loss_at_once_and_the_panel_tells_it(asked):
     assert "pe.free_region" in texts
     bpy.ops.pe.dismiss(answer="REGION")
     assert "region" not in scenes.drawn(car)
+
+
+def test_one_click_makes_the_region_the_mount_of_its_sensor(asked, tmp_path):
+    car, name, found = asked
+    half = float(np.median(found.loss[~found.forbidden]))
+    car.perception_entropy.view.region_loss = max(half, 1e-6)
+    cut = found.allowing(car.perception_entropy.view.region_loss).patch
+    assert bpy.ops.pe.use_as_mount() == {"FINISHED"}
+    row = car.perception_entropy.mounts[-1]
+    assert car.objects[name].perception_entropy.mount == row.name
+    study = scenes.study()
+    mount = study.search.mounting.mount_of(name)
+    assert np.allclose(mount.area.triangles, cut, atol=1.1e-5)
+    step = search.Parametrization(study.rig, study.search_space())  # the sensor is on it
+    assert step.domain_of(name).surface is not None
+    pt.export_study(study, tmp_path / "next.toml")  # and a file brings it back
+    assert bpy.ops.pe.import_study(filepath=str(tmp_path / "next.toml")) == {"FINISHED"}
+    again = scenes.study().search.mounting.mount_of(name)
+    assert np.array_equal(again.area.triangles, mount.area.triangles)
 
 
 def test_a_built_rig_is_drawn_with_lines_to_the_designed_one(car, tmp_path):

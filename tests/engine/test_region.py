@@ -165,3 +165,17 @@ def test_the_verb_writes_patch_and_data(study, tmp_path, capsys):
     assert area_of(patch.triangles) == pytest.approx(data["area_m2"], rel=1e-4)
     assert main(["region", str(file), "nobody"]) == 1
     assert "'nobody'" in capsys.readouterr().err
+
+
+def test_with_the_others_searched_again_nothing_is_lost(study, monkeypatch):
+    monkeypatch.setattr("pe_tools.jobs.region_job.OTHERS", 3)
+    monkeypatch.setattr("pe_tools.jobs.region_job.OTHERS_EVALUATIONS", 16)
+    job = RegionJob(study, ROOF, allowed=0.05, count=16, workers=1, search_others=True)
+    regions = []
+    for _ in job:
+        regions += [] if job.found in (None, *regions) else [job.found]
+    alone, both = regions[-2:]
+    assert both is job.result and both.with_others and not alone.with_others
+    assert (both.loss <= alone.loss + 1e-12).all()
+    assert both.area >= alone.area
+    assert {way.unit for way in both.ways} <= {"deg"}  # ways along it are of the others now

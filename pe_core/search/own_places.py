@@ -38,6 +38,11 @@ SIDEWAYS = {"left": (0.0, 1.0, 0.0), "right": (0.0, -1.0, 0.0)}
 UPWARD = {"up": (0.0, 0.0, 1.0), "down": (0.0, 0.0, -1.0)}
 DIRECTIONS = (FORWARD, SIDEWAYS, UPWARD)
 """Directions of the ground frame, both ways along each axis."""
+TRIED = (1, 4, 16)
+"""Times as many places are tried as are wanted, until so many are free: bounds forbid most of a
+body."""
+FREE_SHARE = 0.5
+"""Share of the places wanted that is enough."""
 EDGE_SHARE = 0.5
 """A step along a surface that comes less far than this share of it has met its edge."""
 
@@ -148,12 +153,22 @@ class OwnPlaces:
         return self._path_point(0.0, np.array(self._start[:3]))
 
     def covered(self, count: int) -> list[PlacedRig]:
-        """Return places all over the mount, the coarse cover first: at most `count` on a surface,
-        all slots of a list."""
+        """Return places all over the mount, the coarse cover first: of a surface at most `count`
+        that no rule forbids, and those between that one does; all slots of a list."""
         if self.surface is None:
             assert isinstance(self.mount, SlotMount)
             count = len(self.mount.slots)
             return [self._slot_place((k + 0.5) / count) for k in range(count)]
+        found: list[PlacedRig] = []
+        for times in TRIED:
+            found = self._tried(times * count)
+            free = [number for number, each in enumerate(found) if not each.place.reason]
+            if len(free) >= FREE_SHARE * count:
+                return found if len(free) <= count else found[: free[count]]
+        return found
+
+    def _tried(self, count: int) -> list[PlacedRig]:
+        assert self.surface is not None
         faces = self.surface.faces
         points, chosen = surface_points(self.surface.triangles[faces], count)
         found = zip(points, faces[chosen].tolist(), strict=True)

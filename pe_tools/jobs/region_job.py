@@ -188,7 +188,10 @@ class RegionJob(Job):
         places = yield from self._awaited(cover, lambda: self._waiting)
         for start in range(0, len(places or ()), BATCH):
             yield from self._evaluate(level, (places or [])[start : start + BATCH], whole)
-        while is_last and len(self._mount.faces) and len(level.known) < whole:
+        most = len(level.known) + whole  # rules may forbid all that are chosen
+        while (
+            is_last and len(self._mount.faces) and level.scored < whole and len(level.known) < most
+        ):
             choose = begun(partial(self._next_places, level, whole))
             chosen = yield from self._awaited(choose, lambda: self._waiting)
             if not chosen:
@@ -206,8 +209,9 @@ class RegionJob(Job):
         work = begun(partial(level.evaluated, places))
         found = yield from self._awaited(work, lambda: self._waiting)
         level.known += found or []
+        level.scored += sum(not each.place.reason for each in places)
         begin, share = self._shares
-        done = min(len(level.known) / whole, 1.0)
+        done = min(level.scored / whole, 1.0)
         self._waiting = Progress(PLACING, begin + share * done)
         yield self._waiting
 
@@ -220,7 +224,7 @@ class RegionJob(Job):
             self._mount,
             level.known,
             self.allowed,
-            count=min(BATCH, whole - len(level.known)),
+            count=min(BATCH, whole - level.scored),
             whole=whole,
         )
         surface = self._places.surface
@@ -372,7 +376,8 @@ class RegionJob(Job):
 
 
 class _Level:
-    """What is known on one number of voxels. `base` is the value of the rig as it is."""
+    """What is known on one number of voxels. `base` is the value of the rig as it is, `scored` how
+    many places were: rules forbid the others."""
 
     def __init__(
         self,
@@ -387,6 +392,7 @@ class _Level:
         self.samples = samples
         self.base = 0.0
         self.known: list[PlacedRig] = []
+        self.scored = 0
         self.shared_noise = 0.0
         self._rig = job.study.rig
         self._exact = job.row.exact
@@ -489,10 +495,11 @@ def region_mount(found: FreeRegion) -> SurfaceMount:
 
 
 def study_on_region(study: Study, found: FreeRegion) -> Study:
-    """Return a study whose sensor is on the free region of it: the patch is its mount. `InputError`
-    where the region has no area."""
+    """Return a study whose sensor is on the free region of it: the patch is its mount. A sensor
+    that is just outside, as a region errs to the safe side, is moved onto it. `InputError` where
+    the region has no area."""
     name = f"{found.sensor} region"
     area = region_mount(found)
     own = study.search.mounting
     mounting = replace(own, mounts={**own.mounts, name: area}, on={**own.on, found.sensor: name})
-    return replace(study, search=replace(study.search, mounting=mounting))
+    return replace(study, search=replace(study.search, mounting=mounting)).on_mounts()

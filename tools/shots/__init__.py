@@ -5,6 +5,7 @@ from .film import FILM
 from .guide import GUIDE
 from .mounts import MOUNTS
 from .reel import Reel
+from .region import FREE_REGION
 from .requirements import REQUIREMENTS
 from .surround import SURROUND
 from .tour import TOUR
@@ -14,6 +15,7 @@ REELS = {
     "assets": ASSETS,
     "film": FILM,
     "mounts": MOUNTS,
+    "region": FREE_REGION,
     "requirements": REQUIREMENTS,
     "surround": SURROUND,
     "tour": TOUR,

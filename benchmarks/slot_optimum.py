@@ -1,10 +1,10 @@
-"""``python -m benchmarks.slot_optimum``: the best of all placements of *six in slots*, counted.
+"""``python -m benchmarks.slot_optimum``: the best known of all placements of *six in slots*.
 
 Three LiDARs of one model and three cameras of another take six of sixteen slots: 560 x 286 =
 160,160 placements that differ. What a slot's sensor measures depends on no other sensor, so each is
 measured once; then all placements are fused by equations 4 to 9 in single precision on a sample of
 voxels, and the best of them are scored by the engine on the grid. The count is exact on that
-sample; on the grid it is the best of `FINALISTS`.
+sample; on the grid it is the best of `FINALISTS`, which proves nothing about the others.
 """
 
 from __future__ import annotations

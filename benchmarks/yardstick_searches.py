@@ -173,33 +173,49 @@ def _first_start_then_any(landscape: Landscape, seed: int) -> Callable[[], Float
     return lambda: points.pop() if points else landscape.random_point(rng)
 
 
-def nevergrad_by_name(name: str) -> Callable[[Landscape, int, int], str]:
-    """Return the search by a method of Nevergrad; it returns which one that chose in turn."""
+def nevergrad_by_name(name: str, turned: bool = False) -> Callable[[Landscape, int, int], str]:
+    """Return the search by a method of Nevergrad; it returns which one that chose in turn.
+
+    `turned`: It searches in the range in another order of the variables, some of them mirrored, by
+    the seed. The problem and its start are the same; a method without chance finds another path.
+    """
 
     def search(landscape: Landscape, seed: int, evaluations: int) -> str:
         import nevergrad
 
-        parameters = [_nevergrad_parameter(landscape, k) for k in range(len(landscape.start))]
-        point = nevergrad.p.Tuple(*parameters)
-        point.random_state.seed(seed)
+        count = len(landscape.start)
+        rng = np.random.default_rng(seed)
+        order = rng.permutation(count) if turned else np.arange(count)
+        mirrored = rng.random(count) < 0.5 if turned else np.zeros(count, dtype=bool)
+
+        def mirror(point: Floats) -> Floats:
+            return np.where(mirrored, landscape.low + landscape.high - point, point)
+
+        start = mirror(landscape.start)
+        parameters = [_nevergrad_parameter(landscape, k, start[k]) for k in order]
+        asked = nevergrad.p.Tuple(*parameters)
+        asked.random_state.seed(seed)
         method = nevergrad.optimizers.registry[name]
-        optimizer = method(point, budget=evaluations, num_workers=1)
+        optimizer = method(asked, budget=evaluations, num_workers=1)
         chosen = getattr(optimizer, "optim", optimizer)
+        point = np.empty(count)
         try:
             while True:
                 asked = optimizer.ask()
-                optimizer.tell(asked, landscape.penalised(np.array(asked.value, dtype=float)))
+                point[order] = asked.value
+                optimizer.tell(asked, landscape.penalised(mirror(point)))
         except Spent as spent:
             raise Spent(str(getattr(chosen, "name", type(chosen).__name__))) from spent
 
     return search
 
 
-def _nevergrad_parameter(landscape: Landscape, number: int) -> Any:
+def _nevergrad_parameter(landscape: Landscape, number: int, start: float) -> Any:
     import nevergrad
 
-    start, low, high = (float(a[number]) for a in (landscape.start, landscape.low, landscape.high))
-    scalar = nevergrad.p.Scalar(init=start, lower=low, upper=high)
+    low = float(landscape.low[number])
+    high = float(landscape.high[number])
+    scalar = nevergrad.p.Scalar(init=float(start), lower=low, upper=high)
     return scalar.set_integer_casting() if landscape.slots[number] else scalar
 
 
@@ -259,7 +275,7 @@ def _optuna_asked(landscape: Landscape, trial: Any, number: int) -> float:
 YARDSTICKS: dict[str, Callable[[Landscape, int, int], str]] = {
     "cma": cma_es,
     "lq-cma": lq_cma_es,
-    "ngioh": nevergrad_by_name("NgIohTuned"),
+    "ngioh": nevergrad_by_name("NgIohTuned", turned=True),
     "lengler": nevergrad_by_name("DiscreteLenglerOnePlusOne"),
     "bobyqa": py_bobyqa,
     "gp": optuna_gp,

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from benchmarks.search_problems import PROBLEMS
+from benchmarks.searches_told import table
 from benchmarks.yardstick_searches import Landscape, Spent
 from pe_core.search import Parametrization
 
@@ -45,3 +46,41 @@ def test_ranges_are_scaled_to_their_bounds():
     assert landscape.low.tolist() == [0.0] * 8 and landscape.high.tolist() == [1.0] * 8
     # a: x 1.0 of -2.5 to 2.5, y 0.5 of -1 to 1, z 1.5 of 0.8 to 2.6, pitch 0 of -15 to 15 deg
     assert landscape.start[:4] == pytest.approx([0.7, 0.75, 7 / 18, 0.5])
+
+
+def test_the_page_says_where_another_method_wins_and_ranks_whole_cells_alone():
+    """Three seeds of two methods on two problems; the last cell lacks a seed."""
+    ends = {
+        ("two free", "portfolio"): (2.2, 2.3, 2.4),
+        ("two free", "cma"): (2.1, 2.2, 2.9),
+        ("traffic", "portfolio"): (1.0, 1.1, 1.2),
+        ("traffic", "cma"): (1.3, 1.4),
+    }
+    runs = [
+        {
+            "problem": problem,
+            "method": method,
+            "budget": "small",
+            "seed": seed,
+            "samples": 2048,
+            "load": 1.0,
+            "entropy": entropy,
+            "seconds": 2.0,
+            "evaluations": 250,
+            "asked": 250,
+            "broken": 25,
+            "chosen": "",
+            "path": f"{problem} {method} {entropy}",
+        }
+        for (problem, method), entropies in ends.items()
+        for seed, entropy in enumerate(entropies)
+    ]
+    page = "\n".join(table(runs))
+    assert "*two free*, small budget: CMA-ES 2.200; portfolio 2.300" in page
+    assert "*traffic*, small" not in page
+    assert "| two free | 250 | 2,048 | 2.300 (2.400) | **2.200** (2.900) |" in page
+    assert "1.350 (1.400, 2 of 3)" in page
+    assert "| mean rank | | | 2.0 of 1 | 1.0 of 1 |" in page
+    assert "one after the other): none" in page
+    runs[1]["path"] = runs[0]["path"]
+    assert "two free by portfolio" in "\n".join(table(runs))

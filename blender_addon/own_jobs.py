@@ -105,15 +105,32 @@ def _write_scene(
     return WrittenFiles(tuple(paths), tuple(lines))
 
 
-def rig_job(study: pe.Study, name: str, path: Path, into: str | None, replace: bool) -> ExportJob:
-    """Return the job that scores a study and writes its rig in a format that has the figures."""
+def rig_job(
+    study: pe.Study,
+    name: str,
+    path: Path,
+    into: str | None,
+    replace: bool,
+    result: Mapping[str, Any] | None = None,
+) -> ExportJob:
+    """Return the job that writes a study's rig in a format that has the figures of a result. A
+    study without a `result` of it is scored."""
     stage = f"exporting {exchange.rig_format(name).title}"
+    make = partial(_facts, study, result)
     write = partial(write_rig, study, name, path, into, replace=replace)
-    return ExportJob(study, stage, _facts, write, scored=True)
+    return ExportJob(study, stage, make, write, scored=result is None)
 
 
-def _facts(outcome: jobs.Outcome, _watch: OnProgress) -> exchange.SceneFacts:
-    return exchange.SceneFacts(outcome.study.vehicle, jobs.score_facts(jobs.result_dict(outcome)))
+def _facts(
+    study: pe.Study,
+    result: Mapping[str, Any] | None,
+    outcome: jobs.Outcome | None,
+    _watch: OnProgress,
+) -> exchange.SceneFacts:
+    if outcome is not None:
+        result = jobs.result_dict(outcome)
+    assert result is not None
+    return exchange.SceneFacts(study.vehicle, jobs.score_facts(result))
 
 
 def write_rig(

@@ -43,6 +43,7 @@ from .result import (
     sensor_loss,
     store_outcome,
     store_warnings,
+    stored_result,
 )
 from .rig import (
     TRANSFORM,

@@ -155,6 +155,13 @@ def store_outcome(scene: Scene, outcome: jobs.Outcome, signature: str) -> None:
     settings.result_stale = False
 
 
+def stored_result(scene: Scene, study: pe.Study) -> Mapping[str, Any] | None:
+    """Return the data of the last result of a scene; None where it is not of the study."""
+    settings = scene.perception_entropy
+    found = settings.result
+    return found.data if found is not None and jobs.is_result_of(found.data, study) else None
+
+
 def begin_with(settings: PropertyGroup, first: Result) -> None:
     """Note that a search went on from the result of another: it is compared with its start."""
     data = json.loads(settings.result_json)

@@ -2,8 +2,9 @@
 
 import argparse
 import contextlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import bpy
 
@@ -75,6 +76,10 @@ class SceneStudies(app.StudyFiles):
             check = bridge.check_choosable if jobs.has_front(study) else bridge.check_placeable
             check(bpy.context.scene, study)
         return [app.More([OPTIMIZED], leave_scene)]
+
+    def stored_result(self, study: pe.Study, _: argparse.Namespace) -> Mapping[str, Any] | None:
+        """Return the last result of the scene; None where it is not of the study."""
+        return bridge.stored_result(opened_scene(), study)
 
     def notes(self) -> tuple:
         """Return warnings about data that the scene misses."""

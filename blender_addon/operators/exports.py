@@ -250,7 +250,9 @@ def export_rig(
     replace = replace or not (row.beside or row.is_folder)  # of one file the dialog has asked
     target = bpy.path.abspath(into) or None
     if row.write_scene is not None:
-        return run(own_jobs.rig_job(study, name, path, target, replace=replace), asked_in_window)
+        result = bridge.stored_result(context.scene, study)
+        job = own_jobs.rig_job(study, name, path, target, replace=replace, result=result)
+        return run(job, asked_in_window)
     return told_of(own_jobs.write_rig(study, name, path, target, replace=replace))
 
 

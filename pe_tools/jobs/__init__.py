@@ -12,7 +12,7 @@ from .region_job import RegionJob, region_mount, study_on_region
 from .result_record import FrontRecord, OpenTable, PlacedSensors, ResultRecord, placements
 from .results import SearchState, add_to_result, condition_lines
 from .results import result_dict, result_names, run_record, score_facts, stored_result
-from .results import write_outcome
+from .results import is_result_of, write_outcome
 from .score_and_optimize import OptimizeJob, ScoreJob
 from .searched_figure import SearchedFigure, searched_figure, searched_on
 from .stopping import scatter_text, stop_text, sureness_lines

@@ -159,13 +159,18 @@ def stored_result(folder: Path, study: Study) -> Mapping[str, Any] | None:
     path = folder / RESULT
     with suppress(InputError):  # another program's file of that name, or none
         data = parse_json(path, read_bytes(path))
-        if not isinstance(data, dict) or "study_sha256" not in data:
-            return None
-        table = Table(data, str(path))
-        version = table.table("run").table("versions").text(PROGRAM)
-        if version == __version__ and table.text("study_sha256") == fingerprint(study):
+        if isinstance(data, dict) and is_result_of(data, study):
             return data
     return None
+
+
+def is_result_of(result: Mapping[str, Any], study: Study) -> bool:
+    """Whether a result is of a study as it is now, by this version of the program."""
+    table = Table(result, RESULT)
+    if "study_sha256" not in table or "run" not in table:
+        return False
+    version = table.table("run").table("versions").text(PROGRAM)
+    return version == __version__ and table.text("study_sha256") == fingerprint(study)
 
 
 def _value(figure: SearchedFigure, value: Value) -> dict[str, float | None]:

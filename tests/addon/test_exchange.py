@@ -106,6 +106,18 @@ def test_openusd_is_the_same_from_panel_and_command_and_comes_back(axled, tmp_pa
         from_command = (tmp_path / "command" / name).read_bytes()
         assert (path.parent / name).read_bytes() == from_command
     assert 'dictionary "entropy"' in path.read_text()
+    assert bpy.ops.pe.score() == {"FINISHED"}
+    settings = bpy.context.scene.perception_entropy
+    result = json.loads(settings.result_json)
+    settings.result_json = json.dumps(result | {"after": result["after"] | {"coverage": 0.125}})
+    stored = '"coverage" = 0.125'
+    assert stored not in path.read_text()
+    assert bpy.ops.pe.export_rig(filepath=str(path), replace=True) == {"FINISHED"}
+    assert stored in path.read_text()
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+    again = tmp_path / "again.usda"
+    answer = run_here(blend, "export", "--to", "usd", "-o", again)
+    assert answer.returncode == 0 and stored in again.read_text(), answer.stderr
     before = scenes.study().rig
     assert bpy.ops.pe.import_rig(filepath=str(path)) == {"FINISHED"}
     for ours, theirs in zip(before, scenes.study().rig, strict=True):

@@ -3,6 +3,7 @@ is what the script writes."""
 
 import importlib.util
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
+from pe_core import catalog
 from pe_tools.exchange.frames import composed
 from tests.engine.foreign_forms import AXLE, FORMS
 
@@ -68,6 +70,19 @@ def test_a_moved_rig_goes_back_into_its_form(form, tmp_path):
         turn = one.pose.ground_from_sensor - other.pose.ground_from_sensor
         assert np.abs(turn).max() < 1e-5
         assert one.model.name == other.model.name
+
+
+def test_another_model_than_a_kit_s_type_says_is_kept(tmp_path):
+    form = next(each for each in FORMS if each.repository == "tier4/aip_launcher")
+    path = form.make(tmp_path)
+    rig = form.read(tmp_path).rig
+    other = catalog.load("Hesai Pandar64")
+    assert other.name != rig["hesai_left"].model.name
+    changed = [replace(s, model=other) if s.name == "hesai_left" else s for s in rig]
+    pt.export_rig(pe.Rig(changed), form.format, path, AXLE, into=path, replace=True)
+    again = pt.import_rig(path, form.format, AXLE).rig
+    assert again["hesai_left"].model.name == other.name
+    assert again["hesai_front_left"].model.name == rig["hesai_front_left"].model.name
 
 
 def test_the_page_is_what_the_script_writes():

@@ -52,24 +52,6 @@ WRONG = [
 ]
 
 
-def test_evaluators_are_kept_until_another_key_than_the_rig_s_is_changed(served):
-    """A requirement and the prior change what evaluates; a study by itself agrees."""
-    changes = {"prior.model": "highway", 'requirement."child behind".body': "adult"}
-    _, *replies = served(
-        {"do": "load", "study": "study.toml"},
-        {"do": "score"},
-        {"do": "check"},
-        {"do": "set", "changes": changes},
-        {"do": "score"},
-        {"do": "check"},
-    )
-    typed = [f"--set={key}={value}" for key, value in changes.items()]
-    alone = json.loads(pe("score", "study.toml", *typed, "--json").stdout)
-    checked = json.loads(pe("check", "study.toml", *typed, "--json").stdout)
-    assert replies[3]["answer"]["after"] == alone["after"] != replies[0]["answer"]["after"]
-    assert replies[4]["answer"] == checked
-
-
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     made = tmp_path_factory.mktemp("served")
@@ -102,28 +84,34 @@ def without_run(data):
 
 
 def test_bits_are_those_of_the_command(served):
-    """A moved sensor, and a key that is set, as if they stood on the command line; a session keeps
-    what evaluates its study, so it has scored before."""
-    loaded, before, moved, changed, scored, asked = served(
+    """A moved sensor, and keys that are set, as if they stood on the command line. A session keeps
+    what evaluates its study while only the rig changes: it has scored before."""
+    others = {"prior.model": "highway", 'requirement."child behind".body': "adult"}
+    loaded, first, moved, _, scored, asked, _, last = replies = served(
         {"id": "a", "do": "load", "study": "study.toml"},
         {"do": "score"},
         {"do": "move", "sensor": "roof", **POSE},
         {"do": "set", "changes": {"sensor.roof.model": "Hesai Pandar64"}},
         {"do": "score"},
         {"id": 7, "do": "explain", "at": [8, -0.00001]},
+        {"do": "set", "changes": others},
+        {"do": "score"},
     )
-    assert [each["status"] for each in (loaded, before, moved, changed, scored, asked)] == [0] * 6
+    assert [each["status"] for each in replies] == [0] * len(replies)
     assert (loaded["id"], moved["id"], asked["id"]) == ("a", None, 7)
     assert moved["answer"]["sensors"]["roof"] == POSE
     assert loaded["answer"]["vehicle"] == moved["answer"]["vehicle"] is not None
     typed = [f"--set=sensor.roof.{key}={value}" for key, value in POSE.items()]
     typed.append("--set=sensor.roof.model=Hesai Pandar64")
-    alone = json.loads(pe("score", "study.toml", *typed, "--json").stdout)
-    own = scored["answer"]
-    assert own["after"] == alone["after"] and own["figures"] == alone["figures"]
-    assert own["requirements"] == alone["requirements"]
-    assert before["answer"]["after"] != own["after"]
-    assert without_run(own).keys() == without_run(alone).keys()
+    changed = [*typed, *(f"--set={key}={value}" for key, value in others.items())]
+    before = first["answer"]["after"]
+    for own, options in ((scored["answer"], typed), (last["answer"], changed)):
+        alone = json.loads(pe("score", "study.toml", *options, "--json").stdout)
+        assert own["after"] == alone["after"] != before
+        assert own["figures"] == alone["figures"]
+        assert own["requirements"] == alone["requirements"]
+        assert without_run(own).keys() == without_run(alone).keys()
+        before = own["after"]
     place = json.loads(
         pe("explain", "study.toml", *typed, "--at", "8", "-0.00001", "--json").stdout
     )

@@ -148,33 +148,30 @@ class SnapshotReader:
         *,
         moving: bool,
     ) -> SteeredSensor | None:
-        """Return the active sensor, to show its best way. While something moves it is that of the
-        last live score, as the study was when the scene was idle."""
+        """Return the active sensor, to show its best way. While something moves it is as the last
+        live score has it, in the study as it was when the scene was idle: a score that is known is
+        of a moment ago, and the next move does not wait."""
         known = self._steered.pop(scene.name, None)
         view = scene.perception_entropy.view
         active = depsgraph.view_layer.objects.active
         names = [each.sensor.name for each in sensors if each.selected and each.counted]
         if not view.show_steepest or active is None or active.name not in names:
             return None
-        rig = pe.Rig([each.sensor for each in sensors if each.counted])
         if known is not None and known.name != active.name:
             known = None
-        if known is not None and not _is_scored(scene, rig, moving):
-            self._steered[scene.name] = known
-            return known
         inputs = self._inputs[scene.name]
-        try:
-            if moving and known is not None:
-                study = known.study.with_rig(rig)
-            else:
+        if moving and known is not None:
+            study = known.study.with_rig(_scored_rig(scene, known.study.rig))
+        else:
+            try:
                 objects = sensor_cache.sensors(scene)
                 study = bridge.study_from_scene(scene, depsgraph, vehicle, objects)
-                study = replace(study, prior=inputs.prior or study.prior)
-        except pe.InputError:
-            return None
+            except pe.InputError:
+                return None
+            study = replace(study, prior=inputs.prior or study.prior)
         own = study.search
         where = own.mounting, own.free.get(active.name), own.limits.get(active.name), study.limits
-        key = active.name, rig_key(rig), self._bodies[scene.name].key, inputs.key, where
+        key = active.name, rig_key(study.rig), self._bodies[scene.name].key, inputs.key, where
         self._steered[scene.name] = SteeredSensor(active.name, study, key)
         return self._steered[scene.name]
 
@@ -191,13 +188,14 @@ class SnapshotReader:
         return found
 
 
-def _is_scored(scene: bpy.types.Scene, rig: pe.Rig, moving: bool) -> bool:
-    """Whether the live score has followed to a rig. Without a live score nothing is known of one
-    that moves."""
-    if not scene.perception_entropy.live.on:
-        return not moving
-    score = live_state(scene.name).score
-    return score is not None and rig_key(score.rig) == rig_key(rig)
+def _scored_rig(scene: bpy.types.Scene, known: pe.Rig) -> pe.Rig:
+    """Return the rig of the last live score, with the same sensors as one that is known; that one
+    without a score of them."""
+    live = scene.perception_entropy.live.on
+    score = live_state(scene.name).score if live else None
+    if score is None or {each.name for each in score.rig} != {each.name for each in known}:
+        return known
+    return score.rig
 
 
 def view_of(scene: bpy.types.Scene) -> ViewSettings:

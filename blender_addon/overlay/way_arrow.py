@@ -8,18 +8,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..engine import Floats, graphics
-from .annotations import ghost_sensors
+from .annotations import MARK, ghost_sensors
 
 if TYPE_CHECKING:
     from ..engine import advice, pe
 
-ARROW_M = 0.35
-BARB_M = 0.08
+ARROW_M = 0.6
+BARB_M = 0.1
 """Length of the arrow and of its barbs."""
-ARC_M = 0.3
-ARC_RAD = np.radians(35.0)
+ARC_M = 0.6
+ARC_RAD = np.radians(30.0)
 ARC_POINTS = 12
 """Radius, angle and points of an arc that shows a turn."""
+BELOW_M = 0.4
+"""How far below the ghost its text is: the sensor's name is above."""
 BETTER: graphics.Rgba = (0.42, 0.75, 1.0, 1.0)
 """Blue is better, as in the read-out."""
 AXES = {"yaw": (0, 1), "pitch": (0, 2)}
@@ -43,19 +45,20 @@ def way_arrow(found: advice.SteepestWay, sensor: pe.Sensor) -> WayShape:
         tip = at + ARROW_M * np.array(found.direction)
         lines.append(_with_barbs(np.array([at, tip])))
         text = f"this way: {found.along.change:+.3f} nats per 5 cm"
-        labels.append(graphics.Tag(text, tuple(tip.tolist()), BETTER, strong=True))
+        labels.append(graphics.Tag(text, tuple(tip.tolist()), MARK, strong=True))
     for turn in found.clear_turns:
         axis, _, sense = turn.name.partition(" ")
         arc = _arc(sensor.pose, axis, SENSES[sense])
         lines.append(_with_barbs(arc))
         text = f"{turn.name}: {turn.change:+.3f} nats per deg"
-        labels.append(graphics.Tag(text, tuple(arc[-1].tolist()), BETTER))
+        labels.append(graphics.Tag(text, tuple(arc[-1].tolist()), MARK, strong=True))
     through = [graphics.Primitives.of(each, BETTER) for each in lines]
     if (better := found.better) is not None:
         ghost = ghost_sensors((sensor.moved(better.pose),), (sensor,))
         through.append(ghost.through)
         text = f"best within 20 cm: {better.change:+.3f} nats (M)"
-        labels.append(graphics.Tag(text, better.pose.position, BETTER))
+        x, y, z = better.pose.position
+        labels.append(graphics.Tag(text, (x, y, z - BELOW_M), MARK, strong=True))
     return WayShape(through=graphics.Primitives.joined(through), labels=tuple(labels), found=found)
 
 

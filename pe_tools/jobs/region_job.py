@@ -344,8 +344,8 @@ class RegionJob(Job):
         held = replace(study, search=replace(study.search, goals=replace(goals, fixed=fixed)))
         outside = [each for each in level.with_loss if (each.place.value or 0.0) > self.allowed]
         outside.sort(key=lambda each: each.place.value or 0.0)
-        stride = min(max(len(outside) // OTHERS, 1), SPREAD)
-        chosen = outside[: stride * OTHERS : stride]
+        spread = min(max(len(outside) // OTHERS, 1), SPREAD)
+        chosen = outside[: spread * OTHERS : spread]
         searched = as_objective(self.row.measured(study, SAMPLES, SEARCHED)).under(constraints)
         gains: list[float] = []
         for number, placed in enumerate(chosen):

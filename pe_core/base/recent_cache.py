@@ -33,7 +33,8 @@ class RecentCache(Generic[T]):
         """Return the value of a key; make it where there is none."""
         found = self.get(key)
         if found is None:
-            self._kept = self._kept[len(self._kept) - self._most + 1 :]  # it may be large
+            first = max(len(self._kept) - self._most + 1, 0)
+            self._kept = self._kept[first:]  # it may be large
             found = make()
             self.put(key, found)
         return found

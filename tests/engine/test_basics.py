@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
+from pe_core.base import RecentCache
 from pe_core.geometry.poses import rpy_from_matrix
 from tests.engine import shapes
 
@@ -112,3 +113,12 @@ def test_a_sensor_in_another_country_is_refused_and_a_far_one_sees_nothing():
     for samples in (0, 2048):
         evaluator = pe.Evaluator(shapes.small_space(), pe.Prior.road(), samples=samples)
         assert evaluator.score(rig).coverage == 0.0
+
+
+def test_a_cache_keeps_as_many_values_as_it_may_and_drops_the_one_used_longest_ago():
+    cache = RecentCache(5)
+    for key in range(5):
+        assert cache.made(key, lambda key=key: 10 * key) == 10 * key
+    assert [cache.get(key) for key in (1, 2, 3, 4, 0)] == [10, 20, 30, 40, 0]
+    cache.made(5, lambda: 50)
+    assert [cache.get(key) for key in (1, 2, 3, 4, 0, 5)] == [None, 20, 30, 40, 0, 50]

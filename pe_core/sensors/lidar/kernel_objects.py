@@ -40,7 +40,8 @@ MAX_SLOPE = 1e3
 WORD = 64
 LOW_BITS = np.array([(1 << n) - 1 for n in range(WORD + 1)], np.uint64)
 """Words whose n lowest bits are set, by n."""
-BIT_COUNTS = np.array([bin(n).count("1") for n in range(1 << 16)], np.uint8)
+WORDS = np.arange(1 << 16, dtype=np.uint16)
+BIT_COUNTS = np.unpackbits(WORDS.view(np.uint8)).reshape(-1, 16).sum(axis=1, dtype=np.uint8)
 """Number of set bits of each 16-bit word."""
 MIN_GAP_M = 1e-5
 """Boxes nearer to each other than this along a ray are compared beam by beam."""

@@ -153,6 +153,8 @@ def draw_text() -> None:
             old = scheduler.is_preview(scene, layer, name, item)
             drawn = strip.draw_strip(context, below, now, OUT_OF_DATE if old else "")
             viewport.reserve_plate(region, viewport.STRIP, drawn)
+    if is_simple(context.scene):
+        written = [replace(tag, text=plain(tag.text)) for tag in written]
     eye = _eye(context)
     taken: list[viewport.PlateBox] = []
     if context.scene.perception_entropy.view.show_legend:

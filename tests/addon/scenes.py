@@ -93,7 +93,8 @@ def depsgraph() -> bpy.types.Depsgraph:
 
 
 def seen_rig(car) -> bpy.types.Scene:
-    """Return a car with a LiDAR, and now a camera at its front, all layers shown."""
+    """Return a car with a LiDAR, and now a camera at its front, all layers shown but the best way
+    of a sensor, which scores many rigs."""
     add_sensor("eye", "Camera 60 deg", location=(2.0, 0.0, 1.0))
     add_mount(car, "cabin", bpy.data.objects["cabin"])
     settings = car.perception_entropy
@@ -101,7 +102,7 @@ def seen_rig(car) -> bpy.types.Scene:
     settings.space_x = (-30.0, 30.0)
     settings.space_y = (-15.0, 15.0)
     for layer in LAYERS:
-        setattr(view, f"show_{layer.name}", True)
+        setattr(view, f"show_{layer.name}", layer.name != "steepest")
     view.beams_of = "ALL"
     car.perception_entropy.axles_known = True
     bpy.ops.pe.add_row(rows="focus", kind="front")

@@ -117,7 +117,7 @@ def rig_job(
     study without a `result` of it is scored."""
     stage = f"exporting {exchange.rig_format(name).title}"
     make = partial(_facts, study, result)
-    write = partial(write_rig, study, name, path, into, replace=replace)
+    write = partial(write_rig, study, name, path, into, replace)
     return ExportJob(study, stage, make, write, scored=result is None)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..engine import graphics
+from .regions import offset_surface, rim
 
 if TYPE_CHECKING:
     from ..engine import advice, jobs, pe
@@ -57,9 +58,6 @@ def region_patch(found: "advice.FreeRegion", sensors: "Sequence[pe.Sensor]") -> 
     """Return a free region with its outline, its tightest direction at the sensor, and a legend.
     `sensors` are those of the scene: where they have moved, the legend says so."""
     patch = found.patch
-    colors = np.broadcast_to(np.array(INSIDE), (3 * len(patch), 4))
-    edges = _outline(patch)
-    bright = np.broadcast_to(np.array((*INSIDE[:3], 1.0)), (2 * len(edges), 4))
     row = found.row
     unit = f" {row.unit}".rstrip()
     lost = f"loses at most {row.number(found.allowed)}{unit} of {row.name}"
@@ -74,19 +72,11 @@ def region_patch(found: "advice.FreeRegion", sensors: "Sequence[pe.Sensor]") -> 
         at = found.rig[found.sensor].pose.position
         labels.append(graphics.Tag(least.text, at, MARK, strong=True))
     return graphics.LayerShape(
-        faces=graphics.Primitives.of(patch, colors),
-        lines=graphics.Primitives.of(edges, bright),
+        faces=graphics.Primitives.of(offset_surface(patch), INSIDE),
+        lines=graphics.Primitives.of(rim(patch), graphics.with_alpha(INSIDE, 1.0)),
         labels=tuple(labels),
         legend=legend,
     )
-
-
-def _outline(triangles: np.ndarray) -> np.ndarray:
-    """Return the edges (E, 2, 3) that belong to one of the triangles (F, 3, 3) alone."""
-    both = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2, 3)
-    turned = np.array([sorted(edge) for edge in both.tolist()]).reshape(-1, 6)
-    _, first, count = np.unique(turned, axis=0, return_index=True, return_counts=True)
-    return both[np.sort(first[count == 1])]
 
 
 def _state(found: "jobs.PlaceMap", sensors: "Sequence[pe.Sensor]") -> str:

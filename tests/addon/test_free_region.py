@@ -40,10 +40,10 @@ def test_the_operator_finds_what_the_engine_finds(asked):
 def test_the_layer_follows_the_loss_at_once_and_the_panel_tells_it(asked):
     car, name, found = asked
     shape = scenes.drawn(car)["region"][""]
-    assert len(shape.faces.points) == 3 * len(found.patch)
+    assert len(shape.faces.points) == 2 * 3 * len(found.patch)  # on both sides of the surface
     car.perception_entropy.view.region_loss = 1e-6
     fewer = scenes.drawn(car)["region"][""]
-    assert len(fewer.faces.points) == 3 * len(found.allowing(1e-6).patch)
+    assert len(fewer.faces.points) == 2 * 3 * len(found.allowing(1e-6).patch)
     assert len(fewer.faces.points) < len(shape.faces.points)
     window = Window(car, car.objects[name])
     texts = drawn(panels.selected_object.sensor, **vars(window)).texts("operator")

@@ -28,8 +28,10 @@ def found(camera: Camera) -> None:
     """)
     stage.rest()
     stage.do("""
+        settings = window.scene.perception_entropy
         region = next(each for each in area.regions if each.type == "WINDOW")
         with bpy.context.temp_override(window=window, area=area, region=region):
+            settings.view.region_loss = 0.1
             bpy.ops.pe.free_region("INVOKE_DEFAULT", name="roof_lidar")
     """)
     stage.wait_until(f"bool({REGION}) and {JOB} is None", PATIENCE_S)

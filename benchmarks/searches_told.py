@@ -66,7 +66,8 @@ Nevergrad's methods take most of its time (74 s and 34 s a run), and the default
 last.
 
 Changed after the first figures: NgIohTuned showed one number for two seeds of *two free*. Its
-variables are mirrored and ordered by the seed since, and all its runs were made again."""
+variables are mirrored and ordered by the seed since, and its runs were made again, but for *eight
+free*."""
 SEEDS = 3
 DEFAULT = "portfolio"
 """The engine's default search."""
@@ -122,9 +123,9 @@ def _of_budget(runs: list[Json], budget: str) -> list[str]:
     return lines
 
 
-def entropies(runs: list[Json], problem: str, method: str) -> list[float]:
-    """Return the entropies on the grid that a method found on a problem [nats]."""
-    return [r["entropy"] for r in runs if (r["problem"], r["method"]) == (problem, method)]
+def entropies(runs: list[Json], problem: str, method: str, figure: str = "entropy") -> list[float]:
+    """Return the entropies that a method found on a problem, on the grid or "own_sample" [nats]."""
+    return [r[figure] for r in runs if (r["problem"], r["method"]) == (problem, method)]
 
 
 def _cell(values: list[float], best: float) -> str:
@@ -158,7 +159,8 @@ def _broken(runs: list[Json], method: str) -> str:
 
 
 def _losses(runs: list[Json]) -> list[str]:
-    """Return where another method's median is below that of the engine's default search."""
+    """Return where another method's median is below that of the engine's default search, and what
+    both had on the voxels that the methods evaluated."""
     lines = ["## Where another method wins", ""]
     for budget, name in dict.fromkeys((r["budget"], r["problem"]) for r in runs):
         own = [r for r in runs if (r["budget"], r["problem"]) == (budget, name)]
@@ -167,7 +169,14 @@ def _losses(runs: list[Json]) -> list[str]:
         better = {NAMES.get(m, m): v for m, v in middles.items() if v < ours}
         if better:
             text = ", ".join(f"{m} {v:.3f}" for m, v in sorted(better.items(), key=itemgetter(1)))
-            lines.append(f"- *{name}*, {budget} budget: {text}; {DEFAULT} {ours:.3f}.")
+            first, sampled = (
+                f"{NAMES.get(m, m)} {median(entropies(own, name, m, 'own_sample')):.3f}"
+                for m in (min(middles, key=middles.__getitem__), DEFAULT)
+            )
+            lines += [
+                f"- *{name}*, {budget} budget: {text}; {DEFAULT} {ours:.3f}. On the voxels that "
+                f"were searched: {first}, {sampled}."
+            ]
     return [*(lines if len(lines) > 2 else [*lines, "Nowhere."]), ""]
 
 

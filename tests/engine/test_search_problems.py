@@ -65,6 +65,7 @@ def test_the_page_says_where_another_method_wins_and_ranks_whole_cells_alone():
             "samples": 2048,
             "load": 1.0,
             "entropy": entropy,
+            "own_sample": entropy - 0.5,
             "seconds": 2.0,
             "evaluations": 250,
             "asked": 250,
@@ -77,6 +78,7 @@ def test_the_page_says_where_another_method_wins_and_ranks_whole_cells_alone():
     ]
     page = "\n".join(table(runs))
     assert "*two free*, small budget: CMA-ES 2.200; portfolio 2.300" in page
+    assert "On the voxels that were searched: CMA-ES 1.700, portfolio 1.800." in page
     assert "*traffic*, small" not in page
     assert "| two free | 250 | 2,048 | 2.300 (2.400) | **2.200** (2.900) |" in page
     assert "1.350 (1.400, 2 of 3)" in page

@@ -39,6 +39,12 @@ def returns_of_the_road(settings, folder):
     settings.returns = "road"
 
 
+def curve_of_published_camera_rigs(settings, folder):
+    objects_in_traffic(settings, folder)
+    scenes.add_sensor("eye", "Camera 90 deg", location=(0.9, 0.0, 1.5))
+    settings.ap_model = "camera_rigs"
+
+
 def curve_with_a_range_term_and_the_floor(settings, _):
     bpy.ops.pe.add_row(rows="curves")
     settings.curves["lidar"].own = True
@@ -66,6 +72,7 @@ SCENES = {
         objects_in_traffic,
         returns_of_the_road,
         radar_and_ultrasonic_sensor,
+        curve_of_published_camera_rigs,
         curve_with_a_range_term_and_the_floor,
         search_by_expected_ap,
     )

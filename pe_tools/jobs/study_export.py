@@ -12,6 +12,7 @@ import numpy as np
 from pe_core import catalog
 from pe_core.base.table_reader import finite
 from pe_core.prior.grid import grid_bytes
+from pe_core.scene.rig import Rig
 from pe_core.study.file_names import AREAS, BOXES, GRID, MESH, STUDY
 from pe_core.study.mounting_file import areas_mesh, areas_of, with_areas_in
 from pe_core.study.study import Study
@@ -88,8 +89,9 @@ def study_text(study: Study) -> str:
 
 
 def fingerprint(study: Study) -> str:
-    """Return the SHA-256 of the values of a study; the names of its files do not count. Two studies
-    with the same fingerprint give the same scores and the same search, to the bit."""
+    """Return the SHA-256 of the values of a study; the names of its files and the colours of its
+    sensors do not count. Two studies with the same fingerprint give the same scores and the same
+    search, to the bit."""
     digest = hashlib.sha256()
     for part in _parts(study):
         digest.update(len(part).to_bytes(8, "little") + part)
@@ -97,7 +99,8 @@ def fingerprint(study: Study) -> str:
 
 
 def _parts(study: Study) -> Iterator[bytes]:
-    yield study_text(study).encode()
+    plain = Rig([replace(sensor, color=None) for sensor in study.rig])
+    yield study_text(study.with_rig(plain)).encode()
     yield json.dumps([catalog.to_table(sensor.model) for sensor in study.rig]).encode()
     if (vehicle := study.vehicle) is not None:
         yield np.ascontiguousarray(vehicle.triangles).tobytes()

@@ -14,8 +14,7 @@ from tests.addon import scenes
 from tests.addon.command_line import pe_here, run_here
 
 LABELS = "class,x,y,z,length,width,height,yaw\ncar,20,3,0.8,4,2,1.6,30\n"
-OF_A_FRONT_END = ("run", "inputs", "study_sha256")
-"""Keys of what a result was made from: a scene and the file that it exports are two inputs."""
+OF_A_FRONT_END = ("run", "inputs")
 
 
 def focus_on_boxes(settings, folder):

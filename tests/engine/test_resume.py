@@ -197,6 +197,8 @@ def test_a_fingerprint_tells_studies_apart_by_what_they_are(tmp_path):
     study = a_study()
     pt.export_study(study, tmp_path / "copy.toml")
     assert fingerprint(pe.load_study(tmp_path / "copy.toml")) == fingerprint(study)
+    colored = pe.Rig([replace(sensor, color="#5fb8f7") for sensor in study.rig])
+    assert fingerprint(study.with_rig(colored)) == fingerprint(study), "as it has in a window"
     body = study.vehicle
     others = [
         replace(study, samples=2048),

@@ -20,6 +20,7 @@ def found(camera: Camera) -> None:
     stage.do("""
         settings, objects = window.scene.perception_entropy, bpy.context.view_layer.objects
         settings.score_samples = settings.search_samples = 16384
+        settings.view.region_loss = 0.1
         for name in ("ground", "beams", "reach", "blind", "requirements"):
             setattr(settings.view, f"show_{name}", False)
         for obj in objects:
@@ -28,10 +29,8 @@ def found(camera: Camera) -> None:
     """)
     stage.rest()
     stage.do("""
-        settings = window.scene.perception_entropy
         region = next(each for each in area.regions if each.type == "WINDOW")
         with bpy.context.temp_override(window=window, area=area, region=region):
-            settings.view.region_loss = 0.1
             bpy.ops.pe.free_region("INVOKE_DEFAULT", name="roof_lidar")
     """)
     stage.wait_until(f"bool({REGION}) and {JOB} is None", PATIENCE_S)

@@ -81,6 +81,7 @@ def dropped_on(stage, place, before):
     return new, after
 
 
+@pytest.mark.thorough
 def test_an_asset_dropped_on_the_roof_is_a_sensor_that_stands_there(stage, screenshots):
     before = stage.do(SENSORS)["sensors"]
     stage.show_assets(catalog_id("LiDAR/Velodyne"))

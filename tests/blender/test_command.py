@@ -118,6 +118,7 @@ def alone(*arguments) -> dict:
     return document_in(answer.stdout)
 
 
+@pytest.mark.thorough
 def test_a_film_without_a_window_is_that_of_its_drive_by(installed, sedan, tmp_path):
     story = tmp_path / "story.toml"
     film = tmp_path / "film.webm"

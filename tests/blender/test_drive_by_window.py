@@ -1,5 +1,7 @@
 """A drive-by in a real window: it is played from a cache, and says when it is out of date."""
 
+import pytest
+
 from tests.blender.test_live import NAME
 
 EFFECT_TIMEOUT_S = 120
@@ -65,6 +67,7 @@ def test_a_film_is_rendered_beside_the_window_and_esc_keeps_what_is_done(stage, 
     assert path.stat().st_size > 1000 and "Traceback" not in stage.log.read_text()
 
 
+@pytest.mark.thorough
 def test_a_story_is_played_from_its_cache(stage, screenshots):
     stage.do(SHOW)
     stage.wait_for(

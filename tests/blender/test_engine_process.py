@@ -4,6 +4,7 @@ import json
 import signal
 
 import psutil
+import pytest
 
 from tests.blender.runner import output_of
 from tests.blender.test_search_window import ask_for
@@ -41,6 +42,7 @@ def wait_for_evaluations(stage, count):
     stage.wait_until(f"{RUNNING} and {RUNNING}.seen.evaluations >= {count}")
 
 
+@pytest.mark.thorough
 def test_killed_in_a_drag_and_in_a_search_it_goes_on(stage, installed, tmp_path):
     """A search that was interrupted so has the bits of one without a window that was not."""
     stage.do(SMALL_SEARCH)
@@ -91,6 +93,7 @@ def test_killed_in_an_export_it_writes_the_page_all_the_same(stage, tmp_path):
     assert names == {page.name, ".perception-entropy.json"}, "nothing unfinished is left"
 
 
+@pytest.mark.thorough
 def test_it_ends_with_the_file_and_with_blender(spent_stage, sedan):
     stage = spent_stage
     stage.do(SMALL_SEARCH + "settings.candidates = 4000\n" + SEARCH)

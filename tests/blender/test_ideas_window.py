@@ -1,5 +1,7 @@
 """Variants, a place asked about and what mends it, in a real window: by clicks and keys alone."""
 
+import pytest
+
 from tests.blender.stage import HEIGHT, WIDTH
 
 EFFECT_TIMEOUT_S = 120
@@ -19,6 +21,7 @@ kept["moved"] = [each.moved[0] for each in own]
 """
 
 
+@pytest.mark.thorough
 def test_save_move_come_back_ask_the_ground_and_mend_what_is_blind_by_clicks(window, screenshots):
     start = window.state["places"]
     window.press_until(

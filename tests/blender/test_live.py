@@ -148,6 +148,7 @@ def test_a_drag_is_followed_and_ends_exact_to_the_bit(live, screenshots, install
     assert "Traceback" not in live.log.read_text()
 
 
+@pytest.mark.thorough
 def test_disabled_in_the_middle_of_anything_it_leaves_nothing_and_works_again(
     live, spent_stage, screenshots
 ):

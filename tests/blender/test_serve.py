@@ -3,6 +3,8 @@ output answers a request."""
 
 import json
 
+import pytest
+
 import pe_core
 import pe_tools as pt
 from tests.blender.runner import output_of
@@ -14,6 +16,7 @@ POSE = {"position": [0.25, -0.1, 1.875], "rotation": [0, 3.5, -90]}
 MODEL = "Hesai Pandar64"
 
 
+@pytest.mark.thorough
 def test_requests_over_a_pipe_are_answered_line_by_line(installed, sedan, tmp_path):
     """The scene's sensors, and a small study that is loaded; its score is that of `pe`."""
     body = shapes.box_car()

@@ -2,6 +2,8 @@
 
 import subprocess
 
+import pytest
+
 EFFECT_TIMEOUT_S = 60
 SEEN = (
     "__import__('bl_ext.user_default.perception_entropy.body_query', fromlist=['seen'])"
@@ -56,6 +58,7 @@ kept["kept"] = len(pictures._pictures)
 """
 
 
+@pytest.mark.thorough
 def test_a_grabbed_body_says_what_sees_it_while_it_moves(window, screenshots):
     window.do("window.scene.perception_entropy.panels = 'ALL'")
     window.do("bpy.ops.pe.surroundings()")

@@ -135,6 +135,7 @@ def test_a_handle_turns_the_yaw_of_the_active_sensor_and_is_undone(window):
     assert window.do(YAW)["angles"] == pytest.approx([0.0, 0.0, 0.0], abs=1e-6)
 
 
+@pytest.mark.thorough
 def test_look_through_a_camera_and_esc_comes_back(window, screenshots):
     before = sensors(window)
     window.do("bpy.context.scene.perception_entropy.kind_to_add = 'camera'")

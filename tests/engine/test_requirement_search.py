@@ -3,6 +3,7 @@
 import math
 import pickle
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -27,6 +28,8 @@ from pe_tools import advice
 from pe_tools.jobs import result_dict
 from tests.engine import shapes
 from tests.engine.processes import finished
+
+SEDAN = Path(__file__).resolve().parents[2] / "examples" / "robotaxi_sedan" / "1_roof.toml"
 
 BEHIND = Zone(x=("rear + 0.6", "rear + 1.6"), y=(-0.6, 0.6), step=0.3)
 AHEAD = replace(BEHIND, x=("front + 0.6", "front + 1.6"))
@@ -176,6 +179,18 @@ def test_a_blind_place_is_mended_and_what_is_seen_needs_nothing():
         assert set(each.breaks) == {name for name in ("ahead",) if not met[name]}
     assert all(each.after.blind_m2 < each.before.blind_m2 for each in found)
     assert mended(with_blind_spot(start, 8.0, 0.0), (BLIND_SPOT,)) == {}
+
+
+def test_a_lidar_is_added_where_a_person_would_mount_it():
+    """Beside the sedan's door it is tilted over the edge of the roof: at the wheel arch the body
+    hides four of ten of its rays."""
+    start = pe.load_study(SEDAN)
+    (own,) = mended(with_blind_spot(start, 0.4, 1.7), (BLIND_SPOT,))[BLIND_SPOT]
+    assert own.added and own.occluded <= 0.1 and own.is_gain
+    pose = own.rig[own.moved[0]].pose
+    assert pose.position[2] > 0.9 * start.vehicle.bounds[1][2]
+    turned = math.degrees(pose.rpy[2])
+    assert pose.rpy[1] > 0.0 and 0.0 < turned < 180.0, "tilted to the left, where the place is"
 
 
 def test_a_rig_that_cannot_see_the_ground_is_told_so():

@@ -327,7 +327,7 @@ def test_imports_load_what_is_used_alone():
         "assert not tops & {'bpy', 'mathutils', 'gpu', 'pe_tools'}, tops; "
         "from pe_tools.cli.verbs import parser; parser(['score', 'a.toml']); "
         "found = [m for m in sys.modules if m.startswith(('pe_tools.exchange', 'pe_tools.outputs', "
-        "'pe_tools.formats.', 'pe_core.search.optimize', 'asyncio', 'trimesh'))]; "
+        "'pe_tools.formats.', 'pe_tools.jobs.optimize_job', 'asyncio', 'trimesh'))]; "
         "assert found == [], found; parser(); "
         "found = [m for m in sys.modules if m.startswith(('pe_tools.page', 'matplotlib'))]; "
         "assert found == [], found"

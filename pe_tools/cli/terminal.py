@@ -140,9 +140,11 @@ def summary(outcome: Outcome) -> str:
         own = score.per_sensor[sensor.name]
         what = kind_of(sensor).occlusion_text
         stopped = f", {own.occluded / own.beams:.1%} of its {what}" if own.occluded else ""
+        told = ", ".join(outcome.study.distances(sensor))
+        at = f"({x:g}, {y:g}, {z:g}) m{f' ({told})' * bool(told)}"
         lines.append(
-            f"{sensor.name}: {sensor.model.name} at ({x:g}, {y:g}, {z:g}) m, roll {roll:g}, "
-            f"pitch {pitch:g}, yaw {yaw:g} deg; alone {own.entropy:.3f}{stopped}"
+            f"{sensor.name}: {sensor.model.name} at {at}, roll {roll:g}, pitch {pitch:g}, "
+            f"yaw {yaw:g} deg; alone {own.entropy:.3f}{stopped}"
         )
     if outcome.kind == "optimize":
         search = outcome.start.search

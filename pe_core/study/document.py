@@ -239,7 +239,7 @@ class Document:
         """Return the study of the document that was read from a node; a `vehicle` takes the place
         of the file's, and has the name of a study's mesh."""
         self._check(node)
-        own = {"vehicle": vehicle, "mesh": MESH}
+        own: dict[str, Any] = {"vehicle": vehicle, "mesh": MESH}
         if vehicle is None:
             own = self.vehicle.read(node.at("vehicle", {}))
         with node.at("vehicle", {}).naming():

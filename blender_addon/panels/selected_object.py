@@ -32,6 +32,8 @@ def sensor(layout: UILayout, _settings: PropertyGroup, context: Context) -> None
     inside = section(layout, "distances", "From Edges")
     if inside is not None:
         draw_distances(inside, obj)
+        if not is_simple(context.scene):
+            inside.operator("pe.name_edge", icon="EDGESEL")
     if has_view(settings.model):
         layout.operator("pe.look_through", icon="VIEW_CAMERA").name = obj.name
     row = layout.row()
@@ -101,7 +103,6 @@ def draw_distances(layout: UILayout, obj: Object) -> None:
             cell.prop(settings, "edge_distances", index=index, text=text, translate=False)
         elif getattr(settings, f"edge_{axis}"):
             draw_label(cell, "No such edge", "ERROR")
-    layout.operator("pe.name_edge", icon="EDGESEL")
 
 
 def draw_region(layout: UILayout, context: Context, obj: Object) -> None:

@@ -173,7 +173,8 @@ def _before_and_after(outcome: Outcome) -> Iterator[str]:
         one = found.before
         other = found.after
         off = off_by(found.errors.position, found.errors.angle)
-        yield f"{off} (1 sigma)  {one.rise:+.3f} -> {other.rise:+.3f} nats on average"
+        rises = " -> ".join(each.rise_text() for each in (one, other))
+        yield f"{off} (1 sigma)  {rises} nats on average"
         if one.loss is not None and other.loss is not None:
             yield f"one sensor lost  {one.loss:+.3f} -> {other.loss:+.3f} nats on average"
 

@@ -9,6 +9,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
+from pe_core.scoring import is_noise
 from pe_core.search import mounted_off, robustness
 from pe_core.search.tolerance import FRESH
 from pe_tools import advice
@@ -93,8 +94,10 @@ def test_result_json_and_the_terminal_say_it(outcome):
         assert told[when]["mounted_off"] == stands.mounted_off
         assert told[when]["missed"] == stands.missed
     text = summary(outcome)
-    line = f"mounted 2 cm and 0.5 deg off (1 sigma)  {before.rise:+.3f} -> {after.rise:+.3f} nats"
-    assert line in text
+    line = next(each for each in text.splitlines() if each.startswith("mounted 2 cm and 0.5 deg"))
+    assert line.count("+-") == 2  # each rise with its error
+    for rig in (before, after):
+        assert is_noise(rig.rise, rig.stderr) or f"{rig.rise:+.3f} +- {rig.stderr:.3f}" in line
     assert f"one sensor lost  {before.loss:+.3f} -> {after.loss:+.3f} nats" in text
 
 

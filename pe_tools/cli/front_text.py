@@ -61,6 +61,7 @@ def _placed(design: jobs.Design, margin: str) -> Iterator[str]:
         slot = mount.get("slot")
         pose = sensor.pose
         where = f"{mount['mount']}, {slot}" if slot else _where(pose.position, pose.rotation_deg)
+        where = "; ".join([where, *design.study.distances(sensor)])
         yield f"{margin}{sensor.name}: {sensor.model.name}; {where}"
 
 

@@ -186,6 +186,7 @@ def _of_questions() -> dict[str, OptionRow]:
     """What is asked about a rig."""
     at = "ask one place instead: x, y and perhaps z (else 0) in metres"
     steepest = "where this sensor gains most: along its surface, turned, and within 20 cm"
+    measured = "with --sensor: how far it is from these edges of the vehicle; none: list the edges"
     suggest = "say which small move, or one more sensor, would mend what is not seen"
     body = "with --at: a test body there (child, adult, cyclist, car, pole, cone ...): m by sensor"
     preset = "a preset besides the study's requirements (--list); all: each one; any number"
@@ -195,6 +196,9 @@ def _of_questions() -> dict[str, OptionRow]:
         "at": row("--at", type=number, nargs="+", metavar=("X Y", "Z"), about=at),
         "suggest": switch("--suggest", suggest),
         "of_sensor": row("--sensor", dest="of_sensor", metavar="NAME", about=steepest),
+        "measured_from": row(
+            "--from", dest="measured_from", nargs="*", metavar="EDGE", about=measured
+        ),
         "body": row("--body", metavar="NAME", about=body),
         "heading": row(
             "--heading", type=number, metavar="DEG", about="with --body: its heading, to the left"

@@ -192,7 +192,7 @@ class Session:
 
     def _state(self) -> SessionState:
         study = self._source.current
-        return SessionState(self._source.name, study.vehicle_line, placements(study.rig))
+        return SessionState(self._source.name, study.vehicle_line, placements(study.rig, study))
 
 
 def serve(source: StudyFiles, args: argparse.Namespace) -> Answer:

@@ -198,7 +198,8 @@ def _on_mounts(study: Study) -> Study:
     for sensor in placed.rig:
         if sensor.pose != study.rig[sensor.name].pose:
             at = ", ".join(f"{value:g}" for value in sensor.pose.position)
-            tell(f"{sensor.name}: put on its mount, at ({at}) m")
+            told = "".join(f", {each}" for each in placed.distances(sensor))
+            tell(f"{sensor.name}: put on its mount, at ({at}) m{told}")
     return placed
 
 

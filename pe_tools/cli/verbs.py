@@ -222,7 +222,7 @@ VERBS = (
         SCORE,
         "a study's score in words, one place of it, or the steepest way of a sensor",
         ONE,
-        options=f"at body heading suggest class of_sensor {COMMON} workers",
+        options=f"at body heading suggest class of_sensor measured_from {COMMON} workers",
         function="explain",
         prints="ExplainAnswer",
     ),

@@ -58,7 +58,7 @@ def place_lines(found: PlaceMap) -> list[str]:
     for place in found.best(BEST, APART_M):
         value = place.value or 0.0
         at = ", ".join(f"{v:.3f}" for v in place.pose.position)
-        figures = row.figure.text(value), row.change(value - found.base)
+        figures = row.figure.text(value), found.change(value)
         rows.append([f"({at})", f"{place.pose.rotation_deg[2]:.0f}", *figures])
     free = sum(each.value is not None for each in found.places)
     head = f"{found.sensor.model.name} at {free:,} of {len(found.places):,} places"

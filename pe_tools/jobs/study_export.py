@@ -88,9 +88,9 @@ def study_text(study: Study) -> str:
 
 
 def fingerprint(study: Study) -> str:
-    """Return the SHA-256 of the values of a study; the names of its files and the colours of its
-    sensors do not count. Two studies with the same fingerprint give the same scores and the same
-    search, to the bit."""
+    """Return the SHA-256 of the values of a study; the names of its files, the colours of its
+    sensors, and the edges from which positions are told do not count. Two studies with the same
+    fingerprint give the same scores and the same search, to the bit."""
     digest = hashlib.sha256()
     for part in _parts(study):
         digest.update(len(part).to_bytes(8, "little") + part)
@@ -98,8 +98,8 @@ def fingerprint(study: Study) -> str:
 
 
 def _parts(study: Study) -> Iterator[bytes]:
-    plain = Rig([replace(sensor, color=None) for sensor in study.rig])
-    yield study_text(study.with_rig(plain)).encode()
+    plain = Rig([replace(sensor, color=None, measured_from={}) for sensor in study.rig])
+    yield study_text(replace(study, rig=plain, edges=())).encode()
     yield json.dumps([catalog.to_table(sensor.model) for sensor in study.rig]).encode()
     if (vehicle := study.vehicle) is not None:
         yield np.ascontiguousarray(vehicle.triangles).tobytes()

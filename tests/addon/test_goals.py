@@ -3,9 +3,7 @@
 import bpy
 import pytest
 
-import pe_core as pe
 from blender_addon import bridge, diagnostics
-from pe_core.search import Goals
 from pe_tools.advice import flatness
 from pe_tools.jobs import FrontJob, front_dict
 from tests.addon import scenes
@@ -46,47 +44,3 @@ def test_how_flat_the_optimum_is_is_told_in_the_scene(asked, monkeypatch):
     monkeypatch.setattr(flatness, "SHARE", 1)
     assert bpy.ops.pe.optimize() == {"FINISHED"}
     assert "1 cm or 1 deg" in "\n".join(diagnostics.explanation(settings.id_data).search)
-
-
-def test_what_a_search_could_not_keep_stays_until_something_moves(asked):
-    """A check of the scene computes its own warnings, and leaves those of the search."""
-
-    def codes():
-        return {row.code for row in settings.result_warnings}
-
-    settings = asked.perception_entropy
-    settings.keep_blind_ground = True
-    settings.limit_blind_ground = 0.0  # one sensor on the roof cannot have it
-    settings.evaluations = 5
-    assert bpy.ops.pe.optimize() == {"FINISHED"}
-    assert not settings.result_stale and "figure" in codes()
-    diagnostics.run_checks()
-    assert "figure" in codes()
-    settings.result_stale = True
-    diagnostics.run_checks()
-    assert "figure" not in codes()
-
-
-def test_goals_of_the_panel_are_those_of_the_study(asked):
-    settings = asked.perception_entropy
-    assert scenes.study().limits == pe.Limits(blind_ground=True, blind_sector=True)
-    settings.keep_blind_ground = settings.keep_blind_sector = False
-    assert scenes.study().limits == pe.Limits()
-    assert scenes.study().search.goals == Goals()
-    settings.limit_entropy = -1.25
-    settings.keep_entropy = True
-    assert scenes.study().limits == pe.Limits(entropy=-1.25)
-    settings.stop_gain = 0.002
-    settings.stop_over = 40
-    bpy.data.objects["roof"].perception_entropy.stays = True
-    goals = scenes.study().search.goals
-    assert (goals.stop.seconds, goals.stop.over) == (None, 40)
-    assert goals.stop.gain == 0.002 and goals.fixed == ("roof",)
-    settings.start_variants = True
-    assert scenes.study().search.goals.starts == ()
-    assert bpy.ops.pe.save_variant() == {"FINISHED"}
-    bpy.data.objects["roof"].location.x += 0.2
-    assert bpy.ops.pe.save_variant() == {"FINISHED"}
-    [start] = scenes.study().search.goals.starts
-    now = scenes.study().rig["roof"].pose.position[0]
-    assert start.poses["roof"].position[0] == pytest.approx(now - 0.2, abs=1e-5)

@@ -6,7 +6,6 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon.engine import pe
 from blender_addon.operators import declared
 from blender_addon.overlay import layers
 from tests.addon import scenes
@@ -27,7 +26,6 @@ NAMES = {
     "way out": "../../etc/passwd",
     "as long as it gets": "x" * 63,
 }
-FIELDS = ("location", "scale", "rotation_euler")
 MUST_BE_REFUSED = ("line break", "colour of a terminal", "turned text")
 NUMBERS = (
     ("score_samples", GREATEST),
@@ -146,24 +144,6 @@ def test_names(small, tmp_path, what, kind):
     assert said_by(bpy.ops.pe.select_object, name=sensor.name) is None
 
 
-@pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize(
-    ("of", "place"),
-    pairs(
-        [(name, field) for name in ("roof", "body") for field in FIELDS],
-        [1e30, FLOAT_MAX, math.nan, 1e5, -1e5],
-    ),
-)
-def test_placements_out_of_this_world(small, tmp_path, of, place):
-    name, field = of
-    setattr(small.objects[name], field, (place,) * 3)
-    bpy.context.view_layer.update()
-    said = score_and_export(tmp_path)
-    if name == "roof" and field != "rotation_euler":
-        assert all(line.startswith("Error: scene: sensor 'roof': ") for line in said)
-    assert_drawn_sound(small)
-
-
 def test_files_that_cannot_be_written(small, tmp_path, small_pictures):
     (tmp_path / "file").touch()
     for file in ("", "x" * 300, "file/below", ".."):
@@ -187,13 +167,3 @@ def test_a_report_is_one_line_whatever_it_quotes():
     assert operator.level == {"INFO"}
     assert operator.text.startswith("Wrote a\\nb\\u202e\\x1b.toml")
     assert operator.text.isprintable() and len(operator.text) < 500
-
-
-def test_too_little_memory_is_one_line(small, monkeypatch):
-    def no_memory(*_, **__):
-        raise MemoryError("Unable to allocate 64 GiB for an array")
-
-    monkeypatch.setattr(pe.Study, "evaluator", no_memory)
-    line = said_by(bpy.ops.pe.score)
-    assert "Not enough memory" in line and "64 GiB" in line
-    assert not small.perception_entropy.has_result

@@ -11,21 +11,10 @@ import pe_tools as pt
 from blender_addon import bridge, result_staleness
 from blender_addon.engine import jobs as pe_jobs
 from blender_addon.engine import pe
-from blender_addon.operators import declared, jobs, running_job
+from blender_addon.operators import jobs, running_job
 from blender_addon.panels import main
 from tests.addon import layouts, scenes
 from tests.engine.processes import finished
-
-CHANGES = {
-    "sensor moved": lambda car: setattr(car.objects["roof"], "location", (0.0, 0.3, 2.0)),
-    "sensor deleted": lambda car: bpy.data.objects.remove(car.objects["other"]),
-    "points moved": lambda car: (
-        setattr(car.objects["body"].data.vertices[0], "co", (-3.0, 0.0, 0.0)),
-        car.objects["body"].data.update(),
-    ),
-    "prior": lambda car: setattr(car.perception_entropy, "prior", "uniform"),
-    "frame": lambda car: car.frame_set(20),
-}
 
 
 def test_what_a_search_cost_is_stored_and_shown(car):
@@ -125,18 +114,6 @@ class Window:
         return bpy.context.evaluated_depsgraph_get()
 
 
-def finished_after(car, row, change):
-    """Read the scene and begin; change it meanwhile; end, and write what was found."""
-    task = row.read(Window(car))
-    steps = iter(task.job)
-    next(steps)
-    change()
-    bpy.context.view_layer.update()
-    for _ in steps:
-        pass
-    row.finish(car, task, getattr(task.job, task.outcome), task.job)
-
-
 def test_the_best_of_a_stopped_search_is_shown_before_its_result_and_taken_back_to_the_bit(car):
     def seen():
         roof = car.objects["roof"]
@@ -154,24 +131,6 @@ def test_the_best_of_a_stopped_search_is_shown_before_its_result_and_taken_back_
     assert np.allclose(at, best.position, atol=1e-5) and seen() != before
     take_back()
     assert seen() == before
-
-
-@pytest.mark.parametrize(
-    ("row", "change"),
-    [*((jobs.SCORE, each) for each in CHANGES), (jobs.OPTIMIZE, "sensor moved")],
-    ids=lambda of: getattr(of, "name", of),
-)
-def test_a_change_while_a_job_runs_leaves_its_result_stale(car, row, change):
-    moving = scenes.add_sensor("other", model="Pandar40", location=(1.9, 0.0, 1.0))
-    moving.perception_entropy.free = (False,) * 6
-    moving.keyframe_insert("location", frame=1)
-    moving.location.x += 0.5
-    moving.keyframe_insert("location", frame=20)
-    car.frame_set(1)
-    car.objects["roof"].location.z = 1.5  # under what the roof hides: a search finds better ones
-    finished_after(car, row, lambda: CHANGES[change](car))
-    # What the search has placed stands where it put it, wherever it was meanwhile.
-    assert car.perception_entropy.result_stale == (row is jobs.SCORE)
 
 
 def animate(sensor):
@@ -214,15 +173,3 @@ def test_esc_keeps_the_best_with_its_analysis_and_esc_again_without(car, stops):
     stored = car.perception_entropy.result
     assert scenes.study().rig["roof"].pose == task.job.best.rig["roof"].pose
     assert bool(stored.robustness("rise")) is analysed
-
-
-def test_a_dropped_search_leaves_all_as_it_was(car):
-    before = scenes.study().rig["roof"].pose
-    task = jobs.OPTIMIZE.read(Window(car))
-    run = pe_jobs.JobRun(task.job)
-    for step in run:
-        if step.progress.evaluations >= 8:
-            run.cancel(drop=True)
-    with pytest.raises(declared.Stopped):
-        jobs.OPTIMIZE.finish(car, task, task.job.outcome, task.job)
-    assert scenes.study().rig["roof"].pose == before and not car.perception_entropy.has_result

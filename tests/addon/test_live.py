@@ -6,16 +6,7 @@ from dataclasses import replace
 import bpy
 import pytest
 
-import blender_addon
-from blender_addon import (
-    bridge,
-    change_events,
-    engine_calls,
-    engine_process,
-    result_staleness,
-    signals,
-)
-from blender_addon.engine import advice
+from blender_addon import bridge, change_events, engine_calls, engine_process, result_staleness
 from blender_addon.live import (
     AT_REST,
     MOVING,
@@ -119,39 +110,6 @@ def test_a_drag_is_exact_and_compared_with_where_it_began(live, monkeypatch):
     assert not is_exact(live), "asked for, not there yet"
 
 
-def test_a_hand_that_rests_for_a_moment_does_not_begin_a_new_drag(live, monkeypatch):
-    start = reading(live).summary
-    monkeypatch.setattr(session, "_moving_operator", lambda: 4711)
-    for _ in range(2):
-        drag(live.objects["roof"])
-        rest()
-        assert reading(live).before == start
-    monkeypatch.setattr(session, "_moving_operator", lambda: 0)
-    rest()
-    second = reading(live).summary
-    monkeypatch.setattr(session, "_moving_operator", lambda: 4711)  # an address may come again
-    drag(live.objects["roof"])
-    assert reading(live).before == second != start
-
-
-@pytest.mark.parametrize("by", [0.05, 0.0], ids=["clicked", "escaped"])
-def test_the_change_stays_when_the_hand_lets_go(live, monkeypatch, by):
-    start = reading(live).summary
-    roof = live.objects["roof"]
-    monkeypatch.setattr(session, "_moving_operator", lambda: 4711)
-    drag(roof)
-    rest()  # held still until it was scored
-    monkeypatch.setattr(session, "_moving_operator", lambda: 0)  # Blender ends it, then updates
-    drag(roof, by - 0.05)
-    rest()
-    assert reading(live).before == start and is_exact(live)
-    assert (reading(live).summary == start) == (by == 0.0)
-    roof.update_tag()  # an update that moves nothing begins no move
-    bpy.context.view_layer.update()
-    rest()
-    assert reading(live).before == start
-
-
 def test_a_variant_is_what_it_is_compared_with(live):
     start = exact()
     bpy.ops.pe.save_variant()
@@ -166,63 +124,6 @@ def test_a_variant_is_what_it_is_compared_with(live):
     bpy.ops.pe.remove_row(rows="variants")
     rest()
     assert reading(live).baseline is None or reading(live).baseline.label != "Variant"
-
-
-def test_one_score_is_shown_at_a_time(live, monkeypatch):
-    """Panel and read-out take theirs from here: live, or stored where that is of the scene."""
-    bpy.ops.pe.score()
-    rest()
-    score = shown_score(live)
-    settings = live.perception_entropy
-    assert score.stored and score.exact and score.entropy == settings.result.entropy
-    drag(live.objects["roof"])
-    now = reading(live).summary
-    assert (shown_score(live).now, shown_score(live).phase) == (now, MOVING)
-    result_staleness.update_result()
-    rest()
-    now = reading(live).summary
-    assert (shown_score(live).now, shown_score(live).phase) == (now, AT_REST)
-    settings.live.on = False
-    assert shown_score(live).phase == OUT_OF_DATE and shown_score(live).pair is None
-
-
-def test_after_undo_and_redo_the_result_that_came_back_is_shown(live):
-    """The live score of before would stand beside it until the scene is idle."""
-    bpy.ops.pe.score()
-    rest()
-    bpy.ops.ed.undo_push(message="scored")
-    drag(live.objects["roof"], 0.3)
-    live.perception_entropy.result_stale = True
-    rest()
-    moved = reading(live).summary.entropy
-    bpy.ops.ed.undo_push(message="moved")
-    bpy.ops.ed.undo()
-    scene = bpy.context.scene
-    shown = shown_score(scene)
-    assert shown.stored and shown.entropy == scene.perception_entropy.result.entropy != moved
-    assert state.live_state(scene.name).note == ""
-    rows = readout.rows_of(shown)
-    assert rows[0].words[0][0] == f"{shown.entropy:.3f} nats"
-    bpy.ops.ed.redo()
-    assert shown_score(bpy.context.scene).phase == OUT_OF_DATE
-    rest()
-    assert shown_score(bpy.context.scene).entropy == moved
-
-
-def test_the_figures_are_the_engine_s_and_of_before_while_it_moves(live, monkeypatch):
-    live.perception_entropy.live.figures = True
-    looking = scenes.study().sight()
-    first = advice.KeyFigures.of_rig(looking, reading(live).rig)
-    assert shown_score(live).figures[-1] == first
-    monkeypatch.setattr(session, "_moving_operator", lambda: 4711)
-    drag(live.objects["roof"], 0.6)
-    assert shown_score(live).figures == (first,), "of before this move"
-    rest()
-    second = advice.KeyFigures.of_rig(looking, reading(live).rig)
-    assert second != first and shown_score(live).figures == (first, second)
-    live.perception_entropy.targets = "objects"
-    rest()
-    assert shown_score(live).figures[-1].reach == {}, "reaches are in the score"
 
 
 def test_only_what_moved_is_measured_and_the_vehicle_is_not_read(live, monkeypatch):
@@ -267,27 +168,6 @@ def test_what_is_wrong_is_said_in_a_line_until_it_is_mended(live):
     assert state.live_state(live.name).note == "" and told(reading(live).summary) == told(exact())
 
 
-def test_undo_in_the_middle_of_a_drag(live):
-    for message in ("before", "after"):
-        drag(live.objects["roof"])
-        bpy.ops.ed.undo_push(message=message)
-    bpy.ops.ed.undo()
-    rest()
-    scene = bpy.context.scene
-    assert told(reading(scene).summary) == told(exact())
-
-
-def test_the_extension_disabled_in_the_middle_of_a_drag(live):
-    drag(live.objects["roof"])
-    blender_addon.unregister()
-    try:
-        assert not state.states
-        assert session.follow_update not in bpy.app.handlers.depsgraph_update_post
-        assert session.on_idle not in signals.idle.listeners
-    finally:
-        blender_addon.register()
-
-
 def test_a_mistake_of_ours_is_shown_and_told(live, monkeypatch):
     def broken(*_):
         raise ValueError("odd")
@@ -322,6 +202,64 @@ def both(scene):
         request = snapshot.SnapshotReader().request(scene, depsgraph, moving=False)
         assert request.compared_name == shown.label
     return text, shown
+
+
+def read_everywhere(scene):
+    """The score, its state and its change, each read where it is drawn: in the read-out, and in the
+    dashboard of the panel, in *Simple* and in *All*. They have to be one."""
+    rows = readout.rows_of(shown_score(scene))
+    words = [text for row in rows[:2] for text, _ in row.words]
+    nats, *change = words[: len(rows[0].words)]
+    phase = next(phase for phase in HEADS if any(text.endswith(phase) for text in words))
+    for panels in ("SIMPLE", "ALL"):
+        scene.perception_entropy.panels = panels
+        window = layouts.Window(scene, scene.objects["roof"])
+        labels = layouts.drawn(main.main, **vars(window)).texts("label")
+        scores = [text for text in labels if text in (nats, nats.removesuffix(" nats"))]
+        known = tuple(head for head, _ in HEADS.values())
+        heads = [text for text in labels if text.startswith(known)]
+        assert len(scores) == 1, "one number"
+        assert [text.partition(": 4")[0] for text in heads] == [HEADS[phase][0]], "one state"
+    is_told = bool(change) and change[0][-6:] in ("better", " worse")
+    before = shown_score(scene).before("entropy")
+    assert is_told == (before is not None and f"({before:.3f})" in labels), "one change"
+    return float(nats.split()[0]), phase, is_told
+
+
+def test_one_number_and_one_state_are_read_in_a_drag_after_undo_and_after_esc(live, monkeypatch):
+    live.perception_entropy.live.figures = True
+    bpy.ops.pe.score()
+    rest()
+    scored = live.perception_entropy.result.entropy
+    bpy.ops.ed.undo_push(message="scored")
+    assert read_everywhere(live) == (round(scored, 3), STORED, False)
+    start = tuple(live.objects["roof"].location)
+    with monkeypatch.context() as hand:
+        hand.setattr(session, "_moving_operator", lambda: 7)
+        for _ in range(2):
+            drag(live.objects["roof"], 8.0)
+            entropy = reading(live).summary.entropy
+            assert read_everywhere(live) == (round(entropy, 3), MOVING, True)
+        live.objects["roof"].location = start  # Esc: the operator takes it back
+        bpy.context.view_layer.update()
+        assert read_everywhere(live)[2] is False, "where it began nothing has changed"
+    result_staleness.update_result()
+    rest()
+    assert read_everywhere(live) == (round(scored, 3), STORED, False)
+    drag(live.objects["roof"], 8.0)
+    live.perception_entropy.result_stale = True
+    rest()
+    entropy = reading(live).summary.entropy
+    assert read_everywhere(live) == (round(entropy, 3), AT_REST, True)
+    bpy.ops.ed.undo_push(message="moved")
+    bpy.ops.ed.undo()
+    scene = bpy.context.scene
+    assert read_everywhere(scene) == (round(scored, 3), STORED, False)
+    bpy.ops.ed.redo()
+    scene = bpy.context.scene
+    assert read_everywhere(scene)[1] == OUT_OF_DATE
+    rest()
+    assert read_everywhere(scene)[:2] == (round(entropy, 3), AT_REST)
 
 
 def test_panel_and_read_out_say_the_same_in_a_drag_after_undo_and_after_a_search(live, monkeypatch):

@@ -4,9 +4,7 @@ import pytest
 
 from blender_addon import viewport
 from blender_addon.engine import graphics
-from blender_addon.live import readout
 from blender_addon.overlay.labels import Surroundings, arranged, folded
-from blender_addon.viewport import INK
 
 READOUT = (20.0, 40.0, 320.0, 240.0)
 CAR = (500.0, 150.0, 900.0, 560.0)
@@ -65,29 +63,3 @@ def test_plates_fold_before_they_cover_the_car_or_a_quarter_of_the_view(car, are
     covered = sum((box[2] - box[0]) * (box[3] - box[1]) for box in shown)
     assert covered <= area or not any(whole)
     assert all(whole) == (area == 1e9 and car in (CAR, None))
-
-
-@pytest.mark.parametrize("scale", [1.0, 1.15, 1.4, 1.9, 2.0, 2.3])
-def test_a_plate_that_has_room_is_whole_at_any_scale(scale):
-    """A legend lost its colours where its corners, which are sums, were rounded."""
-    sizes = [(113.7 * scale, high * scale) for high in (60.1, 93.3)]
-    room = (130.0 + scale / 3.0, 32.1 * scale, 1400.7, 860.3)
-    placed = folded(sizes, 25.0 * scale, Surroundings(room, [], None, 4.1 * scale), 1e9)
-    for each, (wide, high) in zip(placed, sizes, strict=True):
-        assert not each.is_folded
-        assert each.box[2] - each.box[0] == pytest.approx(wide)
-        assert each.box[3] - each.box[1] == pytest.approx(high)
-
-
-def test_a_readout_too_wide_goes_on_below_and_loses_no_word():
-    rows = [
-        readout.TextRow(10.0, (("1.510", INK), ("no difference shown", INK))),
-        readout.TextRow(10.0, (("at rest, beams and maps follow", INK), ("and more", INK)), 0.3),
-    ]
-    for widest in (1.0, 90.0, 140.0, 1e4):
-        found = readout.wrapped(rows, widest, 1.0)
-        said = " ".join(text for row in found for text, _ in row.words)
-        assert said == "1.510 no difference shown at rest, beams and maps follow and more"
-        assert len(found) >= len(rows)
-    assert readout.wrapped(rows, 1e4, 1.0) == rows
-    assert len(readout.wrapped(rows, 90.0, 1.0)) > len(rows)

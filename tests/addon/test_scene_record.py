@@ -146,6 +146,8 @@ def rich(car):
     scenes.add_mount(car, "slots", kind="SLOTS", slots=rack)
     roof = bpy.data.objects["roof"]
     roof.location.y = 0.4
+    bridge.add_edge(car, "seam", [(0.7, -0.8, 1.5), (0.7, 0.8, 1.5)])
+    roof.perception_entropy.edge_x = "seam"
     bpy.context.view_layer.update()
     assert bpy.ops.pe.mount_sensor(name="roof", mount="painted") == {"FINISHED"}
     assert bpy.ops.pe.mirror_sensor(name="roof", linked=True) == {"FINISHED"}
@@ -234,7 +236,7 @@ def test_a_variant_of_the_four_corners_keeps_mounts_pairs_and_constraints(addon)
     scene = bpy.context.scene
     assert bpy.ops.pe.save_variant() == {"FINISHED"}
     study = variant_study(scene, scene.perception_entropy.variants[-1])
-    assert len(study.search.mounting.mounts) == len(study.search.mounting.pairs) == 2
+    assert (len(study.search.mounting.mounts), len(study.search.mounting.pairs)) == (2, 3)
     assert study.limits.height == pe.Limit(2.7)
     assert differences(study, scenes.study()) == []
 

@@ -5,12 +5,10 @@ import json
 import bpy
 import pytest
 
-from blender_addon import location_query, panels, where_map
+from blender_addon import where_map
 from blender_addon.engine import jobs
-from blender_addon.panels.score_details import draw_offers
 from tests.addon import scenes
 from tests.addon.command_line import pe_here, run_here
-from tests.addon.layouts import Layout, Window, drawn
 
 SPOT = (0.0, 1.7, 0.0)
 
@@ -27,27 +25,11 @@ def test_the_window_says_what_pe_says_of_a_blind_place(car, tmp_path):
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
     x, y, _ = offers.of
     asked = ("--at", repr(x), repr(y), "--suggest", "--json")
-    inside = run_here(path, "explain", *asked)
-    assert run_here(path, "export", "-o", tmp_path / "study").returncode == 0
-    outside = pe_here("explain", tmp_path / "study" / "study.toml", *asked)
+    inside = run_here(path, ["explain", *asked])
+    assert run_here(path, ["export", "-o", tmp_path / "study"]).returncode == 0
+    outside = pe_here(["explain", tmp_path / "study" / "study.toml", *asked])
     assert inside.stdout == outside.stdout and inside.returncode == outside.returncode == 0
     assert json.loads(inside.stdout)["suggestions"] == [each.to_dict() for each in offers.found]
-
-
-def test_taking_an_added_sensor_gives_the_promised_figures(car):
-    offers = mended(car, point=SPOT)
-    number = next(k for k, each in enumerate(offers.found) if each.added)
-    own = offers.found[number]
-    before = set(car.objects)
-    assert bpy.ops.pe.take_suggestion(number=number) == {"FINISHED"}
-    (new,) = set(car.objects) - before
-    study = scenes.study()
-    assert study.rig[new.name].pose == own.rig[own.moved[0]].pose
-    assert study.evaluator(2048).entropy(study.rig) == own.after.entropy
-    assert study.key_figures().values["blind_ground"] == own.after.blind_m2 < own.before.blind_m2
-    assert car.name not in where_map.offers
-    job = jobs.SuggestJob(study, spot=SPOT[:2])
-    assert list(job) and job.found == {}
 
 
 def test_a_failed_requirement_is_mended_as_the_job_says(car):
@@ -72,17 +54,3 @@ def test_ghosts_stand_where_the_sensors_would_be_until_the_rig_changes(car):
     scenes.add_sensor("late", location=(0.0, 0.0, 2.0))
     where_map.discard_outdated()
     assert car.name not in where_map.offers and "ghosts" not in scenes.drawn(car)
-
-
-def test_the_panel_asks_and_tells(car):
-    bpy.ops.pe.ask_place(point=SPOT)
-    assert location_query.answer(car) is not None
-    answer = panels.score_details.explain
-    assert "pe.suggest" in drawn(answer, **vars(Window(car))).texts("operator")
-    offers = mended(car, point=SPOT)
-    layout = Layout()
-    draw_offers(layout, Window(car), point=offers.of)
-    text = " ".join(layout.texts("label"))
-    assert text.lower().count("blind ground") == len(offers.found)
-    done = {True: "Add It", False: "Move It"}
-    assert layout.texts("operator") == [done[each.added] for each in offers.found]

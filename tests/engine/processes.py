@@ -49,7 +49,7 @@ ANALYSE = (
 RUN = "from pe_tools.__main__ import main; main()"
 
 
-def pe(*arguments):
+def pe(arguments):
     """Run the command in this process: what it would print, warnings too, and its status."""
     out = io.StringIO()
     err = io.StringIO()
@@ -74,7 +74,7 @@ def finished(job):
 class Command:
     """A running ``pe``; its stderr is read as it comes."""
 
-    def __init__(self, *arguments, hang_in_score=0, hangs=False, **options):
+    def __init__(self, arguments, hang_in_score=0, hangs=False, **options):
         script = FEW_ERRORS + TELL_ALL + HANG.format(nth=hang_in_score) + ANALYSE[hangs] + RUN
         options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options}
         self.process = subprocess.Popen(

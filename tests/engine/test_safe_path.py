@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.limits import HANG_S
+from tests.thorough import THOROUGH
 
 PE = Path(sysconfig.get_path("scripts"), f"pe{'.exe' if sys.platform == 'win32' else ''}")
 LIBRARIES = "numpy ruamel trimesh pe_core pe_tools usercustomize sitecustomize"
@@ -39,7 +40,9 @@ VERBS = {
 }
 """What each verb is given: for `optimize` and `sweep` two worker processes."""
 BEGINNINGS = {"pe": [PE], "-P": [sys.executable, "-P", "-m", "pe_tools"]}
-CALLS = [*(("pe", verb) for verb in VERBS), ("-P", "sensors"), ("-P", "optimize")]
+FEW_CALLS = [("pe", "sweep"), ("pe", "serve"), ("-P", "optimize")]
+CALLS = [*(("pe", verb) for verb in VERBS), *FEW_CALLS[-1:]] if THOROUGH else FEW_CALLS
+"""By default those that start workers, and one that waits for lines."""
 STARTS_ENGINE = """
 import os, time
 from pe_tools.engine_process import EngineProcess

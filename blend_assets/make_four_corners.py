@@ -36,6 +36,8 @@ RECESS_M = 0.01
 """A base plate of 40 mm on the roof; a lens 10 mm proud of the bumper."""
 SIDE_M = (0.3, 1.0)
 """Bounds of y of the sensors on the left: each pair has one on either side."""
+END_M = (1.3, 3.1)
+"""Bounds of x of a pair at the front; one at the rear has them with the other sign."""
 
 BLIND_GROUND_M2 = 67.0
 """The limit of what stays blind within 10 m: half of what is blind at the start."""
@@ -103,7 +105,9 @@ def add_pair(
     own = obj.perception_entropy
     obj.rotation_euler.z += math.radians(yaw[0])
     own.free = [False, False, False, False, True, True]
-    for index, (low, high) in ((1, SIDE_M), (4, pitch), (5, yaw[1:])):
+    first, last = END_M
+    ends = (first, last) if near[0] > 0.0 else (-last, -first)
+    for index, (low, high) in ((0, ends), (1, SIDE_M), (4, pitch), (5, yaw[1:])):
         own.bounded[index] = True
         own.bounds_low[index] = low
         own.bounds_high[index] = high

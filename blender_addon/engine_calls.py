@@ -118,11 +118,16 @@ def gain(number: int, study: pe.Study, name: str, pose: pe.Pose) -> Gain:
     return Gain(before.entropy, score.entropy, score.coverage, error or 0.0)
 
 
-def known_entropies(study: pe.Study) -> dict[str, float]:
-    """Return the entropies [nats] of the known rigs on a study's vehicle, by key."""
+def known_entropies(study: pe.Study) -> dict[str, tuple[float, float]]:
+    """Return the entropies [nats] of the known rigs on a study's vehicle, by key, with their
+    standard errors."""
     evaluator = study.evaluator(samples=HELD_SAMPLES)
-    rigs = {key: catalog.rig_on(rig, study.vehicle) for key, rig in catalog.known_rigs().items()}
-    return {key: evaluator.entropy(study.with_other_rig(rig).rig) for key, rig in rigs.items()}
+    found = {}
+    for key, rig in catalog.known_rigs().items():
+        on_vehicle = catalog.rig_on(rig, study.vehicle)
+        score = evaluator.summary(study.with_other_rig(on_vehicle).rig)
+        found[key] = score.entropy, score.stderr
+    return found
 
 
 _checkers: text.RecentCache[requirements.RequirementChecker] = text.RecentCache(2)

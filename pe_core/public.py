@@ -77,12 +77,30 @@ from .sensors import (
     measure,
     measure_objects,
 )
-from .study import Conditions, Search, Study, load_study, save_study, study_from_dict, study_to_dict
+from .study import (
+    Conditions,
+    Edge,
+    Search,
+    Study,
+    load_study,
+    save_study,
+    study_from_dict,
+    study_to_dict,
+)
 from .version import __version__
 
 __all__ = ["METHODS", "ApCurve", "BeamField", "BlindGround", "BoxReport", "Boxes", "BrownConrady"]
-__all__ += ["Camera", "Choice", "Conditions", "Constraints", "DataSheet", "Evaluator", "FTheta"]
-__all__ += ["Focus", "Front", "Goals", "GroundMap", "GroundSight", "Housing", "InputError"]
+__all__ += ["Camera", "Choice", "Conditions", "Constraints", "DataSheet", "Edge", "Evaluator"]
+__all__ += [
+    "FTheta",
+    "Focus",
+    "Front",
+    "Goals",
+    "GroundMap",
+    "GroundSight",
+    "Housing",
+    "InputError",
+]
 __all__ += ["KannalaBrandt", "Lidar", "Limit", "Limits", "Mesh", "MeshAxes", "Method", "Motion"]
 __all__ += ["MountArea", "Mounting", "MountingGrid", "NoGo", "ObjectClass", "ObjectEvaluator"]
 __all__ += ["ObjectScore", "Objective", "Objects", "Option", "PartScore", "PerceptionModel"]

@@ -17,6 +17,7 @@ from ..choices import BY_GROUP, BY_MESH, BY_PARTS, ON_SLOTS
 from ..engine import catalog, kinds, pe, search, studies
 from .apply_variant import apply_records
 from .conditions import write_conditions
+from .edges import write_edges
 from .prior import write_prior
 from .requirements import write_requirements
 from .rig import place_at, view_layer_of
@@ -31,7 +32,7 @@ FAR_M = 1e4
 HELD = (
     *(
         ("vehicle", key)
-        for key in ("mesh", "glass", "covers", "forward", "up", "scale", "rotation")
+        for key in ("mesh", "glass", "covers", "forward", "up", "scale", "rotation", "edge")
     ),
     *(("optimize", key) for key in ("mount", "pairs", "groups", "no_go", "fixed")),
     ("selection", "choice"),
@@ -57,6 +58,7 @@ def load_into(scene: Scene, study: pe.Study) -> list[str]:
     mounting = study.search.mounting
     write_table(settings, scene_table(study))
     _write_vehicle(scene, study.vehicle)
+    write_edges(scene, study.edges)
     write_prior(settings, study.prior)
     write_requirements(settings, study.requirements)
     write_conditions(settings, study.conditions)

@@ -19,6 +19,7 @@ from .scene_diagnostics import DRIVER, MISSING
 
 MARKING = (MISSING, DRIVER)
 """Codes of warnings that mark a result: what was scored is not what was meant."""
+ARROW = " \N{RIGHTWARDS ARROW} "
 BEGAN = "began"
 """Key of the scores and figures with which the first of several searches in a row began."""
 
@@ -104,10 +105,12 @@ class Result:
         """Return how a figure of robustness ("rise", "loss") changed; empty where it is unknown."""
         if (found := self.data.get("robustness")) is None:
             return ""
-        rigs = (search.RigRobustness(**found[when]) for when in ("before", "after"))
-        first, last = (getattr(rig, which) for rig in rigs)
-        known = first is not None and last is not None
-        return f"{first:+.3f} \N{RIGHTWARDS ARROW} {last:+.3f} nats" if known else ""
+        rigs = [search.RigRobustness(**found[when]) for when in ("before", "after")]
+        if which == "rise":
+            texts = [rig.rise_text("\N{PLUS-MINUS SIGN}") for rig in rigs]
+        else:
+            texts = [f"{rig.loss:+.3f}" for rig in rigs if rig.loss is not None]
+        return f"{ARROW.join(texts)} nats" if texts else ""
 
     @cached_property
     def parts(self) -> tuple[ResultPart, ...]:

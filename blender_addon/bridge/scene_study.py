@@ -11,6 +11,7 @@ from bpy.types import Collection, Depsgraph, Object, Scene
 
 from ..engine import pe, search, studies
 from .conditions import as_drawn, conditions_of, read_states
+from .edges import edges_of
 from .mounting import constraints_of, mounting_of, mounts_of
 from .prior import prior_from_scene
 from .requirements import requirements_of
@@ -92,6 +93,7 @@ def study_of(
     document = replace(
         document,
         prior=prior_from_scene(scene),
+        vehicle=replace(document.vehicle, edge=edges_of(scene, depsgraph)),
         sensor=tuple(
             _sensor_table(sensor, record, mounting)
             for sensor, record in zip(rig, counted, strict=True)

@@ -7,7 +7,7 @@ stores the tables of all sensors; what differs between two of them are keys.
 
 import contextlib
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Annotated, Any
@@ -21,7 +21,7 @@ from .rig import color_of, last_written_pose, pose_of, pose_of_matrix, sensor_ob
 from .study_table import LARGEST_INT, TableData, parsed
 from .transform_constraints import locked_axes
 
-OF_OBJECT = ("locked", "options", "may_be_left_out", "stays", "color", "order")
+OF_OBJECT = ("locked", "options", "may_be_left_out", "stays", "color", "order", "measured_from")
 """Keys that belong to the sensor's object, in whatever variant."""
 OF_BLENDER = ("name", "position", "rotation", "visible", "display", "size_m", "locked", "options")
 """Keys that an object's text does not have: Blender holds them."""
@@ -37,6 +37,7 @@ class SensorRecord:
     `mirror_of` is the linked mirror image, `rack` the group that moves as one. `intrinsics` is the
     model if the catalogue does not have it. A variant's record takes the keys `OF_OBJECT` from the
     object that the variant would use if it were applied: `locked` axes restrict the search,
+    `measured_from` are edges of the vehicle by axis,
     `options` are tables of the models to choose from, `may_be_left_out` allows designs without the
     sensor, and one that `stays` is moved by no search; `order` is its place among the sensors.
     """
@@ -61,6 +62,7 @@ class SensorRecord:
     stays: bool = False
     may_be_left_out: bool = False
     order: Annotated[int, studies.Part(rule=studies.Whole(-LARGEST_INT))] = 0
+    measured_from: Mapping[str, str] = field(default_factory=dict)
     locked: tuple[str, ...] = ()
     options: Annotated[tuple[TableData, ...], studies.Part(stored=False)] = ()
     intrinsics: Annotated[Any, studies.Part(stored=False)] = None
@@ -192,6 +194,7 @@ def record_of_sensor(sensor: pe.Sensor) -> SensorRecord:
         intrinsics=sensor.model,
         color=sensor.color,
         sheet=sensor.sheet,
+        measured_from=sensor.measured_from,
     )
 
 
@@ -259,6 +262,7 @@ def sensor_of(record: SensorRecord, source: str = "variant", returns: str = "all
             curve=record.curve,
             color=record.color,
             sheet=record.sheet,
+            measured_from=record.measured_from,
         )
     except pe.InputError as error:
         raise error.within(source, f"sensor {record.name!r}") from None

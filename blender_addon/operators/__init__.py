@@ -15,6 +15,7 @@ from . import (
     look_through,
     modes,
     mounts,
+    named_edges,
     named_places,
     panel_rows,
     place_sensor,

@@ -17,12 +17,12 @@ from .jobs import JobRow, Task
 from .variants import unless_variants
 
 LABEL_PX = 260
-COLUMN_PX = 170
+COLUMN_PX = 215
 MIN_WIDTH_PX = 560
 LETTER_PX = 7
 """Smallest width of the table, and width of a letter of the sentences above it."""
 PICTURE_SCALE = 6.0
-BAR_SHARE = 0.45
+BAR_SHARE = 0.4
 """Height of a picture in rows, and share of a cell that is its bar."""
 MAX_VARIANTS = 8
 OF_PARTS = ("entropy", "coverage")  # Figures that zones and classes have as well
@@ -203,7 +203,7 @@ def label_of(row: advice.ComparedRow) -> str:
 def cell_of(row: advice.ComparedRow, k: int) -> tuple[str, bool, str, int]:
     """Return a figure, whether it is the best, its difference to the first variant's if that is not
     0, and whether this is a gain or a loss."""
-    change = row.change_text(k)
+    change = row.change_text(k, "\N{PLUS-MINUS SIGN}")
     change = f"({change})" if change.strip("+-0.") else ""
     return row.text(k), row.best[k], change, row.sense(k)
 

@@ -1,11 +1,12 @@
 """What a good score is: that of the known rigs on the same body, in the background."""
 
 import json
+import math
 
 import bpy
 
 from .. import engine_calls, engine_process, signals
-from ..engine import pe
+from ..engine import pe, scoring
 
 
 def request(scene: bpy.types.Scene, study: pe.Study, surroundings: str) -> None:
@@ -14,7 +15,7 @@ def request(scene: bpy.types.Scene, study: pe.Study, surroundings: str) -> None:
     if json.loads(scene.perception_entropy.known_rigs_json or "{}").get("of") == surroundings:
         return
 
-    def deliver(entropies: dict[str, float]) -> None:
+    def deliver(entropies: dict[str, tuple[float, float]]) -> None:
         if (found := bpy.data.scenes.get(name)) is not None:
             told = {"of": surroundings, "entropies": entropies}
             found.perception_entropy.known_rigs_json = json.dumps(told)
@@ -25,10 +26,17 @@ def request(scene: bpy.types.Scene, study: pe.Study, surroundings: str) -> None:
 
 
 def told(scene: bpy.types.Scene) -> str:
-    """Return how many known rigs the stored score is better than; empty where it is not known."""
+    """Return how many known rigs the stored score is better than, beyond the standard errors of
+    the differences; empty where it is not known. Errors are taken as independent, which
+    overestimates them on a common sample."""
     settings = scene.perception_entropy
     entropies = json.loads(settings.known_rigs_json or "{}").get("entropies", {}).values()
     if not entropies or not settings.has_result:
         return ""
-    worse = sum(entropy > settings.result.entropy for entropy in entropies)
+    result = settings.result
+    worse = 0
+    for entropy, stderr in entropies:
+        by = entropy - result.entropy
+        error = math.hypot(stderr, result.stderr)
+        worse += by > 0.0 and not scoring.is_noise(by, error)
     return f"Better than {worse} of {len(entropies)} known rigs"

@@ -66,7 +66,8 @@ class RunningJob(jobs.WatchedJob):
 
     @property
     def text(self) -> str:
-        """The stage, the progress, and what was gained so far: approximate, if on a sample."""
+        """The stage, the progress, and the best value so far: approximate, if on a sample. By how
+        much it is better is told with the standard error of that, once the search has ended."""
         if self.seen.dropped:
             return "Stopping"
         stage = f"{self.progress.stage.capitalize()} {self.progress.fraction:.0%}"
@@ -75,13 +76,10 @@ class RunningJob(jobs.WatchedJob):
         if value is None or self.progress.stage != "optimizing":
             return stage
         curve = getattr(self.seen, "curve", ())  # as the 3D view shows it, from all starts
-        first, value = (curve[0][1], curve[-1][1]) if curve else (value, value)
+        value = curve[-1][1] if curve else value
         if not value.is_feasible:
             return f"{stage}, limits not met yet"
         sampled = "≈ " if self.job.study.search.samples else ""
-        if first.is_feasible and first != value:  # it never falls: both are of the same sample
-            gain = abs(figure.to_figure(first) - figure.to_figure(value))
-            return f"{stage}, {sampled}{gain:.3f} better"
         what = "AP" if figure.higher_is_better else "best"
         return f"{stage}, {what} {sampled}{figure.to_figure(value):.3f}"
 

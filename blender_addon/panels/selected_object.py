@@ -6,10 +6,11 @@ from .. import where_map
 from ..bridge import holder_of, in_surroundings
 from ..operators import shown_way
 from ..panel_text import draw_label, is_simple, worded
-from ..properties import AXIS_LABELS
+from ..properties import AXIS_LABELS, measured_distances
 from ..sensor_kinds import has_view
 from .layout import draw_declared, draw_sentence, panel, section
 
+EDGE_SHARE = 0.55  # Room for an edge's name beside the distance from it
 POSITION_LABELS = ("X", "Y", "Height")
 """Height is z of the optical centre over the ground."""
 
@@ -28,6 +29,11 @@ def sensor(layout: UILayout, _settings: PropertyGroup, context: Context) -> None
     if not is_simple(context.scene):
         layout.prop(settings, "fusion")
     draw_pose(layout, context, obj)
+    inside = section(layout, "distances", "From Edges")
+    if inside is not None:
+        draw_distances(inside, obj)
+        if not is_simple(context.scene):
+            inside.operator("pe.name_edge", icon="EDGESEL")
     if has_view(settings.model):
         layout.operator("pe.look_through", icon="VIEW_CAMERA").name = obj.name
     row = layout.row()
@@ -80,6 +86,23 @@ def draw_pose(layout: UILayout, context: Context, obj: Object) -> None:
             cell.prop(settings, name, index=index, text=text, translate=False)
     if holder:
         draw_sentence(layout, context, f"Pose is fixed by {holder}", icon="LOCKED")
+
+
+def draw_distances(layout: UILayout, obj: Object) -> None:
+    """Draw from which edges of the vehicle a sensor's position is told, and how far it is."""
+    settings = obj.perception_entropy
+    known = measured_distances(settings)
+    column = layout.column(align=True)
+    for index, axis in enumerate("xyz"):
+        row = column.split(factor=EDGE_SHARE, align=True)
+        row.prop(settings, f"edge_{axis}", text=POSITION_LABELS[index], translate=False)
+        cell = row.row(align=True)
+        if axis in known:
+            cell.enabled = not (holder_of(obj) or any(obj.lock_location))
+            text = known[axis].way.capitalize()
+            cell.prop(settings, "edge_distances", index=index, text=text, translate=False)
+        elif getattr(settings, f"edge_{axis}"):
+            draw_label(cell, "No such edge", "ERROR")
 
 
 def draw_region(layout: UILayout, context: Context, obj: Object) -> None:

@@ -25,7 +25,7 @@ from .list_rows import (
 )
 from .requirement import PE_Requirement
 from .scene import INDEX_OF, PE_SceneSettings
-from .sensor import AXIS_LABELS, FREE_BY_DEFAULT, PE_ObjectSettings
+from .sensor import AXIS_LABELS, FREE_BY_DEFAULT, PE_ObjectSettings, measured_distances
 from .view import PE_LiveSettings, PE_ViewSettings
 
 VIEW_ROWS = rows_of(ViewSettings)  # Fields of the settings of the 3D view, by property

@@ -4,15 +4,17 @@ A sensor's pose is its transform: the fields of the pose in the ground frame sto
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
+import bpy
 import numpy as np
 from bpy.types import Context, Object, PropertyGroup
 
-from .. import bridge
+from .. import bridge, edge_cache
 from ..choices import BODY_ITEMS
-from ..engine import catalog, graphics, pe, search
+from ..engine import catalog, graphics, pe, search, studies
 from ..sensor_kinds import DEFAULT_MODEL
 from .callbacks import changed, model_chosen, models_of_a_kind, recolored, redraw
 from .declared import own_path, table_group
@@ -23,6 +25,11 @@ AXIS_LABELS = ("X", "Y", "Z", "Roll", "Pitch", "Yaw")  # Of `search.AXES`
 
 BOUNDS = ("bounds",)
 COLOR = ("color",)
+EDGES = ("measured_from",)
+EDGE_ABOUT = "Edge of the vehicle from which this coordinate is told; empty: the ground frame"
+POSITION_DECIMALS = 5
+HALF_STEP_M = 5e-6
+"""Of positions, which are in steps of 0.01 mm."""
 CURVE = ("ap",)
 REACH_M = 0.5
 REACH_DEG = 10.0
@@ -63,6 +70,64 @@ def _set_rotation(settings: PropertyGroup, value: Sequence[float]) -> None:
 
 def _stand(obj: Object, position: Sequence[float], degrees: Sequence[float]) -> None:
     bridge.place_at(obj, bridge.pose_from_numbers((*position, *degrees)))
+
+
+def _edges(settings: PropertyGroup) -> dict[str, str]:
+    """Return the edges that a sensor's position is told from, by axis."""
+    return dict(bridge.value_at(settings.table, EDGES, {}))
+
+
+def _edge_of(axis: str) -> dict[str, Any]:
+    """Return the callbacks of the edge that an axis is measured from; empty: of none."""
+
+    def write(settings: PropertyGroup, name: str) -> None:
+        named = _edges(settings) | {axis: name}
+        own = {each: named[each] for each in search.POSITION_AXES if named.get(each)}
+        bridge.put(settings, EDGES, own or None)
+
+    return view(lambda settings: _edges(settings).get(axis, ""), write)
+
+
+def _edge_names(axis: str) -> Callable[[PropertyGroup, Context, str], list[str]]:
+    """Return the callback that lists the edges that an axis can be measured from."""
+
+    def names(_settings: PropertyGroup, context: Context, typed: str) -> list[str]:
+        known = edge_cache.edges(context.scene).names(axis)
+        return [name for name in known if typed.lower() in name.lower()]
+
+    return names
+
+
+def measured_distances(settings: PropertyGroup) -> dict[str, studies.Distance]:
+    """Return the distances of a sensor from its edges, by axis; an edge that the vehicle does not
+    have is left out."""
+    position = shown_pose(settings.id_data).position
+    edges = edge_cache.edges(bpy.context.scene)
+    return {each.axis: each for each in edges.distances(position, _edges(settings))}
+
+
+def _distances(settings: PropertyGroup) -> list[float]:
+    """Return how far a sensor is from its edges along each axis [m], 0 without an edge."""
+    known = measured_distances(settings)
+    return [abs(known[a].offset) if a in known else 0.0 for a in search.POSITION_AXES]
+
+
+def _set_distances(settings: PropertyGroup, values: Sequence[float]) -> None:
+    """Move a sensor to distances from its edges, on the side of each edge on which it is; a
+    negative one is on the other side. Axes without an edge stay."""
+    obj = settings.id_data
+    pose = shown_pose(obj)
+    known = measured_distances(settings)
+    wanted: list[studies.MetresOrDistance] = list(pose.position)
+    for index, axis in enumerate(search.POSITION_AXES):
+        if (own := known.get(axis)) is None:
+            continue
+        typed = round(values[index], POSITION_DECIMALS)
+        is_changed = abs(typed - abs(own.offset)) > HALF_STEP_M
+        offset = math.copysign(1.0, own.offset) * typed if is_changed else own.offset
+        wanted[index] = replace(own, offset=offset)
+    position = edge_cache.edges(bpy.context.scene).position(wanted)
+    _stand(obj, position, pose.rotation_deg)
 
 
 def _free(settings: PropertyGroup) -> list[bool]:
@@ -194,6 +259,26 @@ class PE_ObjectSettings(GroundPose, CurveFields, SheetFields, PropertyGroup):
     part in the last result."""
 
     table: text("Sensor", "The sensor as a study file has it, as JSON", options={"HIDDEN"})
+    edge_x: text("X From", EDGE_ABOUT, search=_edge_names("x"), **_edge_of("x"))
+    edge_y: text("Y From", EDGE_ABOUT, search=_edge_names("y"), **_edge_of("y"))
+    edge_z: text("Height From", EDGE_ABOUT, search=_edge_names("z"), **_edge_of("z"))
+    edge_distances: numbers(
+        "Distances",
+        "How far the optical centre is from these edges of the vehicle, along the axes of the "
+        "ground frame; a negative distance puts it on the other side",
+        3,
+        subtype="XYZ",
+        unit="LENGTH",
+        precision=3,
+        step=1,
+        get=_distances,
+        set=_set_distances,
+    )
+    edge_name: text(
+        "Edge",
+        "Name of the edge of the vehicle that the vertices of this object are; empty: none",
+        update=redraw,
+    )
     is_sensor: switch(
         "Is a Sensor", "This object is a sensor: its x axis is forward, z is up", update=changed
     )

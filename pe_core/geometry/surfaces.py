@@ -61,3 +61,19 @@ def _share(start: Floats, end: Floats, level: float) -> Floats:
     span = np.where(known, end, 1.0) - np.where(known, start, 0.0)
     share = np.where(known, (level - np.where(known, start, 0.0)) / np.where(span, span, 1.0), HALF)
     return np.clip(share, 0.0, 1.0)[:, None]
+
+
+def section(triangles: Floats, axis: int, at: float) -> Floats:
+    """Return the points (N, 3) where edges of triangles (F, 3, 3) cross a plane across an axis, at
+    the coordinate `at`; where no triangle is, at the nearest coordinate that one has."""
+    values = triangles[..., axis]
+    low = values.min(axis=1)
+    high = values.max(axis=1)
+    nearest = int(np.argmin(np.maximum(low - at, at - high)))
+    level = min(max(at, float(low[nearest])), float(high[nearest]))
+    ahead = triangles[:, [1, 2, 0]]
+    rise = ahead[..., axis] - values
+    is_cut = (values <= level) != (ahead[..., axis] <= level)
+    share = (level - values[is_cut]) / rise[is_cut]
+    cuts = triangles[is_cut] + share[:, None] * (ahead[is_cut] - triangles[is_cut])
+    return np.concatenate([triangles[values == level], cuts])

@@ -6,16 +6,16 @@ never changes a score.
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
-from ..base.arrays import Floats
+from ..base.arrays import Floats, ReadOnlyDict
 from ..base.errors import InputError, require_kind, shown
 from ..base.notebook import ShortRepr, Tabular
-from ..base.setting import Named, Part
+from ..base.setting import Named, NotStored, Part
 from ..base.values import A_NAME, A_TEXT, LENGTH, Number, choice, listed, vector
 from ..geometry.overlap import Hull, meets_box, meets_cylinder, upright_hull
 from ..geometry.poses import Pose, dot, rotate
@@ -29,6 +29,7 @@ SHAPES = ("cylinder", "box")
 SEAT_M = 0.003
 """An overlap with the body up to this depth is a seat: a gasket, or a roof that is not flat."""
 NEAR = Number(-10.0, 10.0, unit="m")
+POSITION_AXES = "xyz"
 
 
 class SensorModel(ShortRepr):
@@ -64,6 +65,9 @@ class Sensor(ShortRepr):
         Its colour in pictures, such as "#5fb8f7" (sRGB). It changes no score.
     sheet : DataSheet
         Figures of its own, in place of the catalogue's.
+    measured_from : mapping of str to str
+        Edges of the vehicle from which its position is told, by axis: "x", "y" or "z". It changes
+        no position.
     """
 
     name: Named
@@ -73,6 +77,7 @@ class Sensor(ShortRepr):
     curve: Annotated[ApCurve | None, Part(key="ap")] = None
     color: str | None = None
     sheet: Annotated[DataSheet, Part(inline=True)] = field(default_factory=DataSheet)
+    measured_from: Annotated[Mapping[str, str], NotStored] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", A_NAME.checked("sensor", "name", self.name))
@@ -88,6 +93,7 @@ class Sensor(ShortRepr):
             isinstance(self.color, str) and COLOR.fullmatch(self.color)
         ):
             raise InputError(who, "color", 'a colour such as "#5fb8f7"', shown(self.color))
+        object.__setattr__(self, "measured_from", _checked_edges(who, self.measured_from))
 
     @property
     def kind(self) -> str:
@@ -112,6 +118,17 @@ class Sensor(ShortRepr):
     def moved(self, pose: Pose) -> "Sensor":
         """Return the same sensor at another pose."""
         return replace(self, pose=pose)
+
+
+def _checked_edges(who: str, names: Any) -> Mapping[str, str]:
+    """Return the names of edges by axis, in the order of the axes; `InputError` for others."""
+    if not isinstance(names, Mapping):
+        raise InputError(who, "measured_from", "a table of axes and edges", shown(names))
+    for axis in names:
+        choice(who, "measured_from", axis, POSITION_AXES)
+    own = {axis: names[axis] for axis in POSITION_AXES if axis in names}
+    checked = {k: A_NAME.checked(who, f"measured_from.{k}", v) for k, v in own.items()}
+    return ReadOnlyDict(checked)
 
 
 @dataclass(frozen=True, eq=False)

@@ -32,6 +32,7 @@ ROUNDING_RAD = math.radians(0.5 * 10.0**-ANGLE_DECIMALS_DEG)
 METRE = "m"
 RADIAN = "rad"
 SHARE = "share"
+NEAR_M = 0.02  # A search begins with faces this near: most points are on the surface
 SLACK = 1.0 + 1e-9
 """A search within a computed distance must find that distance again, in spite of rounding."""
 LEVEL_WITHIN = 1e-9
@@ -140,15 +141,27 @@ class MountSurface:
     def closest(self, point: Floats) -> tuple[Floats, int]:
         """Return the point (3,) of the surface that is closest to a point, and its face."""
         while True:
-            away = self._corners - point
-            reach = float(np.sqrt(dot(away, away).min())) * SLACK + 1e-12
-            near = self._tree.near(point, reach)
-            near = near[self._usable[near]]
-            feet = closest_points(point, self.triangles[near])
-            best = int(np.argmin(dot(feet - point, feet - point)))
-            if self.carries(face := int(near[best])):
-                return feet[best], face
+            foot, face, distance = self._closest_within(point, NEAR_M)
+            if distance > NEAR_M:  # no face is so near: one is as near as the nearest corner
+                away = self._corners - point
+                reach = float(np.sqrt(dot(away, away).min())) * SLACK + 1e-12
+                foot, face, _ = self._closest_within(point, reach)
+            if self.carries(face):
+                return foot, face
             self._corners = self._usable_corners()
+
+    def _closest_within(self, point: Floats, reach: float) -> tuple[Floats, int, float]:
+        """Return the closest point (3,) of the faces that may be within reach, its face, and how
+        far away it is; inf where there is none [m]. If that is at most the reach, no other face is
+        nearer."""
+        near = self._tree.near(point, reach)
+        near = near[self._usable[near]]
+        if not len(near):
+            return point, -1, math.inf
+        feet = closest_points(point, self.triangles[near])
+        square = dot(feet - point, feet - point)
+        best = int(np.argmin(square))
+        return feet[best], int(near[best]), math.sqrt(float(square[best]))
 
     def carries(self, face: int) -> bool:
         """Whether a sensor of the mount may be on a face: an upright one on none that is steep,

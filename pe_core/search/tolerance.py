@@ -25,11 +25,11 @@ import numpy as np
 from ..base.arrays import Floats
 from ..base.errors import InputError
 from ..base.setting import FLAG, Panel, check_settings, setting
-from ..base.values import Angle, Number, Whole, degrees_in_file, rounded
+from ..base.values import Angle, Number, Whole, degrees_in_file, error_text, rounded
 from ..geometry.poses import FARTHEST_M, Pose, rotate, rotation_matrix, rpy_from_matrix
 from ..scene.rig import Rig
 from ..scoring.scenarios import mean_or_worst
-from ..scoring.score import RigEvaluator, standard_error
+from ..scoring.score import NO_DIFFERENCE, RigEvaluator, is_noise, standard_error
 from .domains import AXES, pose_from_values
 from .objective import Objective
 
@@ -210,6 +210,13 @@ class RigRobustness:
     failed: float | None = None
     failed_worst: float | None = None
     missed: str | None = None
+
+    def rise_text(self, plus_minus: str = "+-") -> str:
+        """Return the rise with its standard error; within two of these none is shown."""
+        sure = f"{plus_minus} {error_text(self.stderr)}"
+        if is_noise(self.rise, self.stderr):
+            return f"{NO_DIFFERENCE} beyond {sure}"
+        return f"{self.rise:+.3f} {sure}"
 
     @property
     def rise(self) -> float:

@@ -43,3 +43,4 @@ from .study_file import (
     study_to_dict,
 )
 from .suggestion import Suggestion
+from .vehicle_edges import Distance, Edge, MetresOrDistance, VehicleEdges

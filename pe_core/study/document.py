@@ -4,14 +4,15 @@ A `Document` differs from a `Study` where the file does: the axes that a sensor 
 bounds and its mount stand in the sensor's table, and the vehicle is a mesh file with its settings.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any
 
-from ..base.codec import Node
+from ..base.codec import Node, hook, read_fields, write_fields
+from ..base.errors import InputError
 from ..base.plugins import shipped
-from ..base.setting import Pair, Part, Several, key_of, same_setting, settings_of
-from ..base.values import A_NAME, A_PATH
+from ..base.setting import NotStored, Pair, Part, Several, key_of, same_setting, settings_of
+from ..base.values import A_NAME, A_PATH, listed
 from ..geometry.grids import PerceptionSpace
 from ..geometry.poses import METRES, ROTATION
 from ..metric.frames import Frames
@@ -31,6 +32,8 @@ from .conditions import Conditions
 from .file_names import MESH
 from .scoring_file import FusionTable, ModelFile
 from .study import Search, Study
+from .vehicle_edges import AXES as POSITION_AXES
+from .vehicle_edges import POSITION, Distance, Edge, MetresOrDistance, VehicleEdges, checked_edges
 
 Range = tuple[float, float]
 FREE = Several(AXES)
@@ -58,12 +61,53 @@ class AxisBounds:
 
 @dataclass(frozen=True)
 class SensorTable:
-    """A table [[sensor]]: the sensor, the axes a search may change, their bounds, its mount."""
+    """A table [[sensor]]: the sensor, the axes a search may change, their bounds, its mount; its
+    position where that is told by distances from edges of the vehicle."""
 
     sensor: Annotated[Sensor, Part(inline=True)]
     free: Annotated[tuple[str, ...] | None, Part(rule=FREE)] = None
     bounds: AxisBounds = field(default_factory=AxisBounds)
     mount: Annotated[str | None, Part(rule=A_NAME)] = None
+    coordinates: Annotated[tuple[MetresOrDistance, ...], NotStored] = ()
+
+    def placed(self, edges: VehicleEdges) -> Sensor:
+        """Return the sensor where its coordinates put it; `InputError` where there is no such
+        edge."""
+        if not self.coordinates:
+            return self.sensor
+        distances = [each for each in self.coordinates if isinstance(each, Distance)]
+        pose = replace(self.sensor.pose, position=edges.position(self.coordinates))
+        names = {each.axis: each.edge for each in distances}
+        return replace(self.sensor, pose=pose, measured_from=names)
+
+
+@dataclass(frozen=True)
+class SensorForm(SensorTable):
+    """The keys of a table [[sensor]]: a coordinate may be a distance from an edge."""
+
+    position: Annotated[tuple[float | str, ...], Part(rule=POSITION)] = ()
+
+
+def _read_sensor(node: Node) -> SensorTable:
+    own = node.table.get("position")
+    items = listed(own, len(POSITION_AXES)) or []
+    if not any(isinstance(each, str) for each in items):
+        return read_fields(SensorTable, node)
+    path = node.at("position").path
+    coordinates = POSITION.checked(node.source, path, own)
+    metres = [0.0 if isinstance(each, Distance) else each for each in coordinates]
+    plain = node.with_value({**node.table, "position": metres}, node.path)
+    return replace(read_fields(SensorTable, plain), coordinates=coordinates)
+
+
+def _write_sensor(table: SensorTable) -> dict[str, Any]:
+    data = write_fields(table)
+    if any(isinstance(each, Distance) for each in table.coordinates):
+        data["position"] = [e.text if isinstance(e, Distance) else e for e in table.coordinates]
+    return data
+
+
+hook(SensorTable, _read_sensor, _write_sensor, SensorForm)
 
 
 @dataclass(frozen=True)
@@ -75,6 +119,7 @@ class VehicleTable:
     covers: Mapping[str, float] = field(default_factory=dict)
     clearance: float = same_setting(Vehicle, "clearance")
     axes: Annotated[MeshAxes, Part(inline=True)] = field(default_factory=MeshAxes)
+    edge: tuple[Edge, ...] = ()
 
     def read(self, node: Node) -> dict[str, Any]:
         """Return the fields of a study with the vehicle, whose mesh is read."""
@@ -108,6 +153,7 @@ class VehicleTable:
             covers=vehicle.covers,
             clearance=vehicle.clearance,
             axes=study.axes,
+            edge=study.edges,
         )
 
 
@@ -170,7 +216,7 @@ class Document:
             fusion=FusionTable(study.model.blind),
             vehicle=VehicleTable.of(study),
             reference=study.reference,
-            sensor=tuple(_sensor_table(sensor, study.search) for sensor in study.rig),
+            sensor=tuple(_sensor_table(sensor, study) for sensor in study.rig),
             requirement=study.requirements,
             weather=tuple(study.conditions.weathers),
             state=tuple(study.conditions.states),
@@ -193,10 +239,16 @@ class Document:
         """Return the study of the document that was read from a node; a `vehicle` takes the place
         of the file's, and has the name of a study's mesh."""
         self._check(node)
-        given = {"vehicle": vehicle, "mesh": MESH}
+        own: dict[str, Any] = {"vehicle": vehicle, "mesh": MESH}
+        if vehicle is None:
+            own = self.vehicle.read(node.at("vehicle", {}))
+        with node.at("vehicle", {}).naming():
+            stated = checked_edges(self.vehicle.edge)
+        edges = VehicleEdges(own.get("vehicle"), stated, self.reference)
         return Study(
-            rig=Rig([row.sensor for row in self.sensor]),
-            **(given if vehicle is not None else self.vehicle.read(node.at("vehicle", {}))),
+            rig=Rig(list(self._placed(edges, node))),
+            **own,
+            edges=stated,
             space=self.space,
             prior=self.prior,
             model=self.perception,
@@ -213,6 +265,18 @@ class Document:
             stories=self.story,
             limits=self.limits,
         )
+
+    def _placed(self, edges: VehicleEdges, node: Node) -> Iterator[Sensor]:
+        """Yield the sensors where they are; `InputError` with the key of a position that none is
+        at."""
+        for number, row in enumerate(self.sensor):
+            try:
+                yield row.placed(edges)
+            except InputError as error:
+                key = f"sensor[{number}].position"
+                if error.field:
+                    key = f"{key}[{POSITION_AXES.index(error.field)}]"
+                raise node.error(error.expected, error.found, key) from None
 
     def _search(self, node: Node) -> Search:
         """Return the search with what the tables of sensors say of it."""
@@ -242,11 +306,16 @@ class Document:
                     raise node.error(expected, found, f"optimize.{key_of(name)}")
 
 
-def _sensor_table(sensor: Sensor, search: Search) -> SensorTable:
+def _sensor_table(sensor: Sensor, study: Study) -> SensorTable:
+    search = study.search
+    own = sensor.measured_from
+    position = sensor.pose.position
+    coordinates = study.vehicle_edges.coordinates(position, own) if own else ()
     free = search.free.get(sensor.name, PAPER_FREE)
     return SensorTable(
         sensor,
         free=None if free == PAPER_FREE else free,
         bounds=AxisBounds(**search.limits.get(sensor.name, {})),
         mount=search.mounting.on.get(sensor.name),
+        coordinates=coordinates,
     )

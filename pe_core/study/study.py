@@ -7,6 +7,7 @@ is why they agree to the bit.
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Annotated, Any
 
 from .. import catalog
@@ -21,7 +22,7 @@ from ..motion import Confirmation, DriveBy, Story, checked_stories, drive_by
 from ..prior import HIGHWAY_CLASSES, ROAD_CLASSES
 from ..prior.prior import Prior
 from ..scene.mesh import MeshAxes, require_vehicle_size
-from ..scene.rig import Rig
+from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_description import Reference, vehicle_line
 from ..scoring import Evaluator, RigEvaluator
@@ -69,6 +70,7 @@ from .conditions import (
     check_classes,
     mounting_cases,
 )
+from .vehicle_edges import Edge, VehicleEdges, checked_edges
 
 ENTROPY = "entropy"
 EXPECTED_AP = "expected_ap"
@@ -205,7 +207,8 @@ class Study(Tabular):
     `rig`, and what they cost. `targets` says what is evaluated, `requirements` what has to be met,
     `conditions` the states of the vehicle and the weathers that count, `returns` which beams of the
     rig's LiDARs return. `frames` are those that the entropy over frames is of, `confirmation` says
-    when a track is confirmed, in `stories` of what moves.
+    when a track is confirmed, in `stories` of what moves. `edges` are those of the vehicle that
+    have names of their own, beside those that `vehicle_edges` finds.
 
     `InputError` when a field is not of its type, or the samples are too few.
     """
@@ -250,10 +253,12 @@ class Study(Tabular):
     frames: Frames = field(default_factory=Frames)
     confirmation: Confirmation = field(default_factory=Confirmation)
     stories: tuple[Story, ...] = ()
+    edges: tuple[Edge, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "requirements", checked_requirements(self.requirements))
         object.__setattr__(self, "stories", checked_stories(self.stories))
+        object.__setattr__(self, "edges", checked_edges(self.edges))
         for name, kind in FIELDS.items():
             value = getattr(self, name)
             if value is not None or name not in OPTIONAL:
@@ -286,6 +291,17 @@ class Study(Tabular):
         return (
             f"{self.mesh or 'vehicle'}: {vehicle_line(self.vehicle, self.faces, self.mesh_notes)}"
         )
+
+    @cached_property
+    def vehicle_edges(self) -> VehicleEdges:
+        """The edges of the vehicle by name: positions are told as distances from them."""
+        return VehicleEdges(self.vehicle, self.edges, self.reference)
+
+    def distances(self, sensor: Sensor) -> tuple[str, ...]:
+        """Return where a sensor is, from the edges that its position is told from: "0.35 m behind
+        windshield top"."""
+        found = self.vehicle_edges.distances(sensor.pose.position, sensor.measured_from)
+        return tuple(each.text for each in found)
 
     def evaluator(
         self,

@@ -146,15 +146,21 @@ class ComparedRow:
         value = self.told[k]
         return {None: "-", NEVER: "none"}.get(value, f"{value or 0.0:.{self.how.decimals}f}")
 
-    def change_text(self, k: int) -> str:
-        """Return a told value minus the first as text; empty for the first, or without a number.
+    def change_text(self, k: int, plus_minus: str = "+-") -> str:
+        """Return a told value minus the first as text, with the standard error of that after a
+        sign; empty for the first, or without a number.
 
         Within the standard error of the difference no difference is shown.
         """
         first, own = (math.nan if v is None else v for v in (self.told[0], self.told[k]))
         if not k or not math.isfinite(own - first):
             return ""
-        return self.difference_text(own - first, 0, k)
+        text = self.difference_text(own - first, 0, k)
+        error = self.how.scale * self.errors[0][k]
+        is_told = text != NO_DIFFERENCE and text.strip("+-0.")
+        least = 10.0**-self.how.decimals
+        sure = f" {plus_minus} {max(error, least):.{self.how.decimals}f}"
+        return f"{text}{sure}" if error and is_told else text
 
     def difference_text(self, by: float, one: int, other: int) -> str:
         """Return a difference of two told values, given by index, as text.

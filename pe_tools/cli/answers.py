@@ -96,7 +96,8 @@ class CurvesAnswer:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExplainAnswer:
     """A score in words; or what is asked with ``--at``: a place, or a body there; or with
-    ``--sensor`` where a sensor gains most."""
+    ``--sensor`` where a sensor gains most; and with ``--from`` how far it is from edges of the
+    vehicle, or the names of these by the axis that is measured from them."""
 
     score: Annotated[Score | None, AtTimes] = None
     outlook: Annotated[OpenTable, Part(inline=True)]
@@ -107,6 +108,8 @@ class ExplainAnswer:
     body: Annotated[OpenTable | None, AtTimes] = None
     suggestions: Annotated[OpenRows | None, AtTimes] = None
     steepest: Annotated[OpenTable | None, AtTimes] = None
+    distances: Annotated[tuple[str, ...] | None, AtTimes] = None
+    edges: Annotated[Mapping[str, tuple[str, ...]] | None, AtTimes] = None
 
 
 @dataclass(frozen=True, slots=True)

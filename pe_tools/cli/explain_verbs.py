@@ -9,10 +9,10 @@ from dataclasses import replace
 import numpy as np
 
 from pe_core import catalog
-from pe_core.base.errors import InputError
+from pe_core.base.errors import InputError, one_of, require_name, shown
 from pe_core.base.values import error_text
 from pe_core.scene import Vehicle
-from pe_core.search import FIGURES
+from pe_core.search import FIGURES, POSITION_AXES
 from pe_core.study import Study
 
 from .. import advice
@@ -70,6 +70,7 @@ def explain(source: StudyFiles, args: argparse.Namespace) -> Answer:
     turned = args.heading is not None
     of_class = args.class_name is not None
     with_sensor = args.of_sensor is not None
+    with_edges = args.measured_from is not None
     sampled = any(change.path == ("samples",) for change in read_changes(args.set))
     for option, is_idle, expected, found in (
         ("--suggest", args.suggest and with_body, "--at X Y, a place to mend", "--body"),
@@ -79,6 +80,7 @@ def explain(source: StudyFiles, args: argparse.Namespace) -> Answer:
         ("--samples", sampled and not nowhere, "no --at: a place has no sample", "--at"),
         ("--class", of_class and not nowhere, "no --at: it says whose reach is told", "--at"),
         ("--sensor", with_sensor and not nowhere, "no --at: it tells a sensor's way", "--at"),
+        ("--from", with_edges and not with_sensor, "--sensor NAME, whose position is told", "none"),
         ("--sensor", with_sensor and of_class, "no --class: it tells a sensor's way", "--class"),
     ):
         if is_idle:
@@ -102,6 +104,8 @@ def explain(source: StudyFiles, args: argparse.Namespace) -> Answer:
             mends = [line for each in suggested.items() for line in suggestion_lines(*each)]
             told += mends or [NOT_BLIND] * (not place.in_vehicle)
         return answered(args, answer, told), DONE
+    if with_edges:
+        return _from_edges(study, args)
     if with_sensor:
         return _steepest_way(study, args)
     name = advice.class_of(study.prior, args.class_name)
@@ -130,8 +134,32 @@ def _steepest_way(study: Study, args: argparse.Namespace) -> Answer:
     found = advice.steepest_way(
         places, study.evaluator(workers=args.workers), screen=advice.screen_of(study, args.workers)
     )
-    answer = ExplainAnswer(outlook={}, steepest=found.to_dict())
-    return answered(args, answer, advice.steepest_lines(found)), DONE
+    told = study.distances(study.rig[args.of_sensor])
+    answer = ExplainAnswer(outlook={}, steepest=found.to_dict(), distances=told or None)
+    at = [f"{args.of_sensor}: {', '.join(told)}"] if told else []
+    return answered(args, answer, [*at, *advice.steepest_lines(found)]), DONE
+
+
+def _from_edges(study: Study, args: argparse.Namespace) -> Answer:
+    """Tell how far a sensor is from edges of the vehicle along each axis that is measured from
+    them; without edges list their names."""
+    require_name("command line", "--sensor", args.of_sensor, [each.name for each in study.rig])
+    edges = study.vehicle_edges
+    by_axis = {axis: edges.names(axis) for axis in POSITION_AXES}
+    print_vehicle(study)
+    if not args.measured_from:
+        lines = [f"{axis}: {', '.join(names)}" for axis, names in by_axis.items()]
+        return answered(args, ExplainAnswer(outlook={}, edges=by_axis), lines), DONE
+    position = study.rig[args.of_sensor].pose.position
+    told = []
+    for name in args.measured_from:
+        axes = [axis for axis, names in by_axis.items() if name in names]
+        if not axes:
+            known = dict.fromkeys(each for names in by_axis.values() for each in names)
+            raise InputError("command line", "--from", one_of(known, name), shown(name))
+        told += [edges.distance(name, axis, position).text for axis in axes]
+    answer = ExplainAnswer(outlook={}, distances=tuple(told))
+    return answered(args, answer, [f"{args.of_sensor}: {', '.join(told)}"]), DONE
 
 
 def _same_body(one: Vehicle | None, other: Vehicle | None) -> bool:

@@ -1,5 +1,7 @@
 """A Pareto front in lines of text: its designs with their objectives, and notes on the search."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 
 from pe_core.search.figures import PRICE, figure_of
@@ -59,6 +61,7 @@ def _placed(design: jobs.Design, margin: str) -> Iterator[str]:
         slot = mount.get("slot")
         pose = sensor.pose
         where = f"{mount['mount']}, {slot}" if slot else _where(pose.position, pose.rotation_deg)
+        where = "; ".join([where, *design.study.distances(sensor)])
         yield f"{margin}{sensor.name}: {sensor.model.name}; {where}"
 
 

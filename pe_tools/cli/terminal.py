@@ -1,5 +1,7 @@
 """Output of the command line: safe printing, messages, exit statuses, an outcome in a few lines."""
 
+from __future__ import annotations
+
 import argparse
 import os
 import sys
@@ -140,9 +142,11 @@ def summary(outcome: Outcome) -> str:
         own = score.per_sensor[sensor.name]
         what = kind_of(sensor).occlusion_text
         stopped = f", {own.occluded / own.beams:.1%} of its {what}" if own.occluded else ""
+        told = ", ".join(outcome.study.distances(sensor))
+        at = f"({x:g}, {y:g}, {z:g}) m{f' ({told})' * bool(told)}"
         lines.append(
-            f"{sensor.name}: {sensor.model.name} at ({x:g}, {y:g}, {z:g}) m, roll {roll:g}, "
-            f"pitch {pitch:g}, yaw {yaw:g} deg; alone {own.entropy:.3f}{stopped}"
+            f"{sensor.name}: {sensor.model.name} at {at}, roll {roll:g}, pitch {pitch:g}, "
+            f"yaw {yaw:g} deg; alone {own.entropy:.3f}{stopped}"
         )
     if outcome.kind == "optimize":
         search = outcome.start.search
@@ -171,7 +175,8 @@ def _before_and_after(outcome: Outcome) -> Iterator[str]:
         one = found.before
         other = found.after
         off = off_by(found.errors.position, found.errors.angle)
-        yield f"{off} (1 sigma)  {one.rise:+.3f} -> {other.rise:+.3f} nats on average"
+        rises = " -> ".join(each.rise_text() for each in (one, other))
+        yield f"{off} (1 sigma)  {rises} nats on average"
         if one.loss is not None and other.loss is not None:
             yield f"one sensor lost  {one.loss:+.3f} -> {other.loss:+.3f} nats on average"
 

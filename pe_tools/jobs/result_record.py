@@ -10,6 +10,7 @@ from pe_core.scene.rig import Rig
 from pe_core.scoring.requirements import VerdictRow
 from pe_core.scoring.score import ObjectScore, Score
 from pe_core.search import KeyFigures, ReadingRow
+from pe_core.study import Study
 
 from ..advice import Advice
 
@@ -21,19 +22,26 @@ OpenTable = Mapping[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class SensorPlacement:
-    """Where a sensor is, in the ground frame: position [m]; roll, pitch and yaw [deg]."""
+    """Where a sensor is, in the ground frame: position [m]; roll, pitch and yaw [deg].
+    `distances`: from edges of the vehicle, where its position is told from these."""
 
     position: tuple[float, float, float]
     rotation: tuple[float, float, float]
+    distances: Annotated[tuple[str, ...] | None, AtTimes] = None
 
 
 PlacedSensors = Mapping[str, SensorPlacement]
 """By the name of the sensor."""
 
 
-def placements(rig: Rig) -> PlacedSensors:
-    """Return where every sensor of a rig is."""
-    return {each.name: SensorPlacement(each.pose.position, each.pose.rotation_deg) for each in rig}
+def placements(rig: Rig, study: Study | None = None) -> PlacedSensors:
+    """Return where every sensor of a rig is; with its study also from edges of the vehicle."""
+    placed = {}
+    for each in rig:
+        told = None if study is None else study.distances(each) or None
+        pose = each.pose
+        placed[each.name] = SensorPlacement(pose.position, pose.rotation_deg, told)
+    return placed
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,8 +18,7 @@ from pe_core.study.mounting_file import areas_mesh, areas_of, with_areas_in
 from pe_core.study.study import Study
 from pe_core.study.study_file import study_bytes, study_to_dict
 
-from ..formats.boxes import write_boxes
-from ..formats.meshes import Mesh, write_mesh
+from .. import formats
 from .folder import FileSet, Write
 
 
@@ -58,19 +57,19 @@ def study_writers(study: Study, name: str, *, with_mesh: bool = True) -> dict[st
     writers = dict[str, Write | bytes]()
     if study.vehicle is not None:
         vehicle = study.vehicle
-        mesh = Mesh(vehicle.triangles, np.asarray(vehicle.parts), tuple(vehicle.part_names))
+        mesh = formats.Mesh(vehicle.triangles, np.asarray(vehicle.parts), tuple(vehicle.part_names))
         study = study.with_mesh(MESH if name == STUDY else path.with_suffix(".npz").name)
         if with_mesh:
-            writers[str(study.mesh)] = lambda at: write_mesh(at, mesh)
+            writers[str(study.mesh)] = lambda at: formats.write_mesh(at, mesh)
     search = study.search
     if (areas := areas_mesh(search.mounting)) is not None:
         file = AREAS if name == STUDY else path.with_suffix(f".{AREAS}").name
-        writers[file] = lambda at: write_mesh(at, areas)
+        writers[file] = lambda at: formats.write_mesh(at, areas)
         search = replace(search, mounting=with_areas_in(search.mounting, file))
         study = replace(study, search=search)
     if (boxes := study.prior.boxes) is not None:
         table = BOXES if name == STUDY else path.with_suffix(f".{BOXES}").name
-        writers[table] = lambda at: write_boxes(at, boxes)
+        writers[table] = lambda at: formats.write_boxes(at, boxes)
         named = replace(boxes, file=table, origin=None)
         study = replace(study, prior=replace(study.prior, boxes=named))
     if (grid := study.prior.grid) is not None:
@@ -89,9 +88,9 @@ def study_text(study: Study) -> str:
 
 
 def fingerprint(study: Study) -> str:
-    """Return the SHA-256 of the values of a study; the names of its files and the colours of its
-    sensors do not count. Two studies with the same fingerprint give the same scores and the same
-    search, to the bit."""
+    """Return the SHA-256 of the values of a study; the names of its files, the colours of its
+    sensors, and the edges from which positions are told do not count. Two studies with the same
+    fingerprint give the same scores and the same search, to the bit."""
     digest = hashlib.sha256()
     for part in _parts(study):
         digest.update(len(part).to_bytes(8, "little") + part)
@@ -99,8 +98,8 @@ def fingerprint(study: Study) -> str:
 
 
 def _parts(study: Study) -> Iterator[bytes]:
-    plain = Rig([replace(sensor, color=None) for sensor in study.rig])
-    yield study_text(study.with_rig(plain)).encode()
+    plain = Rig([replace(sensor, color=None, measured_from={}) for sensor in study.rig])
+    yield study_text(replace(study, rig=plain, edges=())).encode()
     yield json.dumps([catalog.to_table(sensor.model) for sensor in study.rig]).encode()
     if (vehicle := study.vehicle) is not None:
         yield np.ascontiguousarray(vehicle.triangles).tobytes()

@@ -15,7 +15,7 @@ from pe_core.base.values import rounded
 from pe_core.scene.rig import Rig, Sensor
 from pe_core.scoring import RigEvaluator
 from pe_core.scoring.sampling import CENTERED, SEARCHED, Shift
-from pe_core.scoring.score import standard_error
+from pe_core.scoring.score import NO_DIFFERENCE, is_noise, standard_error
 from pe_core.scoring.sight import Sight
 from pe_core.search import (
     FIGURES,
@@ -179,10 +179,16 @@ class PlaceMap:
         texts = [each.reason for each in self.places if each.reason]
         return {t: texts.count(t) for t in sorted(set(texts), key=lambda t: (-texts.count(t), t))}
 
+    def change(self, value: float) -> str:
+        """Return by how much a place changes the figure; within its standard error no difference
+        is shown."""
+        by = value - self.base
+        return NO_DIFFERENCE if self.error and is_noise(by, self.error) else self.row.change(by)
+
     def text(self, value: float) -> str:
         """Return the figure of a place, with its change and how sure that is."""
         sure = f" ± {self.row.figure.text(self.error)}" if self.error else ""
-        change = self.row.change(value - self.base)
+        change = self.change(value)
         sample = f", on {SAMPLES:,} voxels" if self.row.of_voxels else ""
         return f"{self.row.figure.label} {self.row.figure.text(value)} ({change}{sure}{sample})"
 

@@ -37,7 +37,8 @@ view_settings: choices engine
 english:
 panel_text: choices
 own_catalog: engine
-properties: bridge choices engine sensor_kinds signals view_settings
+edge_cache: bridge engine vehicle_cache
+properties: bridge choices edge_cache engine sensor_kinds signals view_settings
 bridge: choices engine sensor_kinds
 sensor_cache: bridge
 engine_calls: engine

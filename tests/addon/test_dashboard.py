@@ -1,6 +1,7 @@
 """The dashboard: the engine's figures, what is wanted, what is kept; *Simple* and *All*."""
 
 import json
+import math
 import re
 
 import bpy
@@ -71,6 +72,31 @@ def test_what_is_wanted_is_met_or_not_and_is_the_study_s(car):
     assert row["met"] and not row["kept"]
     settings.limit_blind_ground = -100.0  # no limit: a lower number is none, 0 may be one
     assert scenes.study().limits == search.Limits(blind_sector=True, ap_near=True)
+
+
+def test_a_good_score_is_told_by_the_known_rigs_on_this_body(car):
+    """As many are worse as by a score of each in its turn, beyond two standard errors of the
+    difference; another body is asked about again."""
+    bpy.ops.pe.score()
+    study = scenes.study()
+    settings = car.perception_entropy
+    assert not [text for text in shown(car).texts("label") if "known rigs" in text]
+    known_rigs.request(car, study, "of this body")
+    kept = json.loads(settings.known_rigs_json)
+    evaluator = study.evaluator(samples=engine_calls.HELD_SAMPLES)
+    worse = 0
+    for key, (value, stderr) in kept["entropies"].items():
+        rig = pe.catalog.rig_on(pe.catalog.known_rig(key), study.vehicle)
+        assert value == evaluator.entropy(rig)
+        error = math.hypot(stderr, settings.result.stderr)
+        worse += value - settings.result.entropy > 2.0 * error > 0.0
+    told = f"Better than {worse} of {len(kept['entropies'])} known rigs"
+    assert told in shown(car).texts("label")
+    settings.known_rigs_json = json.dumps({**kept, "entropies": {}})
+    known_rigs.request(car, study, "of this body")
+    assert not json.loads(settings.known_rigs_json)["entropies"], "asked once"
+    known_rigs.request(car, study, "of another")
+    assert json.loads(settings.known_rigs_json) == {**kept, "of": "of another"}
 
 
 def test_simple_has_eight_headers_at_most_and_no_terms(car):

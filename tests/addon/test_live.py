@@ -10,8 +10,10 @@ from blender_addon import bridge, change_events, engine_calls, engine_process, r
 from blender_addon.live import (
     AT_REST,
     MOVING,
+    OUT_OF_DATE,
     PENDING,
     STORED,
+    readout,
     readout_text,
     session,
     shown_score,
@@ -200,6 +202,64 @@ def both(scene):
         request = snapshot.SnapshotReader().request(scene, depsgraph, moving=False)
         assert request.compared_name == shown.label
     return text, shown
+
+
+def read_everywhere(scene):
+    """The score, its state and its change, each read where it is drawn: in the read-out, and in the
+    dashboard of the panel, in *Simple* and in *All*. They have to be one."""
+    rows = readout.rows_of(shown_score(scene))
+    words = [text for row in rows[:2] for text, _ in row.words]
+    nats, *change = words[: len(rows[0].words)]
+    phase = next(phase for phase in HEADS if any(text.endswith(phase) for text in words))
+    for panels in ("SIMPLE", "ALL"):
+        scene.perception_entropy.panels = panels
+        window = layouts.Window(scene, scene.objects["roof"])
+        labels = layouts.drawn(main.main, **vars(window)).texts("label")
+        scores = [text for text in labels if text in (nats, nats.removesuffix(" nats"))]
+        known = tuple(head for head, _ in HEADS.values())
+        heads = [text for text in labels if text.startswith(known)]
+        assert len(scores) == 1, "one number"
+        assert [text.partition(": 4")[0] for text in heads] == [HEADS[phase][0]], "one state"
+    is_told = bool(change) and change[0][-6:] in ("better", " worse")
+    before = shown_score(scene).before("entropy")
+    assert is_told == (before is not None and f"({before:.3f})" in labels), "one change"
+    return float(nats.split()[0]), phase, is_told
+
+
+def test_one_number_and_one_state_are_read_in_a_drag_after_undo_and_after_esc(live, monkeypatch):
+    live.perception_entropy.live.figures = True
+    bpy.ops.pe.score()
+    rest()
+    scored = live.perception_entropy.result.entropy
+    bpy.ops.ed.undo_push(message="scored")
+    assert read_everywhere(live) == (round(scored, 3), STORED, False)
+    start = tuple(live.objects["roof"].location)
+    with monkeypatch.context() as hand:
+        hand.setattr(session, "_moving_operator", lambda: 7)
+        for _ in range(2):
+            drag(live.objects["roof"], 8.0)
+            entropy = reading(live).summary.entropy
+            assert read_everywhere(live) == (round(entropy, 3), MOVING, True)
+        live.objects["roof"].location = start  # Esc: the operator takes it back
+        bpy.context.view_layer.update()
+        assert read_everywhere(live)[2] is False, "where it began nothing has changed"
+    result_staleness.update_result()
+    rest()
+    assert read_everywhere(live) == (round(scored, 3), STORED, False)
+    drag(live.objects["roof"], 8.0)
+    live.perception_entropy.result_stale = True
+    rest()
+    entropy = reading(live).summary.entropy
+    assert read_everywhere(live) == (round(entropy, 3), AT_REST, True)
+    bpy.ops.ed.undo_push(message="moved")
+    bpy.ops.ed.undo()
+    scene = bpy.context.scene
+    assert read_everywhere(scene) == (round(scored, 3), STORED, False)
+    bpy.ops.ed.redo()
+    scene = bpy.context.scene
+    assert read_everywhere(scene)[1] == OUT_OF_DATE
+    rest()
+    assert read_everywhere(scene)[:2] == (round(entropy, 3), AT_REST)
 
 
 def test_panel_and_read_out_say_the_same_in_a_drag_after_undo_and_after_a_search(live, monkeypatch):

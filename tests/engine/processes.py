@@ -41,8 +41,8 @@ ANALYSE = (
     "",
     (
         "import threading\n"
-        "from pe_tools.jobs import score_and_optimize\n"
-        "score_and_optimize.robustness = lambda *_, **__: threading.Event().wait()\n"
+        "from pe_tools.jobs import optimize_job\n"
+        "optimize_job.robustness = lambda *_, **__: threading.Event().wait()\n"
     ),
 )
 """Whether the analysis of a search never ends."""

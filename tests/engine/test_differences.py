@@ -1,14 +1,16 @@
 """What a difference in score is worth: the table's rows, beside which differences they stand."""
 
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 import pe_core as pe
+from pe_core.scoring import NO_DIFFERENCE, is_noise
 from pe_core.scoring.targets import TargetRule
-from pe_tools.advice import ComparedRow, worth_lines, worth_rows
+from pe_tools.advice import ComparedRow, differences, worth_lines, worth_rows
 from pe_tools.advice.differences import KINDS, Worth, worth_text, worths
 from tests.engine import shapes
 
@@ -128,3 +130,13 @@ def test_a_line_for_each_difference_from_the_best_that_is_shown():
     ap = row_of((0.5, 0.6, 0.7), 0.001, "ap", "in traffic")
     traffic = replace(ROW, score="traffic_ap")
     assert len(worth_lines(["a", "b", "c"], [ap], {"traffic_ap": traffic})) == 2
+
+
+def test_within_two_standard_errors_no_difference_is_shown():
+    assert is_noise(0.02, 0.01) and not is_noise(0.021, 0.01) and not is_noise(0.1, 0.0)
+    row = row_of((2.0, 2.039, 2.041), 0.02)
+    assert row.change_text(1) == NO_DIFFERENCE and row.change_text(2) == "+0.041 +- 0.020"
+    assert (row.sense(1), row.sense(2)) == (0, 1)  # a loss counts from there on
+    assert row_of((2.0, 2.0, math.nan), 0.02).change_text(1) == "+0.000"
+    assert row_of((2.0, 2.5, 2.5), 0.0).change_text(1) == "+0.500"  # on all voxels
+    assert differences.FILE.is_file()

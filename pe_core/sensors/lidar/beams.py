@@ -7,12 +7,14 @@ matters. `BeamCache` holds rotated beams and ends by the sensor's name until it 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Flags, Floats, Ints
 from ...base.notebook import ShortRepr
+from ...geometry.poses import Pose
 from ...geometry.raycast import Hits
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
@@ -173,12 +175,17 @@ class LazyEnds:
 BeamEnds = FixedEnds | LazyEnds
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, weakref_slot=True)
 class CastBeams:
     """Where the beams of a sensor end."""
 
     sensor: Sensor
     ends: BeamEnds
+
+
+_all_cast: WeakValueDictionary[tuple[int, int, Pose], CastBeams] = WeakValueDictionary()
+"""The beams of all caches by vehicle, model and pose, as long as a cache holds them: voxels and
+requirements need many of the same ends. They hold vehicle and model, whose identities stay."""
 
 
 class BeamCache:
@@ -200,13 +207,16 @@ class BeamCache:
         cached = self._cast.get(sensor.name)
         if cached and sensor.measures_as(cached.sensor):
             return cached
-        beams = self.rotated(sensor)
-        model = lidar_of(sensor)
-        ends: BeamEnds = FixedEnds(np.full(model.beam_count, model.max_range))
-        if self._vehicle is not None:
-            ends = LazyEnds(sensor, beams, self._vehicle)
-        cast = self._cast[sensor.name] = CastBeams(sensor, ends)
+        key = id(self._vehicle), id(sensor.model), sensor.pose
+        cast = _all_cast.get(key) or self._made(sensor)
+        _all_cast[key] = self._cast[sensor.name] = cast
         return cast
+
+    def _made(self, sensor: Sensor) -> CastBeams:
+        model = lidar_of(sensor)
+        if self._vehicle is None:
+            return CastBeams(sensor, FixedEnds(np.full(model.beam_count, model.max_range)))
+        return CastBeams(sensor, LazyEnds(sensor, self.rotated(sensor), self._vehicle))
 
     def keep_only(self, sensors: Collection[Sensor]) -> None:
         """Drop the entries of all other sensors."""

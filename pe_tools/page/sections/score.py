@@ -7,11 +7,12 @@ from typing import Any
 
 from pe_core import metric, scene
 from pe_core import sensors as kinds
+from pe_core.scoring import NO_DIFFERENCE, Score, is_noise
 from pe_core.study.condition_table import ConditionTable
 
 from ... import advice, jobs
 from ...templating import Markup
-from ..markup import capitalized, escaped, joined, macros, number
+from ..markup import capitalized, escaped, joined, macros, number, signed
 from ..pictures.charts import step_curve
 from ..pictures.vehicle_picture import labelled_picture
 from ..report_context import ReportContext
@@ -19,6 +20,7 @@ from .decision import decision
 
 SIDES = {"front": "ahead", "rear": "behind", "left": "on the left", "right": "on the right"}
 WARNINGS_SHOWN = 3  # At the top; all are in a section of their own
+LEAST_SHOWN = 0.01  # A standard error is never told as 0 [nats]
 # Colours of the lowest and of the highest entropy
 PALE = (255, 255, 255)
 DARK = (242, 165, 120)
@@ -70,9 +72,31 @@ def warnings_and_text(context: ReportContext) -> dict[str, Any]:
 
 
 def by_class_and_zone(context: ReportContext) -> dict[str, Any] | None:
-    """Return no values: the template shows coverage and entropy of the scores. On a page of several
-    studies that were only scored, the comparison contains these values."""
-    return None if context.study_count > 1 and not context.was_searched else {}
+    """Return how the entropies of classes and zones changed in a search: the template shows the
+    others of the scores. On a page of several studies that were only scored, the comparison
+    contains these values."""
+    if context.study_count > 1 and not context.was_searched:
+        return None
+    before = context.outcome.before
+    changes = {
+        "Class": _changes(before, context.after, "class"),
+        "Zone": _changes(before, context.after, "zone"),
+    }
+    return {"changes": changes}
+
+
+def _changes(before: Score, after: Score, group: str) -> dict[str, str]:
+    """Return the changes of the entropies of all classes, or zones, with their standard errors."""
+    told = {}
+    for name, part in getattr(after, f"per_{group}").items():
+        was = getattr(before, f"per_{group}").get(name)
+        if was is None:
+            continue
+        by = part.entropy - was.entropy
+        error = advice.difference_error(before, after, (group, name, "entropy"))
+        sure = f" ± {number(max(error, LEAST_SHOWN))}" if error else ""
+        told[name] = NO_DIFFERENCE if is_noise(by, error) and by else f"{signed(by)}{sure}"
+    return told
 
 
 def objects(context: ReportContext) -> dict[str, Any] | None:

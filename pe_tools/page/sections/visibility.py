@@ -128,8 +128,10 @@ def sensor_details(context: ReportContext) -> dict[str, Any]:
         parts = sorted((n for n in shares if shares[n] >= MIN_SHARE), key=lambda n: -shares[n])
         named = ", ".join(f"{part} {percent(shares[part], 1)}" for part in parts[:MAX_PARTS])
         occluding[name] = named or ("little" if score.occluded else "none")
+    told = {sensor.name: context.study.distances(sensor) for sensor in context.rig}
     return {
         "occluding_parts": occluding,
+        "distances": {name: texts for name, texts in told.items() if texts},
         "key": sensor_key(context.rig),
         "views": [
             sensor_view(sensor.kind).figure(sensor, context.display_vehicle[0])

@@ -6,9 +6,10 @@ import bpy
 import pytest
 
 from blender_addon import best_so_far
-from blender_addon.engine import jobs, search
+from blender_addon.engine import jobs, pe, search
 from blender_addon.operators.running_job import RunningJob
-from tests.addon import scenes
+from blender_addon.panels import search_panels
+from tests.addon import layouts, scenes
 
 
 def test_the_best_so_far_is_shown_as_ghosts_until_the_search_ends(car):
@@ -67,3 +68,18 @@ def test_a_running_search_tells_the_view_each_time_it_finds_better(car, monkeypa
     assert values[-1] == round(job.curve[-1][1].objective, 3) < values[0]
     assert values == sorted(values, reverse=True), "of one sample each"
     assert best_so_far.searches.pop(car.name) == tuple(job.best.rig) != tuple(job.study.rig)
+
+
+def test_the_schedule_is_shown_and_written_for_the_method_that_has_it(car):
+    """The candidates of one method stood beside every other, which did not use them."""
+    window = layouts.Window(car)
+    settings = car.perception_entropy
+    settings.interval = 0.5
+    settings.panels = "ALL"
+    for name in search.METHODS:
+        settings.method = name
+        drawn = layouts.drawn(search_panels.search, **vars(window)).texts("prop")
+        table = pe.study_to_dict(scenes.study())["optimize"]
+        has_schedule = name == search.SCHEDULED_METHOD
+        assert ("candidates" in drawn) == ("candidates" in table) == has_schedule, name
+    assert bpy.ops.pe.optimize() == {"FINISHED"}

@@ -116,3 +116,31 @@ def test_a_lost_library_is_reported_by_name_and_marks_the_result(car, tmp_path):
     assert "library.blend" in settings.result.missing[0]
     assert settings.result.entropy != pytest.approx(whole, abs=1e-6), "nothing was missing"
     assert '"code": "missing"' in settings.result_json
+
+
+def hide_it(layer):
+    layer.hide_viewport = True
+
+
+def exclude_it(layer):
+    layer.exclude = True
+
+
+def hide_in_renders(layer):
+    layer.collection.hide_render = True
+
+
+@pytest.mark.parametrize(
+    ("hide", "told"),
+    [(exclude_it, "excluded from"), (hide_it, "in the viewport"), (hide_in_renders, "in renders")],
+)
+def test_a_vehicle_that_is_out_of_the_view_is_reported_by_name_and_can_be_shown(car, hide, told):
+    layer = bpy.context.view_layer.layer_collection.children["Car"]
+    assert not [each for each in bridge.scene_advice(car) if each.code == "hidden_vehicle"]
+    hide(layer)
+    bpy.context.view_layer.update()
+    (advice,) = [each for each in bridge.scene_advice(car) if each.code == "hidden_vehicle"]
+    assert "Car is" in advice.text and told in advice.text
+    assert bpy.ops.pe.mend(fix=advice.fix) == {"FINISHED"}
+    assert scenes.study().vehicle is not None
+    assert not [each for each in bridge.scene_advice(car) if each.code == "hidden_vehicle"]

@@ -3,7 +3,9 @@
 import bpy
 import pytest
 
+import pe_core as pe
 from blender_addon import bridge, diagnostics
+from pe_core.search import Goals
 from pe_tools.advice import flatness
 from pe_tools.jobs import FrontJob, front_dict
 from tests.addon import scenes
@@ -44,3 +46,28 @@ def test_how_flat_the_optimum_is_is_told_in_the_scene(asked, monkeypatch):
     monkeypatch.setattr(flatness, "SHARE", 1)
     assert bpy.ops.pe.optimize() == {"FINISHED"}
     assert "1 cm or 1 deg" in "\n".join(diagnostics.explanation(settings.id_data).search)
+
+
+def test_goals_of_the_panel_are_those_of_the_study(asked):
+    settings = asked.perception_entropy
+    assert scenes.study().limits == pe.Limits(blind_ground=True, blind_sector=True)
+    settings.keep_blind_ground = settings.keep_blind_sector = False
+    assert scenes.study().limits == pe.Limits()
+    assert scenes.study().search.goals == Goals()
+    settings.limit_entropy = -1.25
+    settings.keep_entropy = True
+    assert scenes.study().limits == pe.Limits(entropy=-1.25)
+    settings.stop_gain = 0.002
+    settings.stop_over = 40
+    bpy.data.objects["roof"].perception_entropy.stays = True
+    goals = scenes.study().search.goals
+    assert (goals.stop.seconds, goals.stop.over) == (None, 40)
+    assert goals.stop.gain == 0.002 and goals.fixed == ("roof",)
+    settings.start_variants = True
+    assert scenes.study().search.goals.starts == ()
+    assert bpy.ops.pe.save_variant() == {"FINISHED"}
+    bpy.data.objects["roof"].location.x += 0.2
+    assert bpy.ops.pe.save_variant() == {"FINISHED"}
+    [start] = scenes.study().search.goals.starts
+    now = scenes.study().rig["roof"].pose.position[0]
+    assert start.poses["roof"].position[0] == pytest.approx(now - 0.2, abs=1e-5)

@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 import pytest
 
+from blender_addon.engine import pe
 from blender_addon.operators import declared
 from blender_addon.overlay import layers
 from tests.addon import scenes
@@ -167,3 +168,13 @@ def test_a_report_is_one_line_whatever_it_quotes():
     assert operator.level == {"INFO"}
     assert operator.text.startswith("Wrote a\\nb\\u202e\\x1b.toml")
     assert operator.text.isprintable() and len(operator.text) < 500
+
+
+def test_too_little_memory_is_one_line(small, monkeypatch):
+    def no_memory(*_, **__):
+        raise MemoryError("Unable to allocate 64 GiB for an array")
+
+    monkeypatch.setattr(pe.Study, "evaluator", no_memory)
+    line = said_by(bpy.ops.pe.score)
+    assert "Not enough memory" in line and "64 GiB" in line
+    assert not small.perception_entropy.has_result

@@ -11,7 +11,7 @@ import pe_tools as pt
 from blender_addon import bridge, result_staleness
 from blender_addon.engine import jobs as pe_jobs
 from blender_addon.engine import pe
-from blender_addon.operators import jobs, running_job
+from blender_addon.operators import declared, jobs, running_job
 from blender_addon.panels import main
 from tests.addon import layouts, scenes
 from tests.engine.processes import finished
@@ -173,3 +173,15 @@ def test_esc_keeps_the_best_with_its_analysis_and_esc_again_without(car, stops):
     stored = car.perception_entropy.result
     assert scenes.study().rig["roof"].pose == task.job.best.rig["roof"].pose
     assert bool(stored.robustness("rise")) is analysed
+
+
+def test_a_dropped_search_leaves_all_as_it_was(car):
+    before = scenes.study().rig["roof"].pose
+    task = jobs.OPTIMIZE.read(Window(car))
+    run = pe_jobs.JobRun(task.job)
+    for step in run:
+        if step.progress.evaluations >= 8:
+            run.cancel(drop=True)
+    with pytest.raises(declared.Stopped):
+        jobs.OPTIMIZE.finish(car, task, task.job.outcome, task.job)
+    assert scenes.study().rig["roof"].pose == before and not car.perception_entropy.has_result

@@ -202,3 +202,27 @@ def test_changes_are_heard_and_another_file_forgets(rig):
     assert len(shown) > 5
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     assert len(shown) == 0
+
+
+@pytest.mark.parametrize("quantity", ["ENTROPY", "COVERAGE"])
+def test_the_map_keeps_its_scale_from_the_first_score_until_it_is_fitted_again(rig, quantity):
+    def ends():
+        scenes.drawn(rig)
+        return shown_of(rig.name, "ground")[""].shape.legend.bounds
+
+    rig.perception_entropy.view.ground_quantity = quantity
+    bpy.ops.pe.score()
+    first = ends()
+    for place in ((0.0, 0.0, 0.7), (1.9, 0.0, 1.3)):
+        rig.objects["roof"].location = place
+        bpy.context.view_layer.update()
+        assert ends() == first, "what was not scored yet"
+        bpy.ops.pe.score()
+        assert ends() == first
+    assert bpy.ops.pe.fit_colors() == {"FINISHED"}
+    again = ends()
+    assert again != first
+    rig.objects["roof"].location = (-0.43, 0.0, 1.8)
+    bpy.context.view_layer.update()
+    bpy.ops.pe.score()
+    assert ends() == again

@@ -4,7 +4,9 @@ import pytest
 
 from blender_addon import viewport
 from blender_addon.engine import graphics
+from blender_addon.live import readout
 from blender_addon.overlay.labels import Surroundings, arranged, folded
+from blender_addon.viewport import INK
 
 READOUT = (20.0, 40.0, 320.0, 240.0)
 CAR = (500.0, 150.0, 900.0, 560.0)
@@ -63,3 +65,17 @@ def test_plates_fold_before_they_cover_the_car_or_a_quarter_of_the_view(car, are
     covered = sum((box[2] - box[0]) * (box[3] - box[1]) for box in shown)
     assert covered <= area or not any(whole)
     assert all(whole) == (area == 1e9 and car in (CAR, None))
+
+
+def test_a_readout_too_wide_goes_on_below_and_loses_no_word():
+    rows = [
+        readout.TextRow(10.0, (("1.510", INK), ("no difference shown", INK))),
+        readout.TextRow(10.0, (("at rest, beams and maps follow", INK), ("and more", INK)), 0.3),
+    ]
+    for widest in (1.0, 90.0, 140.0, 1e4):
+        found = readout.wrapped(rows, widest, 1.0)
+        said = " ".join(text for row in found for text, _ in row.words)
+        assert said == "1.510 no difference shown at rest, beams and maps follow and more"
+        assert len(found) >= len(rows)
+    assert readout.wrapped(rows, 1e4, 1.0) == rows
+    assert len(readout.wrapped(rows, 90.0, 1.0)) > len(rows)

@@ -7,7 +7,7 @@ import pytest
 
 from blender_addon.operators.compare_variants import pending_variants
 from blender_addon.panels.condition_panel import conditions
-from pe_core.motion import stories
+from pe_core.motion import RATE_HZ, stories
 from tests.addon import layouts, scenes
 
 
@@ -50,3 +50,19 @@ def test_a_change_of_a_story_makes_the_figures_of_variants_stale(car):
     assert not pending_variants(car)
     settings.stories[0].latency_s = 0.9
     assert len(pending_variants(car)) == 2
+
+
+def test_the_3d_view_shows_what_a_check_says(car):
+    bpy.ops.pe.add_row(rows="stories", kind="cyclist_from_right")
+    (item,) = scenes.drawn(car)["story"].values()
+    driven = scenes.study().drive_by(scenes.study().stories[0])
+    moment = driven.bodies[0].moments[0.9]
+    marks = {mark.text: mark.time_s for mark in item.strip.marks}
+    assert marks == {"must brake here": driven.story.brake_s, "confirmed here 90%": moment.time_s}
+    late = item.at(5.0)
+    k = round(5.0 * RATE_HZ)
+    assert f"AP {driven.bodies[0].ap[k]:.2f}" in late.labels[-1].text
+    rays = len(late.lines.points) - len(item.at(0.0).lines.points)
+    assert rays == 2 * (int(driven.bodies[0].ap[k] > 0.0) - int(driven.bodies[0].ap[0] > 0.0))
+    car.perception_entropy.view.show_story = False
+    assert "story" not in scenes.drawn(car)

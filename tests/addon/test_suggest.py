@@ -5,10 +5,12 @@ import json
 import bpy
 import pytest
 
-from blender_addon import where_map
+from blender_addon import location_query, panels, where_map
 from blender_addon.engine import jobs
+from blender_addon.panels.score_details import draw_offers
 from tests.addon import scenes
 from tests.addon.command_line import pe_here, run_here
+from tests.addon.layouts import Layout, Window, drawn
 
 SPOT = (0.0, 1.7, 0.0)
 
@@ -54,3 +56,17 @@ def test_ghosts_stand_where_the_sensors_would_be_until_the_rig_changes(car):
     scenes.add_sensor("late", location=(0.0, 0.0, 2.0))
     where_map.discard_outdated()
     assert car.name not in where_map.offers and "ghosts" not in scenes.drawn(car)
+
+
+def test_the_panel_asks_and_tells(car):
+    bpy.ops.pe.ask_place(point=SPOT)
+    assert location_query.answer(car) is not None
+    answer = panels.score_details.explain
+    assert "pe.suggest" in drawn(answer, **vars(Window(car))).texts("operator")
+    offers = mended(car, point=SPOT)
+    layout = Layout()
+    draw_offers(layout, Window(car), point=offers.of)
+    text = " ".join(layout.texts("label"))
+    assert text.lower().count("blind ground") == len(offers.found)
+    done = {True: "Add It", False: "Move It"}
+    assert layout.texts("operator") == [done[each.added] for each in offers.found]

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from blender_addon import bridge, diagnostics, result_staleness
+from blender_addon.engine import advice
 from blender_addon.operators import compare_variants
 from tests.addon import scenes
 from tests.addon.layouts import Layout
@@ -239,3 +240,21 @@ def test_bars_have_the_largest_difference_first_and_the_longest_is_full(ideas):
     labels = layouts["PARTS"].texts("label")
     assert {"Score, lower is better", "entropy"} <= {*labels}, "names stay"
     assert "    Near" in labels and "score" in layouts["RIG"].texts("label")
+
+
+def test_what_a_difference_is_worth_is_that_of_the_scenes_study(car):
+    """Of LiDARs alone, by default settings; with another prior or a camera nothing is said."""
+    for height in (0.0, 0.3):
+        car.objects["roof"].location.z += height
+        bpy.context.view_layer.update()
+        bpy.ops.pe.save_variant()
+    own = list(car.perception_entropy.variants)
+    study = scenes.study()
+    car.perception_entropy.prior = "road"
+    for axis, (low, high) in zip("xyz", ((-80, 80), (-40, 40), (0, 5)), strict=True):
+        setattr(car.perception_entropy, f"space_{axis}", (low, high))
+    found = bridge.worth_of_differences(car, own)
+    assert set(found) == {"entropy", "traffic_ap", "coverage"}
+    assert found == advice.worth_rows(scenes.study(), [study.rig] * 2, one_vehicle=True)
+    car.perception_entropy.prior = "highway"
+    assert bridge.worth_of_differences(car, own) == {}

@@ -93,6 +93,11 @@ def test_every_entry_of_the_catalogue_loads_and_says_its_source():
             assert np.abs(np.linalg.norm(model.directions, axis=1) - 1.0).max() <= 1e-6, name
 
 
+def test_an_entry_alone_is_that_of_all_entries():
+    assert all(pe.catalog.entry_of(name) == each for name, each in pe.catalog.entries().items())
+    assert pe.catalog.entry_of("Pandar") is None
+
+
 def test_a_rig_needs_sensors_with_names_of_their_own():
     with pytest.raises(pe.InputError, match="at least one sensor"):
         pe.Rig([])

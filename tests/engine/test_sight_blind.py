@@ -11,9 +11,14 @@ from pe_core.scoring.sight import Sight
 from pe_core.scoring.sight.blind_ground import (
     BODY_M,
     NARROW_M,
+    SECTOR_RADIUS_M,
+    SECTOR_RING_M,
     SIDES,
+    STEP_M,
     TOO_FAR_M,
+    BlindSearch,
     blind_ground,
+    sector_cells,
     shown_end,
     shown_reach,
     shown_start,
@@ -275,3 +280,17 @@ def test_of_any_region_the_rings_are_closed_and_bound_its_area():
         share = np.array([0.0, 0.125, 0.5, 0.875, 1.0])[squares.astype(int)]
         share[diagonal] = 0.25
         assert area == pytest.approx(share.sum())
+
+
+@pytest.mark.parametrize("at", [(0.0, 0.0), (17.0, 3.0), (-30.0, 0.0)])
+def test_near_the_circle_a_search_of_its_ring_finds_what_a_search_of_all_finds(at):
+    """From within the ring's hole, from the ring itself, and from beyond it across the hole."""
+    pose = pe.Pose((*at, 1.4), (0.03, 0.3, 0.4))
+    rig = pe.Rig([pe.Sensor("a", pe.catalog.load("Pandar64"), pose)])
+    cells = sector_cells()
+    ring = SECTOR_RADIUS_M - SECTOR_RING_M, SECTOR_RADIUS_M + SECTOR_RING_M
+    everywhere = BlindSearch.of(cells, 0.5, BOX, {}).blind(rig)
+    near = BlindSearch.of(cells, 0.5, BOX, {}, ring).blind(rig)
+    on_circle = np.abs(np.hypot(cells.x[:, None], cells.y) - SECTOR_RADIUS_M) < 2.0 * STEP_M
+    assert 0 < everywhere[on_circle].sum() < on_circle.sum()
+    assert np.array_equal(near[on_circle], everywhere[on_circle])

@@ -1,12 +1,14 @@
 """Make examples/four_corners: `python make_four_corners.py` with the bpy module, after the bus.
 
-The shuttle with a LiDAR at each front corner of its roof and a camera in each rear corner of its
-bumper, as mirrored pairs, on areas that are painted on its body. The scene and the study are one
-problem; the study takes its mesh from bus.npz. Run it with bpy 4.2: later versions read its files.
+The shuttle with a LiDAR at each corner of its roof, level as they come out of the box, and a camera
+in each rear corner of its bumper, as mirrored pairs, on areas that are painted on its body. The
+scene and the study are one problem; the study takes its mesh from bus.npz. Run it with bpy 4.2:
+later versions read its files.
 """
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Callable
 from dataclasses import replace
@@ -34,7 +36,11 @@ RECESS_M = 0.01
 """A base plate of 40 mm on the roof; a lens 10 mm proud of the bumper."""
 SIDE_M = (0.3, 1.0)
 """Bounds of y of the sensors on the left: each pair has one on either side."""
+END_M = (1.3, 3.1)
+"""Bounds of x of a pair at the front; one at the rear has them with the other sign."""
 
+BLIND_GROUND_M2 = 67.0
+"""The limit of what stays blind within 10 m: half of what is blind at the start."""
 PRESETS = (
     "r159_longitudinal",
     "r151_static_crossing",
@@ -53,9 +59,9 @@ STOPPING_M = "15"
 Vertex = bpy.types.MeshVertex
 
 
-def at_front_corner(place: Vertex) -> bool:
-    """Whether a point of the roof is in a front corner, and not on its steep rim."""
-    return place.x > 1.3 and 0.35 < abs(place.y) < 0.86
+def at_corner(place: Vertex) -> bool:
+    """Whether a point of the roof is in a corner, and not on its steep rim."""
+    return abs(place.x) > 1.3 and 0.35 < abs(place.y) < 0.86
 
 
 def on_upright_part(place: Vertex) -> bool:
@@ -80,8 +86,16 @@ def add_mount(name: str, standoff: float, orientation: str) -> None:
     row.orientation = orientation
 
 
-def add_pair(name: str, model: str, near: tuple[float, float, float], mount: str) -> None:
-    """Add a sensor on the left, on a mount, and its mirror image."""
+def add_pair(
+    name: str,
+    model: str,
+    near: tuple[float, float, float],
+    mount: str,
+    yaw: tuple[float, float, float],
+    pitch: tuple[float, float],
+) -> None:
+    """Add a sensor on the left, on a mount, and its mirror image. `yaw`: start and bounds, `pitch`:
+    bounds, from what the mount says [deg]."""
     bpy.ops.pe.add_sensor(model=model)
     obj = bpy.context.object
     obj.name = f"{name}_left"
@@ -89,16 +103,14 @@ def add_pair(name: str, model: str, near: tuple[float, float, float], mount: str
     bpy.context.view_layer.update()
     bpy.ops.pe.mount_sensor(name=obj.name, mount=mount)
     own = obj.perception_entropy
-    own.free = [False, False, False, False, True, mount == BUMPER]
-    own.bounded[1] = True
-    own.bounds_low[1], own.bounds_high[1] = SIDE_M
-    if mount == BUMPER:
-        own.bounded[5] = True
-        own.bounds_low[5] = -40.0
-        own.bounds_high[5] = 40.0
-    own.bounded[4] = True
-    own.bounds_low[4] = -20.0
-    own.bounds_high[4] = 30.0
+    obj.rotation_euler.z += math.radians(yaw[0])
+    own.free = [False, False, False, False, True, True]
+    first, last = END_M
+    ends = (first, last) if near[0] > 0.0 else (-last, -first)
+    for index, (low, high) in ((0, ends), (1, SIDE_M), (4, pitch), (5, yaw[1:])):
+        own.bounded[index] = True
+        own.bounds_low[index] = low
+        own.bounds_high[index] = high
     bpy.ops.pe.mirror_sensor(name=obj.name, linked=True)
 
 
@@ -119,20 +131,24 @@ def design() -> None:
     """Have the bus's scene hold this example."""
     for obj in bridge.sensor_objects(bpy.context.scene):
         bpy.data.objects.remove(obj)
-    paint("roof", ROOF, at_front_corner)
+    paint("roof", ROOF, at_corner)
     paint("bumper_rear", BUMPER, on_upright_part)
     add_mount(ROOF, BASE_M, "upright")
     add_mount(BUMPER, RECESS_M, "facing")
-    add_pair("lidar", LIDAR, (2.2, 0.7, 2.6), ROOF)
-    add_pair("camera", CAMERA, (-3.0, 0.7, 0.42), BUMPER)
+    tilt = (-5.0, 45.0)
+    add_pair("front", LIDAR, (2.2, 0.7, 2.6), ROOF, yaw=(45.0, 0.0, 90.0), pitch=tilt)
+    add_pair("rear", LIDAR, (-2.2, 0.7, 2.6), ROOF, yaw=(135.0, 90.0, 180.0), pitch=tilt)
+    aside = (0.0, -40.0, 40.0)
+    add_pair("camera", CAMERA, (-3.0, 0.7, 0.42), BUMPER, yaw=aside, pitch=(-20.0, 30.0))
     add_requirements()
     settings = bpy.context.scene.perception_entropy
     settings.limit_distance = 0.3
     settings.limit_height = 2.7
     settings.method = METHOD  # said, so that another default changes nothing
     settings.keep_requirements = True
-    # the study does not name them
-    settings.keep_blind_ground = settings.keep_blind_sector = False
+    settings.limit_blind_ground = BLIND_GROUND_M2
+    settings.keep_traffic_ap = True
+    settings.keep_blind_sector = False  # the study does not name it
 
 
 def write_study() -> None:

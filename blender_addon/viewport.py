@@ -28,6 +28,8 @@ SMALL = 11.0
 MARGIN = 14.0
 HUD_ROW = 30.0
 """From the toolbar to a plate, and the height of the panel of the last operation."""
+HEADER = 110.0
+"""Height of the headers and of Blender's own text, from the top."""
 INK: Rgba = (0.95, 0.95, 0.95, 1.0)
 FAINT: Rgba = (0.74, 0.74, 0.74, 1.0)
 PLATE: Rgba = (0.08, 0.08, 0.08, 0.72)

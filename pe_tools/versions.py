@@ -1,7 +1,7 @@
 """What ``pe --version`` prints. Nothing is imported for it that takes long."""
 
 import platform
-from importlib.metadata import PackageNotFoundError, version
+import sys
 
 from pe_core.version import __version__
 
@@ -14,6 +14,10 @@ def versions_text() -> str:
 
 def numpy_version() -> str:
     """Return the version of NumPy."""
+    if "numpy" in sys.modules:
+        return str(sys.modules["numpy"].__version__)
+    from importlib.metadata import PackageNotFoundError, version
+
     try:
         return version("numpy")
     except PackageNotFoundError:  # copied into a folder without what pip notes of it

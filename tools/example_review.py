@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Search for places of the shuttle's four sensors, and write its page: in ten minutes.
+"""Search for places of the shuttle's six sensors, and write its page: in ten minutes.
 
 usage: tools/example_review.py [RESULTS]
 
@@ -24,8 +24,7 @@ from tests.review.browser import opened, started  # noqa: E402
 EXAMPLE = Path("blend_assets/examples/four_corners")
 PAGE = ROOT / "docs" / "reviews" / "four_corners.html"
 PICTURE = ROOT / "docs" / "images" / "four_corners_review.png"
-KEPT = ["--set", "limits.blind_sector=true", "--set", "limits.traffic_ap=true"]
-COMMAND = ["pe", "optimize", str(EXAMPLE / "study.toml"), *KEPT, "-o", "The shuttle's four corners"]
+COMMAND = ["pe", "optimize", str(EXAMPLE / "study.toml"), "-o", "The shuttle's four corners"]
 
 
 def write(results: Path) -> None:

@@ -33,7 +33,7 @@ def main(argv: Sequence[str], prog: str, out: TextIO) -> int:
     named = prog.replace("FILE.blend", file)
     try:
         with contextlib.redirect_stdout(out):
-            args = parser(prog, out).parse_args(argv)
+            args = parser(prog, out, argv).parse_args(argv)
     except SystemExit as stop:  # help was asked for, or the usage was wrong
         return int(stop.code or 0)
     except pe.InputError as error:
@@ -60,7 +60,9 @@ def unregister() -> None:
     bpy.utils.unregister_cli_command(_registered.pop())
 
 
-def parser(prog: str, out: TextIO | None = None) -> argparse.ArgumentParser:
+def parser(
+    prog: str, out: TextIO | None = None, argv: Sequence[str] = ()
+) -> argparse.ArgumentParser:
     """Return the parser of the command line; replies of a session go to `out`."""
     source = SceneStudies()
     source.out = out
@@ -75,8 +77,8 @@ def parser(prog: str, out: TextIO | None = None) -> argparse.ArgumentParser:
             app.NONE,
             options="",
             function=list_variants,
-            answer=tuple[Mapping[str, Any], ...],
+            prints=tuple[Mapping[str, Any], ...],
         )
     )
-    top, _ = app.command_parser(prog, f"pe {pe.__version__}", verbs, source)
+    top, _ = app.command_parser(prog, f"pe {pe.__version__}", verbs, source, argv)
     return top

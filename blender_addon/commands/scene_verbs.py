@@ -37,7 +37,7 @@ def where_in_scene(source: SceneStudies, args: argparse.Namespace) -> app.Answer
     depsgraph = bpy.context.evaluated_depsgraph_get()
     with from_file():
         study = bridge.with_mount(study, bpy.context.scene, depsgraph, args.mount)
-    return app.where(study, args)
+    return app.where_study(study, args)
 
 
 def list_variants(_: SceneStudies, args: argparse.Namespace) -> app.Answer:

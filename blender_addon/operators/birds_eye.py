@@ -32,9 +32,8 @@ below the ground pictures reach."""
 RAISED_M = 0.009
 """The drawn road is raised to below that of *Surroundings*: what lies lower is shown farther out,
 less from a higher camera, and would not fit at seams."""
-HEADER = 110.0
 LEAST_SHARE = 0.3
-"""Height of the headers and of Blender's own text at the top, and how far a plate shrinks below."""
+"""How far a plate shrinks below the headers, before it folds into its title."""
 BAR_M = 5.0
 BAR_PX = 2.0
 LINE_PX = 1.4
@@ -65,20 +64,33 @@ def draw(context: bpy.types.Context) -> None:
     proportions = shape.y[1] - shape.y[0], shape.x[1] - shape.x[0]
     size = sensor_pictures.size_in(context, proportions)
     left, bottom = sensor_pictures.corner(context, PLATE_NAME, size)
-    share = (context.region.height - bottom - HEADER * scale) / size.height
+    title = title_of(shape)
+    if scheduler.is_preview(scene.name, BIRDS_EYE, WHOLE_RIG, item):
+        title += " (preview)"
+    room = context.region.height - viewport.HEADER * scale - bottom
+    share = (room - sensor_pictures.TITLE_PX * scale) / size.height
+    if share < LEAST_SHARE:
+        camera_pictures.keep_only(region, PLATE_NAME, ())
+        if room >= sensor_pictures.TITLE_PX * scale:
+            folded = sensor_pictures.draw_title((left, bottom), title, scale)
+            viewport.reserve_plate(region, PLATE_NAME, folded)
+        return
     if share < 1.0:
-        size = sensor_pictures.size_in(context, proportions, max(share, LEAST_SHARE))
+        size = sensor_pictures.size_in(context, proportions, share)
     box = left, bottom, left + size.width, bottom + size.height
     viewport.fill_box(box, UNSEEN)
     _draw_ground(context, shape, size, box)
-    old = scheduler.is_preview(scene.name, BIRDS_EYE, WHOLE_RIG, item)
-    ahead = f"{shape.x[1]:.0f} m ahead"
-    blind = f"Cameras alone: {shape.blind_m2:.1f} m² unseen to {ahead}"
-    title = blind if shape.blind_m2 else f"Cameras see all ground to {ahead}"
-    title += " (preview)" if old else ""
     frame = sensor_pictures.draw_frame((left, bottom), size, title, scale)
     _draw_ruler((left, bottom), size.width * BAR_M / proportions[0], scale)
     viewport.reserve_plate(region, PLATE_NAME, frame)
+
+
+def title_of(shape: BirdsEye) -> str:
+    """Return what a plate says of the ground that it shows."""
+    ahead = f"{shape.x[1]:.0f} m ahead"
+    if not shape.blind_m2:
+        return f"Cameras see all ground to {ahead}"
+    return f"Cameras alone: {shape.blind_m2:.1f} m² unseen to {ahead}"
 
 
 def _draw_ruler(corner: tuple[float, float], long: float, scale: float) -> None:

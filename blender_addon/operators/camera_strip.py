@@ -14,6 +14,8 @@ from .sensor_pictures import PictureSize, has_room, sensor_of
 STRIP_PX = 92.0
 GAP_PX = 6.0
 """Height of the pictures of the strip and the gaps between them, at a scale of 1."""
+MAX_SHARE = 0.14
+"""Of the view's height that the pictures take at most, at any scale."""
 _in_strip: dict[int, list[tuple[str, viewport.PlateBox]]] = {}
 """Sensors and their pictures in the strip, by the region's pointer."""
 
@@ -47,7 +49,8 @@ def draw(context: bpy.types.Context) -> None:
     left = viewport.beside_toolbar(context)
     bottom = viewport.above_hud(context, over=(viewport.STRIP,))
     width = viewport.sidebar_left(context) - viewport.MARGIN * scale - left
-    sizes = strip_sizes(width, [(each.width, each.height) for _, each in cameras], scale)
+    highest = min(STRIP_PX * scale, MAX_SHARE * context.region.height)
+    sizes = strip_sizes(width, highest, [(each.width, each.height) for _, each in cameras], scale)
     for (sensor, model), size in zip(cameras, sizes, strict=True):
         look = camera_pictures.look_of(sensor.pose, model)
         camera = camera_pictures.picture(context, viewport.CAMERAS, sensor.name, look, size=size)
@@ -62,11 +65,14 @@ def draw(context: bpy.types.Context) -> None:
     _in_strip[region] = drawn
 
 
-def strip_sizes(width: float, pictures: list[tuple[int, int]], scale: float) -> list[PictureSize]:
-    """Return the sizes of pictures of these proportions in a row, as high as the width allows."""
+def strip_sizes(
+    width: float, highest: float, pictures: list[tuple[int, int]], scale: float
+) -> list[PictureSize]:
+    """Return the sizes of pictures of these proportions in a row, as high as the width allows and
+    at most `highest` [px]."""
     ratios = [across / up for across, up in pictures]
     room = width - GAP_PX * scale * (len(ratios) - 1)
-    height = max(min(STRIP_PX * scale, room / sum(ratios)), 2.0)
+    height = max(min(highest, room / sum(ratios)), 2.0)
     return [PictureSize(max(int(ratio * height), 2), int(height)) for ratio in ratios]
 
 

@@ -106,14 +106,23 @@ def draw_frame(
     width, height = size
     right = left + width
     top = bottom + height
-    above = top + TITLE_PX * scale
+    titled = draw_title((left, top), title, scale, right)
+    viewport.draw_outline((left, bottom, right, top), EDGE)
+    return left, bottom, right, titled[3]
+
+
+def draw_title(
+    corner: tuple[float, float], title: str, scale: float, right: float = 0.0
+) -> viewport.PlateBox:
+    """Draw a title on a plate that goes to `right` at least [px]; return the plate's box."""
+    left, bottom = corner
     pad = PAD_PX * scale
     small = viewport.SMALL * scale
     end = max(right, left + viewport.text_size(title, small)[0] + 2.0 * pad)
-    viewport.fill_box((left, top, end, above), TITLE_PLATE)
-    viewport.draw_outline((left, bottom, right, top), EDGE)
-    viewport.draw_text(title, left + pad, top + pad, small, color=INK)
-    return left, bottom, right, above
+    box = left, bottom, end, bottom + TITLE_PX * scale
+    viewport.fill_box(box, TITLE_PLATE)
+    viewport.draw_text(title, left + pad, bottom + pad, small, color=INK)
+    return box
 
 
 def has_room(context: bpy.types.Context) -> bool:
@@ -153,10 +162,8 @@ def size_of(region: tuple[float, float], picture: tuple[float, float], scale: fl
 
 def corner(context: bpy.types.Context, plate: str, size: tuple[int, int]) -> tuple[float, float]:
     """Return the lower left corner of a picture in the region [px]: above the other plates."""
-    region = context.region
     margin = viewport.MARGIN * viewport.ui_scale()
     left = viewport.beside_toolbar(context)
-    pointer = region.as_pointer()
+    pointer = context.region.as_pointer()
     viewport.reserve_plate(pointer, plate, None)
-    bottom = viewport.free_bottom(pointer, (left, left + size[0]), margin, margin)
-    return left, min(bottom, region.height - size[1] - TITLE_PX * viewport.ui_scale())
+    return left, viewport.free_bottom(pointer, (left, left + size[0]), margin, margin)

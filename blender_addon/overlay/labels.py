@@ -19,7 +19,6 @@ GAP = 12.0
 GIZMOS = 330.0
 BESIDE_GIZMOS = 48.0
 """Height and width of Blender's own gizmos, from the upper right corner."""
-HEADER = 110.0  # Height of the headers and of Blender's own text, from the top
 MIN_WIDTH = 150.0
 MAX_SHARE = 0.25  # Of the view that plates cover at most
 TITLE_ROWS = 1.5  # Height of a plate that is folded into its title
@@ -86,7 +85,12 @@ def draw_legends(
         (right, 0.0, float(region.width), height),
     ]
     margin = MARGIN * scale
-    room = viewport.beside_toolbar(context), margin, right - margin, height - HEADER * scale
+    room = (
+        viewport.beside_toolbar(context),
+        margin,
+        right - margin,
+        height - viewport.HEADER * scale,
+    )
     plates = viewport.plate_boxes(region.as_pointer())
     sizes = [(_width(legend, scale), _height(legend, scale)) for legend in legends]
     if sizes:

@@ -31,14 +31,16 @@ from .layout import columns, draw_sentence, room_px, shortened_to, text_px
 MET_ICONS = {True: "COLORSET_03_VEC", False: "ERROR"}
 """Blender's own green, and its orange triangle."""
 NAME_SHARE = 0.39
-BESIDE_ROW_PX = 68
+BESIDE_ROW_PX = 62
+LOCK_PX = 20
 WANTED_PX = 58
+BUTTON_PX = 26
 CHANGED_PX = 44
 LABEL_PX = 14
 LEAST_NAME_PX = 30
-"""What is beside a row: borders, tabs and the lock; the room for what is wanted, and beside the
-text of what a figure was before; what a label takes beside its text, and the least room for names;
-all at a scale of 1."""
+"""What is beside a row: borders and tabs; the lock; the room for what is wanted, for the button
+that wants something or a mark, and beside the text of what a figure was before; what a label takes
+beside its text, and the least room for names; all at a scale of 1."""
 LOCKS = {True: "LOCKED", False: "UNLOCKED"}
 
 
@@ -142,6 +144,8 @@ def drawn_row(
     error = errors.get(figure.key, 0.0)
     text, sense = change_text(figure, values, error)
     text = f"{'≥ ' * row.is_cut}{text.removesuffix(' nats' if is_score else ' met')}"
+    if row.wanted is not None and figure.rule is None:
+        text += f" of {row.wanted:.0f}"
     is_changed = row.wanted is None and sense != SAME
     before = figure.text(values[0]).partition(" ")[0] if is_changed else ""
     name = "Score" if is_score else figure.label
@@ -151,41 +155,55 @@ def drawn_row(
 
 class RowWidths(NamedTuple):
     """Room for the columns of the dashboard [px]; and whether what figures were before has room,
-    too. Figures are never cut: names give way."""
+    too. Figures are never cut: locks give way, then names, which are `text_room` wide."""
 
     name: float
     value: float
     wanted: float
     has_room: bool
+    has_locks: bool
+    text_room: float
 
     @classmethod
     def of(cls, context: Context, rows: Sequence[DrawnRow]) -> "RowWidths":
         """Return the room that rows have in the sidebar."""
-        room, size = room_px(context, BESIDE_ROW_PX)
+        whole, size = room_px(context, BESIDE_ROW_PX)
         scale = size / context.preferences.ui_styles[0].widget.points
         value = max(text_px(each.value, size) for each in rows) + LABEL_PX * scale
         changes = [text_px(f"({each.before})", size) for each in rows if each.before]
-        least = WANTED_PX * scale
+        is_field = any(each.row.wanted is not None and each.row.figure.rule for each in rows)
+        room = whole - LOCK_PX * scale
+        least = (WANTED_PX if is_field else BUTTON_PX) * scale
         wanted = max([least, *(each + CHANGED_PX * scale for each in changes)])
         has_room = room - value - wanted >= LEAST_NAME_PX * scale
         gap = LABEL_PX * scale
         wanted = wanted if has_room else min(least, max(room - value - gap, gap))
         name = max(text_px(each.name, size) for each in rows) + gap
+        has_locks = name <= room - value - wanted
+        room = room if has_locks else whole
         name = min(name, max(room - value - wanted, gap))
-        return cls(name, value, wanted=wanted, has_room=has_room)
+        return cls(
+            name,
+            value,
+            wanted=wanted,
+            has_room=has_room,
+            has_locks=has_locks,
+            text_room=max(name - gap, 0.0),
+        )
 
 
 def draw_row(layout: UILayout, context: Context, drawn: DrawnRow, sides: RowWidths) -> None:
     """Draw a figure: whether *Optimize* keeps it, its name, its value, and what is wanted."""
     row = drawn.row
     line = layout.row(align=True)
-    if row.kept or row.wanted is not None or not is_simple(context.scene):
-        draw_lock(line, context.scene.perception_entropy, row.figure)
-    else:
-        line.label(text="", icon="BLANK1")
+    if sides.has_locks:
+        if row.kept or row.wanted is not None or not is_simple(context.scene):
+            draw_lock(line, context.scene.perception_entropy, row.figure)
+        else:
+            line.label(text="", icon="BLANK1")
     total = sides.name + sides.value + sides.wanted
     name, rest = columns(line, sides.name / total, align=True)
-    draw_label(name, shortened_to(context, drawn.name, sides.name))
+    draw_label(name, shortened_to(context, drawn.name, sides.text_room))
     value, wanted = columns(rest, sides.value / (sides.value + sides.wanted), align=True)
     draw_label(value, drawn.value)
     wanted = wanted.row(align=True)
@@ -193,7 +211,7 @@ def draw_row(layout: UILayout, context: Context, drawn: DrawnRow, sides: RowWidt
         before = f"({drawn.before})" if sides.has_room else ""
         draw_label(wanted, before, SENSE_ICONS[drawn.sense])
     elif row.figure.rule is None:
-        wanted.label(text="" if row.wanted is None else f"of {row.wanted:.0f}", translate=False)
+        wanted.label(text="")
     else:
         draw_wanted(wanted, context.scene, row)
     if row.met is not None:

@@ -5,7 +5,7 @@ from bpy.types import Context, Object, PropertyGroup, UILayout
 from .. import where_map
 from ..bridge import holder_of, in_surroundings
 from ..operators import shown_way
-from ..panel_text import draw_label, is_simple
+from ..panel_text import draw_label, is_simple, worded
 from ..properties import AXIS_LABELS, measured_distances
 from ..sensor_kinds import has_view
 from .layout import draw_declared, draw_sentence, panel, section
@@ -112,6 +112,7 @@ def draw_region(layout: UILayout, context: Context, obj: Object) -> None:
     layout.prop(context.scene.perception_entropy.view, "show_steepest")
     if (way := shown_way(context)) is not None and way.better is not None:
         text = f"Move {way.better.distance * 100.0:.0f} cm: {way.better.change:+.3f} nats"
+        text = worded(context.scene, text)
         layout.operator("pe.take_better_place", text=text, translate=False, icon="FORWARD")
     found = where_map.regions.get(context.scene.name)
     if found is None or found.sensor != obj.name:

@@ -6,13 +6,17 @@ plugin is foreign code: a library may be missing, it may fail, or return a wrong
 becomes an `InputError` that names the plugin and its package.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from importlib import import_module
-from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .errors import InputError
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 GROUP = "perception_entropy.plugins"
 HOME = __name__.partition("pe_core.")[0]
@@ -55,7 +59,8 @@ EXTRAS = {
 def shipped(name: str) -> Any:
     """Return what a name of `SHIPPED` leads to. The engine asks here for readers of files, which it
     does not import, and searches for what the catalogue knows of a model."""
-    return _shipped_point(name).load()
+    module, _, attribute = SHIPPED[name].partition(":")
+    return getattr(import_module(HOME + module), attribute)
 
 
 def find_plugin(sort: str, name: str) -> EntryPoint | None:
@@ -63,12 +68,16 @@ def find_plugin(sort: str, name: str) -> EntryPoint | None:
     full = f"{sort}.{name}"
     if full in SHIPPED:
         return _shipped_point(full)
+    from importlib.metadata import entry_points
+
     return next(iter(entry_points(group=GROUP, name=full)), None)
 
 
 def find_plugins(sort: str) -> list[EntryPoint]:
     """Return all plugins of a sort: those shipped that are present, then those of other packages.
     Blender's extension leaves some of those shipped out."""
+    from importlib.metadata import entry_points
+
     own = [_shipped_point(name) for name in SHIPPED if name.startswith(f"{sort}.")]
     others = [point for point in entry_points(group=GROUP) if point.name.startswith(f"{sort}.")]
     return [*(point for point in own if _is_present(point)), *others]
@@ -136,6 +145,8 @@ def required_plugin(sort: str, name: str, source: str, field: str, expected: str
 
 
 def _shipped_point(name: str) -> EntryPoint:
+    from importlib.metadata import EntryPoint
+
     return EntryPoint(name, HOME + SHIPPED[name], GROUP)
 
 

@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ..base.arrays import read_only_data
-from ..base.errors import InputError, require_keys, require_name, shown
+from ..base.errors import InputError, one_of, require_keys, shown
 from ..base.files import decode_text, read_bytes
 from ..base.table_reader import load_toml
 from ..base.values import A_NAME, A_TEXT, choice
@@ -33,8 +33,17 @@ from .templates import RigTemplate as RigTemplate
 from .templates import templates as templates
 
 __all__ = ["OTHER_LABELS", "OWN", "Entry", "KnownRig", "KnownSensor", "RigTemplate", "add"]
-__all__ += ["add_file", "added", "data_sheet", "entries", "from_table", "housing", "known_rig"]
-__all__ += ["known_rigs", "load", "matching", "names", "remove", "replace_added", "rig_named"]
+__all__ += ["add_file", "added", "data_sheet", "entries", "entry_of", "from_table", "housing"]
+__all__ += [
+    "known_rig",
+    "known_rigs",
+    "load",
+    "matching",
+    "names",
+    "remove",
+    "replace_added",
+    "rig_named",
+]
 __all__ += ["rig_on", "scan_above_base", "sensors_on", "templates", "to_table"]
 
 PAPER_FILE = "paper.toml"  # File with the paper's sensors, which come first in lists
@@ -82,6 +91,15 @@ _loaded: dict[str, SensorModel] = {}
 def entries() -> Mapping[str, Entry]:
     """Return all entries by name: those of the files in order, then those added by programs."""
     return MappingProxyType({**_shipped(), **_added}) if _added else _shipped()
+
+
+def entry_of(name: str) -> Entry | None:
+    """Return the entry of that name; None where there is none. A file that has not that text is not
+    parsed."""
+    if name in _added:
+        return _added[name]
+    tables = (_entries_in(file) for file, text in _files().items() if name in text)
+    return next((found[name] for found in tables if name in found), None)
 
 
 def names(kind: str | None = None) -> list[str]:
@@ -153,8 +171,10 @@ def load(name: str) -> SensorModel:
     such sensor; the message has similar names."""
     name = A_TEXT.checked("catalogue", "model", name)
     if name not in _loaded:
-        require_name("catalogue", "model", name, names())
-        _loaded.setdefault(name, from_table(name, entries()[name].table))
+        entry = entry_of(name)
+        if entry is None:
+            raise InputError("catalogue", "model", one_of(names(), name), shown(name))
+        _loaded.setdefault(name, from_table(name, entry.table))
     return _loaded[name]
 
 
@@ -199,7 +219,7 @@ def rig_on(
 def housing(name: str) -> Housing | None:
     """Return the housing of the sensor of that name; None if its size is not known. `InputError`
     when its table in the catalogue is not valid."""
-    entry = entries().get(name)
+    entry = entry_of(name)
     table = None if entry is None else entry.table.get("housing")
     return None if table is None else read_housing(name, table)
 
@@ -207,7 +227,8 @@ def housing(name: str) -> Housing | None:
 def data_sheet(name: str) -> DataSheet:
     """Return the figures of the sensor of that name, None where no data sheet has them.
     `InputError` when its table in the catalogue is not valid."""
-    table = entries()[name].table.get("data_sheet") if name in entries() else None
+    entry = entry_of(name)
+    table = None if entry is None else entry.table.get("data_sheet")
     return DataSheet() if table is None else read_data_sheet(name, table)
 
 
@@ -251,15 +272,29 @@ def to_table(model: SensorModel) -> dict[str, Any]:
 
 
 @cache
-def _shipped() -> Mapping[str, Entry]:
-    """Read the entries of all files; the result is cached."""
-    by_name: dict[str, Entry] = {}
+def _files() -> Mapping[str, str]:
+    """Read the texts of all files, by the names of files in the order of lists."""
     files = [f for f in resources.files(__package__).iterdir() if f.name.endswith(".toml")]
-    for file in sorted(files, key=lambda f: (f.name != PAPER_FILE, f.name)):
-        for name, table in tomllib.loads(file.read_text("utf-8")).items():
+    files.sort(key=lambda f: (f.name != PAPER_FILE, f.name))
+    return {file.name: file.read_text("utf-8") for file in files}
+
+
+@cache
+def _entries_in(file: str) -> Mapping[str, Entry]:
+    """Parse the entries of a file; the result is cached."""
+    tables = tomllib.loads(_files()[file])
+    return {name: Entry(name, file, read_only_data(table)) for name, table in tables.items()}
+
+
+@cache
+def _shipped() -> Mapping[str, Entry]:
+    """Parse the entries of all files; the result is cached."""
+    by_name: dict[str, Entry] = {}
+    for file in _files():
+        for name, entry in _entries_in(file).items():
             if name in by_name:
-                raise InputError(file.name, name, "a name used once", by_name[name].file)
-            by_name[name] = Entry(name, file.name, read_only_data(table))
+                raise InputError(file, name, "a name used once", by_name[name].file)
+            by_name[name] = entry
     return MappingProxyType(by_name)
 
 

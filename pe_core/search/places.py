@@ -31,6 +31,10 @@ PLASTIC = 1.32471795724474602596
 """Of the R2 sequence, which fills a square evenly (Roberts, 2018)."""
 NO_HEADING_M = 0.05
 """A place nearer to the vehicle's middle than this has no outward direction: it looks ahead."""
+SPARE_DEG = 20.0
+MAX_TILT_DEG = 45.0
+"""A sensor that sees all around is tilted until what it looks at is so far within its field of
+view, and by so much at most."""
 LOW = f"lower than {MIN_HEIGHT_M:g} m"
 IN_BODY = "the sensor would be in the body"
 
@@ -89,7 +93,9 @@ class MountingPlaces:
     `parts`: Parts of the vehicle that are covered; none: all of them.
     `mount`: The mount that is covered instead, with its stand-off and orientation. Without one the
         stand-off is that of the sensor's kind.
-    `look_at`: A point [m] that the sensor looks at, instead of away from the vehicle's middle.
+    `look_at`: A point [m] that the sensor looks at, instead of away from the vehicle's middle. One
+        that sees all around stands upright where the point is in its field of view, else it is
+        tilted towards the point, by as little as that takes.
     """
 
     def __init__(
@@ -118,6 +124,8 @@ class MountingPlaces:
         self.surface = MountSurface("where", self._mount, vehicle)
         self._base = standoff_point(self._mount, self._housings.get(sensor.name) if mount else None)
         self._turned = kind.outward(sensor.model) and self._mount.orientation != "facing"
+        self._tilted = not kind.outward(sensor.model) and self._mount.orientation == "upright"
+        self._lowest_ray = kind.lowest_ray(sensor.model)
         self._middle = (vehicle.bounds[0] + vehicle.bounds[1]) / 2.0
         self._look_at = look_at
         moving = {sensor.name}
@@ -139,17 +147,25 @@ class MountingPlaces:
                 continue
             normal = self.surface.outward(face)
             x, y, z = point.tolist()
-            pitch, yaw = self._angles(x, y, z) if self._turned else (0.0, 0.0)
+            pitch, yaw = self._angles(x, y, z)
             pose = pose_on(self._mount, point, normal, (0.0, pitch, yaw), point=self._base)
             yield SurfacePlace((x, y, z), tuple(normal.tolist()), pose, self._reason(pose))
 
     def _angles(self, x: float, y: float, z: float) -> tuple[float, float]:
         """Return pitch and yaw of a sensor at a place [m], in whole degrees [rad]."""
+        looks = self._turned or (self._tilted and self._look_at is not None)
+        if not looks:
+            return 0.0, 0.0
         if self._look_at is None:
             return 0.0, outward_yaw(x - self._middle[0], y - self._middle[1])
         away = self._look_at[0] - x, self._look_at[1] - y
         down = math.degrees(math.atan2(z - self._look_at[2], math.hypot(*away)))
-        return math.radians(round(down)), outward_yaw(*away)
+        if self._turned:
+            return math.radians(round(down)), outward_yaw(*away)
+        tilt = min(down - math.degrees(self._lowest_ray) + SPARE_DEG, MAX_TILT_DEG)
+        if tilt <= SPARE_DEG:
+            return 0.0, 0.0
+        return math.radians(math.ceil(tilt)), outward_yaw(*away)
 
     def with_sensor(self, pose: Pose) -> Rig:
         """Return the rig with the sensor at a pose."""

@@ -67,11 +67,13 @@ class Measured:
 
 @dataclass(frozen=True, slots=True)
 class GroundView:
-    """Squares of the ground, the height of posts on them [m], and the vehicle."""
+    """Squares of the ground, the height of posts on them [m], and the vehicle. With a `ring`, inner
+    and outer radius about the origin [m], squares that are elsewhere may be left unmarked."""
 
     grid: GroundGrid
     height: float
     vehicle: Vehicle | None = None
+    ring: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -133,6 +133,8 @@ class Kind:
         otherwise [m].
     `outward`: Of intrinsics: whether a sensor that is put on the vehicle looks away from its
         middle.
+    `lowest_ray`: Of the others' intrinsics: how far below the horizon their lowest ray points while
+        they stand upright [rad].
     `pixels_per_radian`: Of intrinsics: those in the middle of its picture; 0: it has none.
     `has_top`: Whether it matters which side of the sensor is up, as for a picture.
     `occlusion_text`: Text about its occlusion by the vehicle: "12 % of its *beams occluded*".
@@ -175,6 +177,7 @@ class Kind:
     in_weather: Callable[[Any, Any], Any] = lambda model, weather: model
     stand_off_m: float = 0.05
     outward: Callable[[Any], bool] = lambda model: True
+    lowest_ray: Callable[[Any], float] = lambda model: 0.0
     pixels_per_radian: Callable[[Any], float] = lambda model: 0.0
     has_top: bool = False
     occlusion_text: str = "beams occluded"

@@ -8,7 +8,7 @@ from typing import Any
 
 from .. import catalog
 from ..base.codec import Declared, Node, declared, hook, read, write
-from ..base.errors import InputError, require_name, shown
+from ..base.errors import InputError, one_of, shown
 from ..base.files import decode_text, read_bytes, write_bytes
 from ..base.json_schema import schema_of
 from ..base.setting import REQUIRED, OneOf, Setting, Several, is_angle, value_in_file
@@ -128,7 +128,8 @@ def _check_beside(path: Path, field: str, needed: bool, file: str | None) -> Non
 def _read_model(node: Node) -> SensorModel:
     """Return a model of the catalogue, or an own model from the table's values."""
     if isinstance(node.value, str):
-        require_name(node.source, node.path, node.value, catalog.names())
+        if catalog.entry_of(node.value) is None:
+            raise node.error(one_of(catalog.names(), node.value), shown(node.value))
         return catalog.load(node.value)
     if not isinstance(node.value, Mapping):
         raise node.error("a catalogue name or a table", shown(node.value))
@@ -142,7 +143,7 @@ def _read_model(node: Node) -> SensorModel:
 
 def _write_model(model: SensorModel) -> str | dict[str, Any]:
     """Return the catalogue's name of a model, or the values of an own model."""
-    entry = catalog.entries().get(model.name)
+    entry = catalog.entry_of(model.name)
     is_shipped = entry is not None and entry.file != catalog.OWN
     if is_shipped and catalog.same_model(catalog.load(model.name), model):
         return model.name

@@ -1,8 +1,6 @@
 """Executors of runs and of candidates: processes here, a Dask cluster, or any other executor."""
 
-import asyncio
 import importlib
-import logging
 import os
 import re
 import sys
@@ -17,7 +15,7 @@ from pe_core.base.plugins import required_package
 from pe_core.search import no_processes
 from pe_core.search.payload import plugin_name
 
-from ..jobs import Job, ScoreJob
+from ..jobs import Job
 from ..sweep import LocalWorkers
 from .terminal import tell
 
@@ -53,8 +51,7 @@ def evaluated_by(job: Job, executor: str | None) -> Iterator[None]:
     """Have the workers of an executor evaluate a job's candidates meanwhile; None: processes.
     `InputError` as in `workplace`."""
     if executor is None:
-        if not isinstance(job, ScoreJob):
-            _tell_without_processes(job.workers)
+        _tell_without_processes(job.workers)
         yield
         return
     with closing(_named(executor, job.workers or os.cpu_count() or 1)) as workers:
@@ -141,6 +138,9 @@ class DaskWorkers(LocalWorkers):
 
 
 def _client_of(address: str) -> Any:
+    import asyncio
+    import logging
+
     distributed = required_package("distributed")
     if not ADDRESS.fullmatch(address):
         expected = "dask://HOST:PORT, tcp://HOST:PORT, tls://HOST:PORT or MODULE:FUNCTION"

@@ -1,5 +1,7 @@
 """A Pareto front in lines of text: its designs with their objectives, and notes on the search."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 
 from pe_core.search.figures import PRICE, figure_of

@@ -6,7 +6,6 @@ import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from multiprocessing import util
 from typing import NoReturn
 
 from pe_core.base.files import finish_writing
@@ -103,6 +102,7 @@ def leave(status: int, *, at_once: bool = False) -> NoReturn:
         with suppress(AttributeError, OSError, ValueError):  # it is closed, or nobody reads it
             stream.flush()
     finish_writing()
-    # Of semaphores: Python would warn of them later, after the prompt.
-    util._run_finalizers(0)  # type: ignore[attr-defined]
+    if "multiprocessing.util" in sys.modules:
+        # Of semaphores: Python would warn of them later, after the prompt.
+        sys.modules["multiprocessing.util"]._run_finalizers(0)
     os._exit(status)

@@ -3,14 +3,10 @@ key of the study is no option: ``--set`` changes every key, and four keys have s
 
 import argparse
 from collections.abc import Callable
+from functools import cache
 from typing import Any, NamedTuple
 
 from pe_core.base.files import quoted
-
-from ..advice import usual_loss
-from ..exchange import RIG_FORMATS
-from ..jobs import PLACE_FIGURES
-from ..outputs import OF_EXAMPLE, scene_outputs
 
 MAX_WORKERS = 1024
 """More threads or processes than anyone has a use for."""
@@ -99,24 +95,28 @@ def part_of(text: str) -> tuple[int, int]:
 
 def ranged_outputs() -> list[str]:
     """Return the outputs that draw fields of view, as far as asked for."""
+    from ..outputs import scene_outputs
+
     return [output.name for output in scene_outputs().values() if output.has_range]
 
 
 def add_options(parser: argparse.ArgumentParser, names: str) -> None:
     """Add options to a parser: names of rows, with a bar between those that exclude each other."""
-    known = options()
     for name in names.split():
         one_of = name.split("|")
         to = parser.add_mutually_exclusive_group() if len(one_of) > 1 else parser
         for each in one_of:
-            known[each].add(to)
+            option(each).add(to)
 
 
-def options() -> dict[str, OptionRow]:
-    """Return all options by the names that verbs have for them."""
-    return _of_studies() | _of_results() | _of_questions() | _of_exchange() | _of_pages()
+def option(name: str) -> OptionRow:
+    """Return an option by the name that verbs have for it. Groups are looked into in turn: the
+    later ones have to load what they list."""
+    groups = (_of_studies, _of_results, _of_pages, _of_questions, _of_places, _of_exchange)
+    return next(rows[name] for rows in (group() for group in groups) if name in rows)
 
 
+@cache
 def _of_studies() -> dict[str, OptionRow]:
     """What is scored, and who works."""
     change = "sensor.roof.model=Pandar64: a value of TOML, or a text without quotes"
@@ -154,6 +154,7 @@ def _of_studies() -> dict[str, OptionRow]:
     return rows
 
 
+@cache
 def _of_results() -> dict[str, OptionRow]:
     """Where results go."""
     resume = "go on with the search that was begun in this folder"
@@ -180,6 +181,7 @@ def _of_results() -> dict[str, OptionRow]:
     }
 
 
+@cache
 def _of_questions() -> dict[str, OptionRow]:
     """What is asked about a rig."""
     at = "ask one place instead: x, y and perhaps z (else 0) in metres"
@@ -190,11 +192,6 @@ def _of_questions() -> dict[str, OptionRow]:
     preset = "a preset besides the study's requirements (--list); all: each one; any number"
     listed = "list requirement presets and stories, or show one preset"
     stories = "stories alone: the study's; or by name, of a TOML file, all shipped (all); commas"
-    places = ", ".join(f"{key} {each.places:,}" for key, each in PLACE_FIGURES.items())
-    figures = {"choices": PLACE_FIGURES, "default": "entropy", "metavar": "|".join(PLACE_FIGURES)}
-    losses = ", ".join(f"{key} {usual_loss(each.figure):g}" for key, each in PLACE_FIGURES.items())
-    mount = "a mount of the study: its surface, stand-off and orientation"
-    part = "a part of the vehicle, in place of all; any number"
     return {
         "at": row("--at", type=number, nargs="+", metavar=("X Y", "Z"), about=at),
         "suggest": switch("--suggest", suggest),
@@ -223,6 +220,23 @@ def _of_questions() -> dict[str, OptionRow]:
         "model": row(
             "--model", required=True, metavar="NAME", about="the sensor's model (pe sensors)"
         ),
+        "sensor_name": row("name", nargs="?", metavar="NAME", about="a sensor of the catalogue"),
+        "curves": switch("--curves", "list the AP curves of whole objects, by model"),
+    }
+
+
+@cache
+def _of_places() -> dict[str, OptionRow]:
+    """Where a sensor may go."""
+    from ..advice import usual_loss
+    from ..jobs import PLACE_FIGURES
+
+    places = ", ".join(f"{key} {each.places:,}" for key, each in PLACE_FIGURES.items())
+    figures = {"choices": PLACE_FIGURES, "default": "entropy", "metavar": "|".join(PLACE_FIGURES)}
+    losses = ", ".join(f"{key} {usual_loss(each.figure):g}" for key, each in PLACE_FIGURES.items())
+    mount = "a mount of the study: its surface, stand-off and orientation"
+    part = "a part of the vehicle, in place of all; any number"
+    return {
         "of_part": several("--part", metavar="NAME", about=part),
         "mount": row("--mount", default="", metavar="NAME", about=mount),
         "figure": row("--figure", about="what is told of each place", **figures),
@@ -234,13 +248,15 @@ def _of_questions() -> dict[str, OptionRow]:
         "places": row(
             "--places", type=whole(MAX_PLACES, 1), metavar="N", about=f"how many ({places})"
         ),
-        "sensor_name": row("name", nargs="?", metavar="NAME", about="a sensor of the catalogue"),
-        "curves": switch("--curves", "list the AP curves of whole objects, by model"),
     }
 
 
+@cache
 def _of_exchange() -> dict[str, OptionRow]:
     """Rigs of other programs and known vehicles."""
+    from ..exchange import RIG_FORMATS
+    from ..outputs import OF_EXAMPLE, scene_outputs
+
     formats = [*RIG_FORMATS, *dict.fromkeys([*scene_outputs(), *OF_EXAMPLE]), LINE]
     to = f"format: {', '.join(formats)} (default: by the suffix of PATH)"
     read = f"its format, if its name does not tell: {', '.join(RIG_FORMATS)}"
@@ -276,6 +292,7 @@ def _of_exchange() -> dict[str, OptionRow]:
     }
 
 
+@cache
 def _of_pages() -> dict[str, OptionRow]:
     """What stands on a review page."""
     return {

@@ -18,14 +18,16 @@ from ..jobs import RegionJob, export_study, study_on_region
 from .answers import RegionAnswer
 from .interrupts import Interrupted, stop_at_first
 from .run_job import drive, output_file, print_vehicle, written
+from .study_source import StudyFiles
 from .terminal import BAD_INPUT, DONE, Answer, answered, tell
 
 JSON = ".json"
 STUDY = ".toml"
 
 
-def region(study: Study, args: argparse.Namespace) -> Answer:
+def region(source: StudyFiles, args: argparse.Namespace) -> Answer:
     """Find the free region of a sensor; write its patch, its data, or the next study on it."""
+    study = source.study(args)
     path = output_file(args.output, args)
     _check_suffix(path)
     print_vehicle(study)

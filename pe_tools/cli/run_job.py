@@ -1,11 +1,14 @@
 """Run a job of a verb's options, and keep its results."""
 
+from __future__ import annotations
+
 import argparse
 import signal
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol, TextIO
+from typing import Any, NamedTuple, Protocol, TextIO, TypeAlias
 
 from pe_core.base import dump_json
 from pe_core.base.errors import InputError
@@ -16,7 +19,6 @@ from pe_core.study import REVIEW_PAGE, STUDY, Study
 
 from .. import jobs
 from ..advice import Advice
-from .executors import evaluated_by
 from .front_text import front_summary
 from .interrupts import Interrupted, stop_at_first
 from .progress_line import Reporter
@@ -58,8 +60,8 @@ def save_text(path: Path | None, text: str) -> int:
     return DONE
 
 
-Found = jobs.Outcome | jobs.TradeOff
-Runs = jobs.ScoreJob | jobs.OptimizeJob | jobs.FrontJob
+Found: TypeAlias = "jobs.Outcome | jobs.TradeOff"
+Runs: TypeAlias = "jobs.ScoreJob | jobs.OptimizeJob | jobs.FrontJob"
 
 
 class More(NamedTuple):
@@ -74,6 +76,9 @@ class Host(Protocol):
     """The program around a command line: Blender, or none."""
 
     versions: dict[str, str] | None
+
+    def study(self, args: argparse.Namespace) -> Study:
+        """Return the study of a command line."""
 
     def artifacts(self, study: Study, *, searches: bool) -> Sequence[More]:
         """Return further files of a run; `InputError` where a result could not be kept."""
@@ -92,11 +97,12 @@ def _page(*, is_front: bool) -> More:
     return More([REVIEW_PAGE], lambda *given: shipped("page.search")(*given))
 
 
-def run_study(study: Study, host: Host, args: argparse.Namespace) -> Answer:
+def run_study(host: Host, args: argparse.Namespace) -> Answer:
     """Score or optimize a study, as `args.kind` says, and return what is printed. Results go to the
     folder of ``--output``; with ``--resume`` a search or a front goes on in that folder.
     `InputError`, before the work, where a search has nowhere to keep its result, or a folder cannot
     take the results, or holds the search of another study."""
+    study = host.study(args)
     searches = args.kind == "optimize"
     folder = args.output
     if searches and not (folder or args.resume or args.json):
@@ -141,7 +147,7 @@ def _carried_out(
     if (report := job.study.prior.report(job.study.space)) is not None:  # of labelled boxes
         tell(str(report))
     print_vehicle(job.study)
-    with evaluated_by(job, getattr(args, "executor", None)), stop_at_first(job.stop) as received:
+    with _evaluated_by(job, args), stop_at_first(job.stop) as received:
         found = drive(job, output, host)
         if found is None:
             note = "no score was complete, so nothing was written"
@@ -151,14 +157,24 @@ def _carried_out(
             data = _data_of(found, host)
         else:
             status, data = keep(found, output, host, more, command=args.command_line)
-        text = front_summary(found) if isinstance(found, jobs.TradeOff) else summary(found)
+        text = summary(found) if isinstance(found, jobs.Outcome) else front_summary(found)
         return dump_json(data) if args.json else text, status or received.status(DONE)
 
 
+def _evaluated_by(job: Runs, args: argparse.Namespace) -> AbstractContextManager[None]:
+    """Have the workers that are asked for evaluate a job's candidates meanwhile; a score has
+    none."""
+    if isinstance(job, jobs.ScoreJob):
+        return nullcontext()
+    from .executors import evaluated_by
+
+    return evaluated_by(job, args.executor)
+
+
 def _data_of(found: Found, host: dict[str, str] | None) -> Data:
-    if isinstance(found, jobs.TradeOff):
-        return jobs.front_dict(found, host)
-    return jobs.result_dict(found, host)
+    if isinstance(found, jobs.Outcome):
+        return jobs.result_dict(found, host)
+    return jobs.front_dict(found, host)
 
 
 def print_vehicle(study: Study) -> None:
@@ -210,12 +226,12 @@ def keep(
     def write(folder: Path) -> None:
         nonlocal data
         jobs.prepare_folder(folder, names)  # the user may have added a file meanwhile
-        if isinstance(found, jobs.TradeOff):
-            data = jobs.write_front(found, folder, host)
-        else:
+        if isinstance(found, jobs.Outcome):
             data = jobs.write_outcome(found, folder, host, names)
             if more:  # pages show the command that repeats the run
                 data["run"] = {**data["run"], "command": command}
+        else:
+            data = jobs.write_front(found, folder, host)
         for each in more:
             each.write(found, data, folder)
 

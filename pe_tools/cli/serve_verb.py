@@ -24,7 +24,7 @@ from ..sweep import SOURCE, changed_study, read_changes
 from .answers import ReplyError, ServeReply, SessionState
 from .command import Parser, file_error
 from .interrupts import FATAL
-from .options import OptionRow, options
+from .options import OptionRow, option
 from .study_source import StudyFiles, naming_study, with_changes
 from .terminal import BAD_INPUT, DONE, USAGE, Answer, one_line, printable, show
 
@@ -122,12 +122,11 @@ class Session:
         }
         self._parser = _RequestParser(prog=REQUEST)
         verbs = self._parser.add_subparsers(required=True, metavar="VERB")
-        known = options()
         self._verbs: dict[str, dict[str, OptionRow]] = {}
         for verb in rows:
             verb.add(verbs, self._source)
             names = verb.options.replace("|", " ").split()
-            flags = (known[name] for name in names)
+            flags = (option(name) for name in names)
             self._verbs[verb.name] = {row.flags[-1].lstrip(OPTION): row for row in flags}
 
     def reply(self, line: bytes) -> ServeReply:
@@ -196,9 +195,9 @@ class Session:
         return SessionState(self._source.name, study.vehicle_line, placements(study.rig, study))
 
 
-def serve(source: StudyFiles, rows: Sequence[ServedVerb]) -> Answer:
+def serve(source: StudyFiles, args: argparse.Namespace) -> Answer:
     """Answer requests until standard input ends. A request that fails ends nothing."""
-    session = Session(source, [row for row in rows if row.name in SERVED])
+    session = Session(source, [row for row in args.rows if row.name in SERVED])
     out = source.out or sys.stdout
     for line in _lines(sys.stdin):
         reply = session.reply(line)

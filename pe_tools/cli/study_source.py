@@ -1,5 +1,7 @@
 """Where a command line's studies come from: from files, or in Blender from the open scene."""
 
+from __future__ import annotations
+
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
@@ -15,8 +17,8 @@ from pe_core.base.table_reader import parse_json
 from pe_core.search.goals import Start
 from pe_core.study import RESULT, STUDY, StateInWeather, Study, load_study, load_study_data
 
+from .. import jobs
 from ..advice import Advice
-from ..jobs import Job, export_study, read_search, stored_result
 from ..known_defects import mended_since
 from ..sweep import KeyChange, changed_study, read_changes
 from .run_job import More
@@ -64,7 +66,7 @@ class StudyFiles:
             return self._read(args.study, changes, args)
         if getattr(args, "resume", None) is None:
             args.usage_error("expected STUDY")
-        return self.changed(read_search(args.resume).study, args, args.resume)
+        return self.changed(jobs.read_search(args.resume).study, args, args.resume)
 
     def studies(self, args: argparse.Namespace) -> dict[str, Study]:
         """Return the studies of a command line by name, with the changes of its options."""
@@ -107,9 +109,9 @@ class StudyFiles:
     def stored_result(self, study: Study, args: argparse.Namespace) -> Mapping[str, Any] | None:
         """Return the result beside the study's file; None where it is not of this study."""
         path = getattr(args, "study", None)
-        return None if path is None else stored_result(Path(path).parent, study)
+        return None if path is None else jobs.stored_result(Path(path).parent, study)
 
-    def share_evaluators(self, job: Job) -> None:
+    def share_evaluators(self, job: jobs.Job) -> None:
         """Give a job the evaluators of earlier ones: none here, a command has one job."""
 
 
@@ -165,7 +167,7 @@ def with_changes(study: Study, changes: Sequence[KeyChange], source: str) -> Stu
         vehicle = None
     with TemporaryDirectory() as name, not_noting_inputs():
         folder = Path(name)
-        export_study(study, folder / STUDY, with_mesh=vehicle is None)
+        jobs.export_study(study, folder / STUDY, with_mesh=vehicle is None)
         data = load_study_data(folder / STUDY)
         changed = changed_study(
             data, changes, source, folder, starts_anywhere=True, vehicle=vehicle

@@ -1,5 +1,7 @@
 """Output of the command line: safe printing, messages, exit statuses, an outcome in a few lines."""
 
+from __future__ import annotations
+
 import argparse
 import os
 import sys

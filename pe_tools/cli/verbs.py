@@ -1,54 +1,28 @@
 """The command ``pe``: a row for each of its verbs. Blender's command has the same rows, with the
 open scene as the source of studies."""
 
+from __future__ import annotations
+
 import argparse
 import sys
 from collections.abc import Callable, Sequence
-from functools import partial
-from importlib.metadata import EntryPoint
-from typing import Any, NamedTuple
+from functools import partial, reduce
+from operator import or_
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pe_core.base.errors import InputError
 from pe_core.base.lazy_threads import threads
-from pe_core.base.plugins import call_plugin, find_plugins, load_plugin, plugin_name, shipped
+from pe_core.base.plugins import call_plugin, find_plugins, load_plugin, plugin_name
 
-from ..jobs import FrontRecord, ResultRecord
 from ..versions import versions_text
-from .answers import (
-    BuiltAnswer,
-    CatalogAnswer,
-    CheckAnswer,
-    CompareAnswer,
-    CurvesAnswer,
-    ExplainAnswer,
-    FilesAnswer,
-    KeysAnswer,
-    PresetsAnswer,
-    RegionAnswer,
-    RigsAnswer,
-    SensorAnswer,
-    ServeReply,
-    SweepAnswer,
-    VerifyAnswer,
-    WhereAnswer,
-)
-from .built_verb import compare_all
-from .catalog_verb import show_sensors
-from .check_verb import check
 from .command import Parser, as_typed, run
 from .description import described
-from .exchange_verbs import export, import_study
-from .explain_verbs import explain
-from .new_verb import new
 from .options import add_options
-from .region_verb import region
-from .run_job import run_study
-from .serve_verb import serve
-from .set_verb import set_keys
 from .study_source import FILE, FILES, NONE, ONE, PERHAPS, SOME, StudyFiles
-from .sweep_verb import sweep
 from .terminal import EXIT_STATUSES, Answer, open_missing_streams, tell
-from .where_verb import where
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 VerbFunction = Callable[[Any, argparse.Namespace], Answer]
 """Of where studies come from (`StudyFiles`, a scene's) and the arguments."""
@@ -64,26 +38,47 @@ SEARCH = "evaluations seed method"
 
 class Verb(NamedTuple):
     """A verb: its name, its group in the help, its meaning; what it takes (`study_source`), the
-    names of its rows in `options`, beside ``--json``, what it does, and the type of what it prints
-    as JSON (`answers`)."""
+    names of its rows in `options`, beside ``--json``, what it does, and the types of what it prints
+    as JSON. `function` and `prints` may be names on the face of this room: a verb loads its own."""
 
     name: str
     group: str
     about: str
     takes: str
     options: str
-    function: VerbFunction
-    answer: Any
+    function: str | VerbFunction
+    prints: Any
 
-    def add(self, verbs: Any, source: StudyFiles) -> Parser:
-        """Add the verb to the parser of a command; return its own parser."""
+    @property
+    def answer(self) -> Any:
+        """The type of what it prints with ``--json``."""
+        if isinstance(self.prints, str):
+            return reduce(or_, map(_on_face, self.prints.split()))
+        return self.prints
+
+    def call(self, source: StudyFiles, args: argparse.Namespace) -> Answer:
+        """Return what the verb answers."""
+        work = _on_face(self.function) if isinstance(self.function, str) else self.function
+        found: Answer = work(source, args)
+        return found
+
+    def add(self, verbs: Any, source: StudyFiles, *, is_asked: bool = True) -> Parser:
+        """Add the verb to the parser of a command; return its own parser. One that is not asked for
+        has no arguments."""
         parser: Parser = verbs.add_parser(self.name, help=self.about)
+        if not is_asked:
+            return parser
         source.add_arguments(parser, self.takes)
         add_options(parser, f"{self.options} json")
         parser.set_defaults(
-            function=self.function, kind=self.name, source=source, usage_error=parser.error
+            function=self.call, kind=self.name, source=source, usage_error=parser.error
         )
         return parser
+
+
+def _on_face(name: str) -> Any:
+    """Return what a name on the face of this room is of; it is loaded now."""
+    return getattr(sys.modules[__package__], name)
 
 
 class _InGroups(argparse.HelpFormatter):
@@ -105,7 +100,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     open_missing_streams()
     threads().keep_freed_memory()
     given = sys.argv[1:] if argv is None else argv
-    return run(lambda: answer(parser().parse_args(given), "pe", given))
+    return run(lambda: answer(parser(given).parse_args(given), "pe", given))
 
 
 def answer(args: argparse.Namespace, prog: str, argv: Sequence[str]) -> Answer:
@@ -120,18 +115,25 @@ def answer(args: argparse.Namespace, prog: str, argv: Sequence[str]) -> Answer:
     return found
 
 
-def parser() -> argparse.ArgumentParser:
-    """Return the parser of ``pe``."""
-    top, verbs = command_parser("pe", versions_text(), VERBS, StudyFiles())
-    for plugin in find_plugins("verb"):
+def parser(argv: Sequence[str] = ()) -> argparse.ArgumentParser:
+    """Return the parser of ``pe``, as `command_parser` does."""
+    top, verbs = command_parser("pe", versions_text(), VERBS, StudyFiles(), argv)
+    is_own = bool(_asked(VERBS, argv))
+    for plugin in () if is_own else find_plugins("verb"):
         _add_plugin_verbs(plugin, verbs)
     return top
 
 
 def command_parser(
-    prog: str, version: str, rows: Sequence[Verb], source: StudyFiles
+    prog: str, version: str, rows: Sequence[Verb], source: StudyFiles, argv: Sequence[str] = ()
 ) -> tuple[argparse.ArgumentParser, Any]:
-    """Return the parser of a command with these verbs, and its action that takes further ones."""
+    """Return the parser of a command with these verbs, and its action that takes further ones.
+
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        The command line, if it is known: where it begins with a verb, no other verb has arguments.
+    """
     statuses = "; ".join(f"{number} {meaning}" for number, meaning in EXIT_STATUSES.items())
     top = Parser(
         prog=prog,
@@ -140,12 +142,19 @@ def command_parser(
         epilog=f"Exit status: {statuses}. Manual: docs/index.md of the source.",
     )
     top.add_argument("--version", action="version", version=version)
+    top.set_defaults(rows=rows)  # a session has some of them
     verbs = top.add_subparsers(required=True, metavar="VERB")
-    parsers = [(verb, verb.add(verbs, source)) for verb in rows]
+    asked = _asked(rows, argv) or rows
+    parsers = [(verb, verb.add(verbs, source, is_asked=verb in asked)) for verb in rows]
     for pair in parsers:
         pair[1].described = partial(described, prog, version, [pair])
     top.described = partial(described, prog, version, parsers)
     return top, verbs
+
+
+def _asked(rows: Sequence[Verb], argv: Sequence[str]) -> list[Verb]:
+    """Return the verb that a command line begins with; none where it begins with another word."""
+    return [verb for verb in rows if list(argv[:1]) == [verb.name]]
 
 
 def _add_plugin_verbs(point: EntryPoint, verbs: Any) -> None:
@@ -162,32 +171,6 @@ def _add_plugin_verbs(point: EntryPoint, verbs: Any) -> None:
         tell(f"{error}; its verbs are missing")
 
 
-def _review(source: StudyFiles, args: argparse.Namespace) -> Answer:
-    page: Answer = shipped("page.review")(source.studies(args), args, source.versions)
-    return page
-
-
-def _verify(source: StudyFiles, args: argparse.Namespace) -> Answer:
-    found: Answer = shipped("verify.engine")(args, source.versions)
-    return found
-
-
-def _job(source: StudyFiles, args: argparse.Namespace) -> Answer:
-    return run_study(source.study(args), source, args)
-
-
-def _serve(source: StudyFiles, _: argparse.Namespace) -> Answer:
-    return serve(source, VERBS)
-
-
-def _where(source: StudyFiles, args: argparse.Namespace) -> Answer:
-    return where(source.study(args), args)
-
-
-def _region(source: StudyFiles, args: argparse.Namespace) -> Answer:
-    return region(source.study(args), args)
-
-
 VERBS = (
     Verb(
         "new",
@@ -195,8 +178,8 @@ VERBS = (
         "write a first study of a vehicle's mesh, or of a known rig",
         NONE,
         options="mesh_file rig placement set_found study_file replace",
-        function=new,
-        answer=FilesAnswer | RigsAnswer,
+        function="new",
+        prints="FilesAnswer RigsAnswer",
     ),
     Verb(
         "set",
@@ -204,8 +187,8 @@ VERBS = (
         "change keys of a study file; its comments stay",
         FILE,
         options="changes",
-        function=set_keys,
-        answer=KeysAnswer,
+        function="set_keys",
+        prints="KeysAnswer",
     ),
     Verb(
         "import",
@@ -213,8 +196,8 @@ VERBS = (
         "make a study of another program's rig",
         NONE,
         options="foreign_file from models origin mesh rear_axle study_file replace",
-        function=import_study,
-        answer=FilesAnswer,
+        function="import_study",
+        prints="FilesAnswer",
     ),
     Verb(
         "sensors",
@@ -222,8 +205,8 @@ VERBS = (
         "list the catalogue, or show one sensor",
         NONE,
         options="sensor_name curves",
-        function=show_sensors,
-        answer=CatalogAnswer | SensorAnswer | CurvesAnswer,
+        function="show_sensors",
+        prints="CatalogAnswer SensorAnswer CurvesAnswer",
     ),
     Verb(
         "score",
@@ -231,8 +214,8 @@ VERBS = (
         "score a study's rig",
         ONE,
         options=f"{COMMON} workers folder",
-        function=_job,
-        answer=ResultRecord,
+        function="run_study",
+        prints="ResultRecord",
     ),
     Verb(
         "explain",
@@ -240,8 +223,8 @@ VERBS = (
         "a study's score in words, one place of it, or the steepest way of a sensor",
         ONE,
         options=f"at body heading suggest class of_sensor measured_from {COMMON} workers",
-        function=explain,
-        answer=ExplainAnswer,
+        function="explain",
+        prints="ExplainAnswer",
     ),
     Verb(
         "check",
@@ -249,8 +232,8 @@ VERBS = (
         "hold a study to its requirements; 3: some are not met",
         PERHAPS,
         options="preset stories list suggest set file replace",
-        function=check,
-        answer=CheckAnswer | PresetsAnswer,
+        function="check",
+        prints="CheckAnswer PresetsAnswer",
     ),
     Verb(
         "compare",
@@ -258,8 +241,8 @@ VERBS = (
         "score several studies and put them side by side, or a built rig and its design",
         SOME,
         options=f"beside built from rear_axle origin {COMMON} workers",
-        function=compare_all,
-        answer=CompareAnswer | BuiltAnswer,
+        function="compare_all",
+        prints="CompareAnswer BuiltAnswer",
     ),
     Verb(
         "where",
@@ -267,8 +250,8 @@ VERBS = (
         "score one more sensor all over the vehicle's surface",
         ONE,
         options="model of_part|mount figure places set workers file replace",
-        function=_where,
-        answer=WhereAnswer,
+        function="where",
+        prints="WhereAnswer",
     ),
     Verb(
         "region",
@@ -276,8 +259,8 @@ VERBS = (
         "tell where a sensor may go while a figure loses little",
         ONE,
         options="sensor figure loss others places set snap workers region_file replace",
-        function=_region,
-        answer=RegionAnswer,
+        function="region",
+        prints="RegionAnswer",
     ),
     Verb(
         "optimize",
@@ -285,8 +268,8 @@ VERBS = (
         "search for a better placement",
         PERHAPS,
         options=f"{COMMON} {SEARCH} start snap workers executor folder|resume no_review",
-        function=_job,
-        answer=ResultRecord | FrontRecord,
+        function="run_study",
+        prints="ResultRecord FrontRecord",
     ),
     Verb(
         "sweep",
@@ -295,8 +278,8 @@ VERBS = (
         FILES,
         options="try samples condition evaluations seed method optimize part workers executor "
         "required_folder",
-        function=sweep,
-        answer=SweepAnswer,
+        function="sweep",
+        prints="SweepAnswer",
     ),
     Verb(
         "review",
@@ -305,8 +288,8 @@ VERBS = (
         SOME,
         options=f"title author date revision regions built from rear_axle origin {COMMON} "
         "workers required_folder replace",
-        function=_review,
-        answer=FilesAnswer,
+        function="review",
+        prints="FilesAnswer",
     ),
     Verb(
         "export",
@@ -314,8 +297,8 @@ VERBS = (
         "write a rig or scene for another program, or a copy",
         ONE,
         options="to range origin rear_axle set path into replace",
-        function=export,
-        answer=FilesAnswer,
+        function="export",
+        prints="FilesAnswer",
     ),
     Verb(
         "serve",
@@ -323,8 +306,8 @@ VERBS = (
         "answer requests of another program: JSON lines on standard input and output",
         NONE,
         options="",
-        function=_serve,
-        answer=ServeReply,
+        function="serve",
+        prints="ServeReply",
     ),
     Verb(
         "verify",
@@ -332,7 +315,7 @@ VERBS = (
         "hold the engine as it is installed to its golden cases; 3: some fail",
         NONE,
         options="folder",
-        function=_verify,
-        answer=VerifyAnswer,
+        function="verify",
+        prints="VerifyAnswer",
     ),
 )

@@ -14,11 +14,17 @@ from ..wording import aligned
 from .answers import WhereAnswer
 from .interrupts import Interrupted, stop_at_first
 from .run_job import drive, output_file, print_vehicle, save_text
+from .study_source import StudyFiles
 from .terminal import DONE, Answer, answered
 
 
-def where(study: Study, args: argparse.Namespace) -> Answer:
+def where(source: StudyFiles, args: argparse.Namespace) -> Answer:
     """Score one more sensor all over the vehicle's surface, and tell the best places."""
+    return where_study(source.study(args), args)
+
+
+def where_study(study: Study, args: argparse.Namespace) -> Answer:
+    """Score one more sensor all over the vehicle's surface of a study."""
     table = output_file(args.output, args)
     models = {each.model.name: each.model for each in study.rig}
     model = models.get(args.model) or catalog.load(args.model)

@@ -22,8 +22,8 @@ from .folder import PROGRAM
 from .front_files import write_front
 from .front_job import FrontJob, FrontJournals
 from .job import Job
+from .optimize_job import OptimizeJob
 from .results import SearchState
-from .score_and_optimize import OptimizeJob
 from .study_export import fingerprint
 
 EXPECTED = "the state of a search, as this program writes it"

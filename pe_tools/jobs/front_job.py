@@ -42,7 +42,7 @@ from .front_objectives import (
     weights_of,
 )
 from .job import Job, Progress, ProgressSteps
-from .score_and_optimize import OptimizeJob
+from .optimize_job import OptimizeJob
 from .trade_off import Design, TradeOff, design_names, design_study
 
 ALL_SEARCHED_UP_TO = 16

@@ -18,8 +18,7 @@ from pe_core.study.mounting_file import areas_mesh, areas_of, with_areas_in
 from pe_core.study.study import Study
 from pe_core.study.study_file import study_bytes, study_to_dict
 
-from ..formats.boxes import write_boxes
-from ..formats.meshes import Mesh, write_mesh
+from .. import formats
 from .folder import FileSet, Write
 
 
@@ -58,19 +57,19 @@ def study_writers(study: Study, name: str, *, with_mesh: bool = True) -> dict[st
     writers = dict[str, Write | bytes]()
     if study.vehicle is not None:
         vehicle = study.vehicle
-        mesh = Mesh(vehicle.triangles, np.asarray(vehicle.parts), tuple(vehicle.part_names))
+        mesh = formats.Mesh(vehicle.triangles, np.asarray(vehicle.parts), tuple(vehicle.part_names))
         study = study.with_mesh(MESH if name == STUDY else path.with_suffix(".npz").name)
         if with_mesh:
-            writers[str(study.mesh)] = lambda at: write_mesh(at, mesh)
+            writers[str(study.mesh)] = lambda at: formats.write_mesh(at, mesh)
     search = study.search
     if (areas := areas_mesh(search.mounting)) is not None:
         file = AREAS if name == STUDY else path.with_suffix(f".{AREAS}").name
-        writers[file] = lambda at: write_mesh(at, areas)
+        writers[file] = lambda at: formats.write_mesh(at, areas)
         search = replace(search, mounting=with_areas_in(search.mounting, file))
         study = replace(study, search=search)
     if (boxes := study.prior.boxes) is not None:
         table = BOXES if name == STUDY else path.with_suffix(f".{BOXES}").name
-        writers[table] = lambda at: write_boxes(at, boxes)
+        writers[table] = lambda at: formats.write_boxes(at, boxes)
         named = replace(boxes, file=table, origin=None)
         study = replace(study, prior=replace(study.prior, boxes=named))
     if (grid := study.prior.grid) is not None:

@@ -38,7 +38,7 @@ class Answer(NamedTuple):
     stderr: str
 
 
-def run_here(blend, *arguments) -> Answer:
+def run_here(blend, arguments) -> Answer:
     """``python -m blender_addon FILE VERB`` in this process; the file is open afterwards, as saved.
 
     Objects of the scene that was open before are gone.
@@ -53,7 +53,7 @@ def run_here(blend, *arguments) -> Answer:
     return Answer(status, out.getvalue(), err.getvalue())
 
 
-def pe_here(*arguments) -> Answer:
+def pe_here(arguments) -> Answer:
     """``pe VERB`` in this process."""
     out = io.StringIO()
     err = io.StringIO()
@@ -62,17 +62,17 @@ def pe_here(*arguments) -> Answer:
     return Answer(status, out.getvalue(), err.getvalue())
 
 
-def command(blend, *arguments) -> list[str]:
+def command(blend, arguments) -> list[str]:
     """The command as a user types it."""
     return [sys.executable, "-m", "blender_addon", *map(str, (blend, *arguments))]
 
 
-def run_alone(blend, *arguments) -> Answer:
+def run_alone(blend, arguments) -> Answer:
     """``python -m blender_addon FILE VERB`` in a process of its own."""
     # The bpy of this process has set OCIO; another one would tell of it on stdout.
     env = {key: value for key, value in os.environ.items() if key != "OCIO"}
     options = {"capture_output": True, "text": True, "timeout": HANG_S}
-    answer = subprocess.run(command(blend, *arguments), cwd=ROOT, env=env, **options)
+    answer = subprocess.run(command(blend, arguments), cwd=ROOT, env=env, **options)
     return Answer(answer.returncode, answer.stdout, answer.stderr)
 
 

@@ -97,12 +97,3 @@ def test_a_wipe_shows_the_ground_of_both_variants_as_each_alone_is_shown(two):
     maps = [both["ground"][name] for name in (layers.WHOLE_RIG, layers.OTHER_RIG)]
     assert maps[0].legend == maps[1].legend, "both in the same colours"
     assert not np.array_equal(maps[0].sheet.mesh[1], maps[1].sheet.mesh[1])
-
-
-def test_the_scene_marks_the_place_that_was_asked_about(two):
-    assert "place" not in scenes.drawn(two)
-    bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0))
-    shape = scenes.drawn(two)["place"][layers.WHOLE_RIG]
-    assert shape.labels and shape.labels[0].place[:2] == pytest.approx((6.05, 3.05))
-    bpy.ops.pe.dismiss(answer="QUERY")
-    assert "place" not in scenes.drawn(two)

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import bpy
 import numpy as np
 import pytest
 from mathutils import Vector
@@ -51,15 +50,6 @@ def test_its_squares_and_its_blind_area_are_the_engine_s(seen):
     assert "birds_eye" not in scenes.drawn(seen), "a rig without cameras"
 
 
-def test_rectangles_fill_the_squares_and_no_other(seed=3):
-    """Ahead is up, left is left: as the ground is seen from above by one who looks ahead."""
-    squares = np.random.default_rng(seed).random((9, 7)) > 0.5
-    low, high = rectangles(squares).reshape(-1, 6, 2)[:, [0, 2]].transpose(1, 0, 2)
-    for i, j in np.ndindex(squares.shape):
-        middle = np.array([1.0 - (j + 0.5) / 7, (i + 0.5) / 9])
-        assert ((low < middle) & (middle < high)).all(axis=1).sum() == squares[i, j]
-
-
 @pytest.mark.parametrize("model", ["KITTI cam2", "WoodScape surround view"])
 def test_what_lies_on_a_place_of_the_plate_the_camera_has_in_the_pixel_of_that_place(car, model):
     """The ray through each place of the picture, by the lens: within a pixel of the ground's."""
@@ -81,16 +71,3 @@ def test_what_lies_on_a_place_of_the_plate_the_camera_has_in_the_pixel_of_that_p
             np.testing.assert_allclose(*(camera.projection.project(*r) for r in rays), atol=0.5)
             compared += 1
     assert compared >= 3
-
-
-def test_the_vehicle_is_seen_from_far_above_and_no_camera_from_below_the_ground(seen):
-    plate = replace(PLATE, painted={FROM_ABOVE: np.zeros((6, 2)), "ahead": np.zeros((6, 2))})
-    looks = birds_eye.looks_of(seen, plate)
-    above = looks[FROM_ABOVE]
-    for height in (0.0, 1.5):
-        x, y, _, w = above.projection @ above.camera_from_ground @ Vector((14.0, 9.0, height, 1.0))
-        assert (x / w, y / w) == pytest.approx((-1.0, 1.0), abs=0.01 * height + 1e-5)
-    assert looks["ahead"].eye.position == pytest.approx((2.1, 0.0, 0.7))
-    seen.objects["ahead"].location.z = -0.2
-    bpy.context.view_layer.update()
-    assert set(birds_eye.looks_of(seen, plate)) == {FROM_ABOVE}

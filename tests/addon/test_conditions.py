@@ -7,9 +7,7 @@ import bpy
 import numpy as np
 import pytest
 
-import pe_core as pe
 from blender_addon import bridge, result_staleness, vehicle_cache
-from blender_addon.live import shown_score, state
 from tests.addon import scenes
 from tests.engine import shapes
 
@@ -94,18 +92,6 @@ def test_a_shown_state_moves_nothing_that_stands_on_the_ground(car):
     )
 
 
-def test_a_part_that_bends_is_refused_by_name(car):
-    body = bpy.data.objects["body"]
-    body.scale.x = 1.0
-    body.keyframe_insert("scale", frame=1)
-    body.scale.x = 1.1
-    body.keyframe_insert("scale", frame=OPEN_FRAME)
-    car.frame_set(OPEN_FRAME)
-    with pytest.raises(RuntimeError, match="part 'body': expected a rigid motion"):
-        bpy.ops.pe.add_row(rows="states")
-    assert not car.perception_entropy.states and car.frame_current == OPEN_FRAME
-
-
 def idle():
     bpy.context.view_layer.update()
     result_staleness.update_result()
@@ -168,20 +154,3 @@ def test_a_search_places_sensors_as_drawn_in_whatever_state_is_shown(car):
     idle()
     assert not settings.result_stale
     assert mirror.matrix_world.translation[:2] == pytest.approx((0.6, 0.97), abs=1e-4)
-
-
-def test_the_stored_score_is_not_shown_as_that_of_another_state(car):
-    settings = scored_with_a_state(car)
-    live = state.live_state(car.name)
-    settings.live.on = True
-    summary = pe.Score(
-        entropy=2.5, coverage=0.5, stderr=0.01, per_class={}, per_zone={}, per_sensor={}, voxels=10
-    )
-    live.put(state.LiveScore(summary, baseline=None, exact=True, rig=None, number=live.requests))
-    assert shown_score(car).stored
-    car.frame_set(OPEN_FRAME)
-    idle()
-    live.put(state.LiveScore(summary, baseline=None, exact=True, rig=None, number=live.requests))
-    found = shown_score(car)
-    assert (found.entropy, found.stored, found.state) == (2.5, False, "door open")
-    assert not settings.result_stale

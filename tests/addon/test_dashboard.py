@@ -8,7 +8,7 @@ import bpy
 import pytest
 
 from blender_addon import bridge, engine_calls
-from blender_addon.engine import pe, search, studies
+from blender_addon.engine import pe, search
 from blender_addon.operators import known_rigs
 from blender_addon.panels import CLASSES, dashboard, layout, main
 from tests.addon import layouts, scenes
@@ -72,13 +72,6 @@ def test_what_is_wanted_is_met_or_not_and_is_the_study_s(car):
     assert row["met"] and not row["kept"]
     settings.limit_blind_ground = -100.0  # no limit: a lower number is none, 0 may be one
     assert scenes.study().limits == search.Limits(blind_sector=True, ap_near=True)
-
-
-def test_limits_that_are_written_are_those_that_are_read(car):
-    shown_only = search.Limit(-1.5, kept=False)
-    limits = search.Limits(blind_sector=0, reach=True, ap_far=0.25, height=2.5, entropy=shown_only)
-    bridge.put(car.perception_entropy, ("limits",), studies.write(limits))
-    assert scenes.study().limits == limits
 
 
 def test_a_good_score_is_told_by_the_known_rigs_on_this_body(car):

@@ -100,7 +100,7 @@ def test_the_demo_searches_by_default_for_a_lidar_and_a_camera(addon, tmp_path):
     options.remove("--set")
     few = ("--evaluations", "5", "--samples", "1024", "--workers", "1")
     few += ("--set", "optimize.samples=1024")
-    answer = run_here(start, "optimize", *options, *few, "--no-review", "--output", tmp_path)
+    answer = run_here(start, ["optimize", *options, *few, "--no-review", "--output", tmp_path])
     assert answer.returncode == 0, answer.stderr
     result = json.loads((tmp_path / "result.json").read_text("utf-8"))
     assert result["method"] == search.DEFAULT_METHOD

@@ -6,10 +6,9 @@ import bpy
 import pytest
 
 from blender_addon import bridge
-from blender_addon.engine import exchange, pe, studies
+from blender_addon.engine import pe, studies
 from pe_tools.cli.verbs import main
 from tests.addon import scenes
-from tests.addon.command_line import run_here
 from tests.engine.test_merging import CARLA
 
 AXLE = pe.Reference(-1.31, 0.33, 2.8)
@@ -59,17 +58,6 @@ def test_a_bad_file_changes_nothing(car, tmp_path):
     assert not car.perception_entropy.variants
 
 
-def test_the_command_in_blender_writes_a_rig(axled, tmp_path):
-    path = tmp_path / "car.blend"
-    bpy.ops.wm.save_as_mainfile(filepath=str(path))
-    answer = run_here(path, "export", "--to", "autoware", "-o", tmp_path / "kit")
-    assert answer.returncode == 0, answer.stderr
-    bpy.ops.pe.export_rig(filepath=str(tmp_path / "panel"), format="autoware")
-    for name in exchange.rig_format("autoware").files:
-        from_panel = (tmp_path / "panel" / name).read_bytes()
-        assert (tmp_path / "kit" / name).read_bytes() == from_panel
-
-
 def test_what_a_file_has_besides_its_rig_stays_in_it(axled, tmp_path, capfd):
     """A collision sensor is named, and is in the file into which the rig goes: by the dialog that
     replaces it, by `into`, and by the command."""
@@ -91,36 +79,3 @@ def test_what_a_file_has_besides_its_rig_stays_in_it(axled, tmp_path, capfd):
     assert json.loads(objects.read_text()) == CARLA
     main(["export", str(study), "--into", str(objects), "-o", str(tmp_path / "command.json")])
     assert (tmp_path / "command.json").read_bytes() == out.read_bytes()
-
-
-def test_openusd_is_the_same_from_panel_and_command_and_comes_back(axled, tmp_path):
-    """Rig, vehicle, figures and verdicts; the import is a variant at the same places."""
-    blend = tmp_path / "car.blend"
-    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
-    path = tmp_path / "panel" / "rig.usda"
-    path.parent.mkdir()
-    assert bpy.ops.pe.export_rig(filepath=str(path)) == {"FINISHED"}
-    answer = run_here(blend, "export", "--to", "usd", "-o", tmp_path / "command" / "rig.usda")
-    assert answer.returncode == 0, answer.stderr
-    for name in ("rig.usda", "vehicle.usda"):
-        from_command = (tmp_path / "command" / name).read_bytes()
-        assert (path.parent / name).read_bytes() == from_command
-    assert 'dictionary "entropy"' in path.read_text()
-    assert bpy.ops.pe.score() == {"FINISHED"}
-    settings = bpy.context.scene.perception_entropy
-    result = json.loads(settings.result_json)
-    settings.result_json = json.dumps(result | {"after": result["after"] | {"coverage": 0.125}})
-    stored = '"coverage" = 0.125'
-    assert stored not in path.read_text()
-    assert bpy.ops.pe.export_rig(filepath=str(path), replace=True) == {"FINISHED"}
-    assert stored in path.read_text()
-    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
-    again = tmp_path / "again.usda"
-    answer = run_here(blend, "export", "--to", "usd", "-o", again)
-    assert answer.returncode == 0 and stored in again.read_text(), answer.stderr
-    before = scenes.study().rig
-    assert bpy.ops.pe.import_rig(filepath=str(path)) == {"FINISHED"}
-    for ours, theirs in zip(before, scenes.study().rig, strict=True):
-        assert theirs.name == ours.name and theirs.model.name == ours.model.name
-        assert theirs.pose.position == pytest.approx(ours.pose.position, abs=1e-6)
-        assert theirs.pose.rpy == pytest.approx(ours.pose.rpy, abs=1e-6)

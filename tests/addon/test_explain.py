@@ -6,10 +6,9 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import bridge, diagnostics, location_query, panels
+from blender_addon import bridge, diagnostics, location_query
 from blender_addon.engine import advice
 from tests.addon import scenes
-from tests.addon.layouts import Window, drawn
 
 
 def told(scene):
@@ -71,17 +70,6 @@ def test_a_vehicle_that_lies_along_y_is_turned_with_the_sensor_on_it(car):
     assert high[0] - low[0] == pytest.approx(4.0, abs=1e-4)
     np.testing.assert_allclose(car.objects["roof"].location, turn @ before, atol=1e-5)
     assert ("", "faces") not in told(car)
-
-
-def test_words_are_the_engines(car):
-    bpy.ops.pe.score()
-    study = scenes.study()
-    score = study.evaluator().score(study.rig)
-    told = diagnostics.explanation(car)
-    assert told.rig == advice.rig_words(score)
-    shares = advice.occluded_shares(study.rig["roof"], score.per_sensor["roof"], study.vehicle)
-    assert dict(told.rows["roof"].occluded_by) == pytest.approx(shares)
-    assert shares, "a score without a part in the way proves nothing here"
 
 
 def test_a_place_is_asked_as_the_engine_does(car):
@@ -156,16 +144,3 @@ def test_a_vehicle_that_is_out_of_the_view_is_reported_by_name_and_can_be_shown(
     assert bpy.ops.pe.mend(fix=advice.fix) == {"FINISHED"}
     assert scenes.study().vehicle is not None
     assert not [each for each in bridge.scene_advice(car) if each.code == "hidden_vehicle"]
-
-
-def test_panels_show_words_warnings_and_the_place(car):
-    car.objects["roof"].location.z = 3.0
-    bpy.context.view_layer.update()
-    bpy.ops.pe.score()
-    bpy.ops.pe.ask_place(point=(6.0, 3.0, 0.0))
-    window = Window(car, car.objects["roof"])
-    shown = drawn(panels.score_details.explain, **vars(window))
-    text = " ".join(shown.texts("label"))
-    assert "clear of the vehicle" in text
-    assert "of where objects are is seen" in text.replace("  ", " ")
-    assert "Ask" not in text and "pe.ask_place" in shown.texts("operator")

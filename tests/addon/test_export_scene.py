@@ -7,7 +7,6 @@ from mathutils import Vector
 
 from blender_addon.engine import outputs
 from tests.addon import scenes
-from tests.addon.command_line import run_here
 
 
 @pytest.fixture
@@ -56,13 +55,3 @@ def test_blender_imports_sensors_where_they_stood(seen, tmp_path):
     assert tuple(ahead) == pytest.approx(forward, abs=1e-5)
     assert tuple(up) == pytest.approx(above, abs=1e-5)
     assert view.data.angle_y == pytest.approx(rig["eye"].model.vfov, abs=1e-5)
-
-
-def test_the_command_in_blender_writes_the_same(seen, tmp_path):
-    path = exported(tmp_path, "gltf", range_m=5.0)
-    blend = tmp_path / "car.blend"
-    again = tmp_path / "again.glb"
-    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
-    answer = run_here(blend, "export", "--to", "gltf", "--range", "5", "-o", again)
-    assert answer.returncode == 0, answer.stderr
-    assert again.read_bytes() == path.read_bytes()

@@ -10,16 +10,6 @@ from blender_addon.engine import formats, pe
 
 INF = math.inf
 CLASSES = ("car", "pedestrian", "cyclist", "truck", "cone")
-ALL = (-INF, INF)
-AREAS = {
-    "everywhere": [(ALL, ALL)],
-    "front": [((0.0, INF), ALL)],
-    "rear": [((-INF, 0.0), ALL)],
-    "left": [(ALL, (0.0, INF))],
-    "right": [(ALL, (-INF, 0.0))],
-    "far": [((-INF, -40.0), ALL), ((40.0, INF), ALL)],
-    "custom": [((-80.0, 80.0), (-40.0, 40.0))],
-}
 LABELS = "class,x,y,z,length,width,height,yaw\ncar,20,3,0.8,4,2,1.6,0\ntram,-30,5,1.5,20,2.5,3,90\n"
 IMPOSSIBLE = {
     "x: expected two numbers, low before high, found [5.0, 5.0]": {"x_range": (5.0, 5.0)},
@@ -53,13 +43,6 @@ def test_new_row_doubles_the_front_for_all_classes(scene):
     assert bridge.prior_from_scene(scene).focus == (pe.Focus(2.0, x=(0.0, INF)),)
 
 
-@pytest.mark.parametrize("region", AREAS)
-def test_region_is_the_engines_focus(scene, region):
-    add_focus(scene, region, factor=0.5)
-    expected = tuple(pe.Focus(0.5, x, y) for x, y in AREAS[region])
-    assert bridge.prior_from_scene(scene).focus == expected
-
-
 @pytest.mark.parametrize("message", IMPOSSIBLE)
 def test_impossible_focus_is_one_line_that_names_it(car, message):
     add_focus(car)
@@ -80,14 +63,3 @@ def test_labelled_boxes(scene, labels):
     prior = bridge.prior_from_scene(scene)
     assert prior == pe.Prior.from_boxes(formats.read_boxes(labels), [pe.Focus(2.0, x=(0.0, INF))])
     assert prior.class_names == ("car", "tram")
-
-
-def test_boxes_are_part_of_the_signature_when_they_are_used(scene):
-    settings = scene.perception_entropy
-    road = bridge.fingerprint(scene).text
-    settings.boxes = "a.csv"
-    assert bridge.fingerprint(scene).text == road
-    settings.prior = "boxes"
-    first = bridge.fingerprint(scene).text
-    settings.boxes = "b.csv"
-    assert len({road, first, bridge.fingerprint(scene).text}) == 3

@@ -5,10 +5,9 @@ import numpy as np
 import pytest
 
 import pe_tools as pt
-from blender_addon import panels, where_map
+from blender_addon import where_map
 from blender_addon.engine import jobs, pe, search
 from tests.addon import scenes
-from tests.addon.layouts import Window, drawn
 
 
 @pytest.fixture(autouse=True)
@@ -35,21 +34,6 @@ def test_the_operator_finds_what_the_engine_finds(asked):
         pass
     assert np.array_equal(found.patch, job.found.patch) and len(found.patch)
     assert found.places == job.found.places
-
-
-def test_the_layer_follows_the_loss_at_once_and_the_panel_tells_it(asked):
-    car, name, found = asked
-    shape = scenes.drawn(car)["region"][""]
-    assert len(shape.faces.points) == 2 * 3 * len(found.patch)  # on both sides of the surface
-    car.perception_entropy.view.region_loss = 1e-6
-    fewer = scenes.drawn(car)["region"][""]
-    assert len(fewer.faces.points) == 2 * 3 * len(found.allowing(1e-6).patch)
-    assert len(fewer.faces.points) < len(shape.faces.points)
-    window = Window(car, car.objects[name])
-    texts = drawn(panels.selected_object.sensor, **vars(window)).texts("operator")
-    assert "pe.free_region" in texts
-    bpy.ops.pe.dismiss(answer="REGION")
-    assert "region" not in scenes.drawn(car)
 
 
 def test_one_click_makes_the_region_the_mount_of_its_sensor(asked, tmp_path):

@@ -48,25 +48,6 @@ def test_how_flat_the_optimum_is_is_told_in_the_scene(asked, monkeypatch):
     assert "1 cm or 1 deg" in "\n".join(diagnostics.explanation(settings.id_data).search)
 
 
-def test_what_a_search_could_not_keep_stays_until_something_moves(asked):
-    """A check of the scene computes its own warnings, and leaves those of the search."""
-
-    def codes():
-        return {row.code for row in settings.result_warnings}
-
-    settings = asked.perception_entropy
-    settings.keep_blind_ground = True
-    settings.limit_blind_ground = 0.0  # one sensor on the roof cannot have it
-    settings.evaluations = 5
-    assert bpy.ops.pe.optimize() == {"FINISHED"}
-    assert not settings.result_stale and "figure" in codes()
-    diagnostics.run_checks()
-    assert "figure" in codes()
-    settings.result_stale = True
-    diagnostics.run_checks()
-    assert "figure" not in codes()
-
-
 def test_goals_of_the_panel_are_those_of_the_study(asked):
     settings = asked.perception_entropy
     assert scenes.study().limits == pe.Limits(blind_ground=True, blind_sector=True)

@@ -9,7 +9,7 @@ import pytest
 from mathutils import Vector
 
 from blender_addon import viewport
-from blender_addon.engine import catalog, graphics, pe
+from blender_addon.engine import catalog
 from blender_addon.operators import place_sensor, placement, surface_pose
 from blender_addon.operators.surface_pose import SurfaceSpot
 from tests.addon import scenes
@@ -55,14 +55,6 @@ def test_what_is_held_changes_nothing_in_the_scene(held, car):
     assert [obj.name for obj in car.objects] == before
 
 
-def test_its_score_is_reported_beside_where_it_stands(held):
-    held.put(ROOF)
-    model, where, distances, score = held.text
-    assert (model, where) == ("Camera 60 deg", "0.05 m from cabin, upright")
-    assert distances == "front 2.300, rear 1.700, on the centre line, ground 1.550 m"
-    assert "nats" in score and "coverage" in score
-
-
 def test_arrow_keys_turn_it_from_the_direction_of_its_place(held):
     held.put(ROOF)
     assert held.angles == (180.0, 0.0), "behind the middle it looks back"
@@ -89,15 +81,3 @@ def test_it_is_drawn_where_it_stands_and_as_it_is_turned(held):
     assert pinhole.sum() >= 4  # the frustum's edges begin there
     held.stand(surface_pose.Stance(0.05, along_normal=True))
     assert held.lines.points[:, 2].max() > place[2] + 1.5  # it looks up now
-
-
-def test_the_shape_is_worked_out_in_the_sensor_s_own_frame(car):
-    """The same, placed, as what would be drawn of a sensor that is there."""
-    pose = pe.Pose((0.5, 0.2, 50.0), (0.1, 0.2, 0.3))  # high: nothing ends on the ground
-    model = catalog.load("Pandar64")
-    shape = placement.sensor_shape("it", model)[0]
-    placed = placement.moved_to(shape, pose)
-    sensor = pe.Sensor("it", model, pose)
-    draw = graphics.drawing_of("lidar").lines
-    expected = draw(sensor, placement.LENGTH_M, placement.HELD_PALETTE).points
-    assert placed.points[: len(expected)] == pytest.approx(expected, abs=1e-3)

@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 import pytest
 
-from tests.addon.command_line import FAST, ROOT, command, run_here, wait_for
+from tests.addon.command_line import FAST, ROOT, command, wait_for
 from tests.limits import HANG_S
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals and files")
@@ -22,24 +22,6 @@ def blend(car, tmp_path) -> Path:
     return path
 
 
-def test_the_same_folder_again_is_one_set(blend, tmp_path, small_pictures):
-    out = tmp_path / "out"
-    for seed, *options in (("3", "--no-review"), ("4",)):
-        answer = run_here(blend, "optimize", *FAST[:-1], seed, *options, "-o", out)
-        assert answer.returncode == 0, answer.stderr
-    named = [path.name for path in out.iterdir() if not path.name.startswith(".")]
-    expected = (
-        "history.csv",
-        "optimized.blend",
-        "result.json",
-        "review.html",
-        "search.json",
-        "study.toml",
-        "vehicle.npz",
-    )
-    assert sorted(named) == list(expected)
-
-
 @pytest.mark.usefixtures("heeded_signals")
 def test_being_told_to_end_keeps_the_best(blend, tmp_path):
     out = tmp_path / "out"
@@ -47,7 +29,7 @@ def test_being_told_to_end_keeps_the_best(blend, tmp_path):
     arguments = (*FAST[:6], "--set", "optimize.candidates=100000", "-o", out)
     with log.open("w") as stderr:
         process = subprocess.Popen(
-            command(blend, "optimize", "--no-review", *arguments),
+            command(blend, ["optimize", "--no-review", *arguments]),
             cwd=ROOT,
             stdout=subprocess.DEVNULL,
             stderr=stderr,

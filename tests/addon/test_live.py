@@ -6,16 +6,7 @@ from dataclasses import replace
 import bpy
 import pytest
 
-import blender_addon
-from blender_addon import (
-    bridge,
-    change_events,
-    engine_calls,
-    engine_process,
-    result_staleness,
-    signals,
-)
-from blender_addon.engine import advice
+from blender_addon import bridge, change_events, engine_calls, engine_process, result_staleness
 from blender_addon.live import (
     AT_REST,
     MOVING,
@@ -119,39 +110,6 @@ def test_a_drag_is_exact_and_compared_with_where_it_began(live, monkeypatch):
     assert not is_exact(live), "asked for, not there yet"
 
 
-def test_a_hand_that_rests_for_a_moment_does_not_begin_a_new_drag(live, monkeypatch):
-    start = reading(live).summary
-    monkeypatch.setattr(session, "_moving_operator", lambda: 4711)
-    for _ in range(2):
-        drag(live.objects["roof"])
-        rest()
-        assert reading(live).before == start
-    monkeypatch.setattr(session, "_moving_operator", lambda: 0)
-    rest()
-    second = reading(live).summary
-    monkeypatch.setattr(session, "_moving_operator", lambda: 4711)  # an address may come again
-    drag(live.objects["roof"])
-    assert reading(live).before == second != start
-
-
-@pytest.mark.parametrize("by", [0.05, 0.0], ids=["clicked", "escaped"])
-def test_the_change_stays_when_the_hand_lets_go(live, monkeypatch, by):
-    start = reading(live).summary
-    roof = live.objects["roof"]
-    monkeypatch.setattr(session, "_moving_operator", lambda: 4711)
-    drag(roof)
-    rest()  # held still until it was scored
-    monkeypatch.setattr(session, "_moving_operator", lambda: 0)  # Blender ends it, then updates
-    drag(roof, by - 0.05)
-    rest()
-    assert reading(live).before == start and is_exact(live)
-    assert (reading(live).summary == start) == (by == 0.0)
-    roof.update_tag()  # an update that moves nothing begins no move
-    bpy.context.view_layer.update()
-    rest()
-    assert reading(live).before == start
-
-
 def test_a_variant_is_what_it_is_compared_with(live):
     start = exact()
     bpy.ops.pe.save_variant()
@@ -166,63 +124,6 @@ def test_a_variant_is_what_it_is_compared_with(live):
     bpy.ops.pe.remove_row(rows="variants")
     rest()
     assert reading(live).baseline is None or reading(live).baseline.label != "Variant"
-
-
-def test_one_score_is_shown_at_a_time(live, monkeypatch):
-    """Panel and read-out take theirs from here: live, or stored where that is of the scene."""
-    bpy.ops.pe.score()
-    rest()
-    score = shown_score(live)
-    settings = live.perception_entropy
-    assert score.stored and score.exact and score.entropy == settings.result.entropy
-    drag(live.objects["roof"])
-    now = reading(live).summary
-    assert (shown_score(live).now, shown_score(live).phase) == (now, MOVING)
-    result_staleness.update_result()
-    rest()
-    now = reading(live).summary
-    assert (shown_score(live).now, shown_score(live).phase) == (now, AT_REST)
-    settings.live.on = False
-    assert shown_score(live).phase == OUT_OF_DATE and shown_score(live).pair is None
-
-
-def test_after_undo_and_redo_the_result_that_came_back_is_shown(live):
-    """The live score of before would stand beside it until the scene is idle."""
-    bpy.ops.pe.score()
-    rest()
-    bpy.ops.ed.undo_push(message="scored")
-    drag(live.objects["roof"], 0.3)
-    live.perception_entropy.result_stale = True
-    rest()
-    moved = reading(live).summary.entropy
-    bpy.ops.ed.undo_push(message="moved")
-    bpy.ops.ed.undo()
-    scene = bpy.context.scene
-    shown = shown_score(scene)
-    assert shown.stored and shown.entropy == scene.perception_entropy.result.entropy != moved
-    assert state.live_state(scene.name).note == ""
-    rows = readout.rows_of(shown)
-    assert rows[0].words[0][0] == f"{shown.entropy:.3f} nats"
-    bpy.ops.ed.redo()
-    assert shown_score(bpy.context.scene).phase == OUT_OF_DATE
-    rest()
-    assert shown_score(bpy.context.scene).entropy == moved
-
-
-def test_the_figures_are_the_engine_s_and_of_before_while_it_moves(live, monkeypatch):
-    live.perception_entropy.live.figures = True
-    looking = scenes.study().sight()
-    first = advice.KeyFigures.of_rig(looking, reading(live).rig)
-    assert shown_score(live).figures[-1] == first
-    monkeypatch.setattr(session, "_moving_operator", lambda: 4711)
-    drag(live.objects["roof"], 0.6)
-    assert shown_score(live).figures == (first,), "of before this move"
-    rest()
-    second = advice.KeyFigures.of_rig(looking, reading(live).rig)
-    assert second != first and shown_score(live).figures == (first, second)
-    live.perception_entropy.targets = "objects"
-    rest()
-    assert shown_score(live).figures[-1].reach == {}, "reaches are in the score"
 
 
 def test_only_what_moved_is_measured_and_the_vehicle_is_not_read(live, monkeypatch):
@@ -265,27 +166,6 @@ def test_what_is_wrong_is_said_in_a_line_until_it_is_mended(live):
     bpy.context.view_layer.update()
     rest()
     assert state.live_state(live.name).note == "" and told(reading(live).summary) == told(exact())
-
-
-def test_undo_in_the_middle_of_a_drag(live):
-    for message in ("before", "after"):
-        drag(live.objects["roof"])
-        bpy.ops.ed.undo_push(message=message)
-    bpy.ops.ed.undo()
-    rest()
-    scene = bpy.context.scene
-    assert told(reading(scene).summary) == told(exact())
-
-
-def test_the_extension_disabled_in_the_middle_of_a_drag(live):
-    drag(live.objects["roof"])
-    blender_addon.unregister()
-    try:
-        assert not state.states
-        assert session.follow_update not in bpy.app.handlers.depsgraph_update_post
-        assert session.on_idle not in signals.idle.listeners
-    finally:
-        blender_addon.register()
 
 
 def test_a_mistake_of_ours_is_shown_and_told(live, monkeypatch):

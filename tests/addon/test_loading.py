@@ -47,8 +47,8 @@ def test_the_four_corners_come_into_an_empty_scene_to_the_bit(scene):
     assert np.array_equal(again.vehicle.triangles, study.vehicle.triangles)
     assert again.search == study.search
     assert again.requirements == study.requirements and study.requirements
-    left = bpy.data.objects["lidar_left"].perception_entropy
-    assert (left.mirror_of, left.mount) == ("lidar_right", "roof corners")
+    left = bpy.data.objects["front_left"].perception_entropy
+    assert (left.mirror_of, left.mount) == ("front_right", "roof corners")
     settings = scene.perception_entropy
     settings.score_samples = settings.search_samples = 1024
     settings.method = "random"

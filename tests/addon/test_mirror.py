@@ -91,16 +91,6 @@ def test_a_linked_pair_moves_whichever_is_moved(left):
     assert alike(left, right) and left.location.x == pytest.approx(-1.0)
 
 
-def test_a_sensor_in_the_middle_is_released_as_two_would_be_in_one_place(left):
-    right = mirror(linked=True)
-    moved(left, location=(1.2, 0.0, 0.9))
-    assert alike(left, right), "turned, two in one place look to both sides"
-    moved(left, location=(1.2, 0.7, 0.9), rotation_euler=(0.0, 0.2, 0.0))
-    moved(left, location=(1.2, 0.0, 0.9))
-    assert not left.perception_entropy.mirror_of and not right.perception_entropy.mirror_of
-    assert right.location.y == pytest.approx(-0.7), "it stays"
-
-
 def test_no_mirror_image_is_put_in_the_air(car):
     """Beside its axis the vehicle is not where the image would be; nor without its other half."""
     scenes.add_sensor("corner_left", location=(1.9, 0.8, 1.0))
@@ -116,18 +106,3 @@ def test_no_mirror_image_is_put_in_the_air(car):
         with pytest.raises(RuntimeError, match="mirror image"):
             bpy.ops.pe.mirror_sensor(name="corner_left")
         assert "corner_right" not in car.objects
-
-
-def test_redo_brings_both(left):
-    right = mirror(linked=True)
-    bpy.ops.ed.undo_push(message="before")
-    moved(left, location=(1.5, 0.9, 1.0))
-    bpy.ops.ed.undo_push(message="moved")
-    bpy.ops.ed.undo()
-    consistency.repair_scenes()
-    left, right = (bpy.data.objects[f"front_{side}"] for side in ("left", "right"))
-    assert alike(left, right) and left.location.x == pytest.approx(1.2)
-    bpy.ops.ed.redo()
-    consistency.repair_scenes()
-    left, right = (bpy.data.objects[f"front_{side}"] for side in ("left", "right"))
-    assert alike(left, right) and left.location.x == pytest.approx(1.5)

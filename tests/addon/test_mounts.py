@@ -6,7 +6,6 @@ import pytest
 
 import pe_core as pe
 from blender_addon import bridge
-from blender_addon.bridge.study_table import read_row
 from tests.addon import scenes
 
 CAN = "Velodyne VLP-16 Puck"
@@ -106,22 +105,6 @@ def test_sensors_on_a_rack_move_as_one(car):
     assert np.subtract(place_of("left"), place_of("eye")) == pytest.approx(before, abs=2e-5)
 
 
-def test_what_every_placement_keeps_to(car):
-    settings = car.perception_entropy
-    settings.limit_height = 1.9
-    settings.limit_width = 1.7
-    settings.limit_distance = 0.2
-    settings.clear_housings = True
-    bpy.context.scene.cursor.location = (1.0, 0.0, 1.0)
-    assert bpy.ops.pe.add_no_go() == {"FINISHED"}
-    bpy.context.object.scale.x = 2.0
-    bpy.context.view_layer.update()
-    found = scenes.study().search.mounting.constraints
-    area = pe.NoGo("no_go", (0.5, 1.5), (-0.25, 0.25), (0.75, 1.25))
-    assert found == pe.Constraints(True, [area])
-    assert scenes.study().limits.height == pe.Limit(1.9)
-
-
 def test_a_mount_is_added_of_what_is_selected_or_painted(car):
     cabin = bpy.data.objects["cabin"]
     bpy.ops.object.select_all(action="DESELECT")
@@ -136,10 +119,3 @@ def test_a_mount_is_added_of_what_is_selected_or_painted(car):
     bpy.ops.object.mode_set(mode="OBJECT")
     row = car.perception_entropy.mounts[1]
     assert (row.name, row.faces, row.group) == ("painted", "GROUP", "painted")
-
-
-def test_a_new_mount_has_the_engine_s_settings(scene):
-    """Angles too, which the panel has in degrees: 60 degrees of slope were read as 1."""
-    row = scene.perception_entropy.mounts.add()
-    assert read_row(pe.SurfaceMount, row, "any", parts=["any"]) == pe.SurfaceMount(("any",))
-    assert row.max_slope == 60.0

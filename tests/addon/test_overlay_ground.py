@@ -80,42 +80,10 @@ def test_colours_fit_what_is_shown_and_the_bright_end_is_good():
     assert ground.fitted_bounds(seen(nothing), ground.ENTROPY) == (whole.low, whole.high)
 
 
-@pytest.mark.parametrize("quantity", [ground.ENTROPY, ground.COVERAGE])
-def test_a_difference_is_blue_where_it_is_better_and_orange_where_worse(quantity):
-    better = {"entropy": np.zeros((30, 20)), "coverage": np.full((30, 20), 0.5)}
-    worse = {name: values.copy() for name, values in better.items()}
-    better["entropy"][:10] = -3.0
-    better["coverage"][:10] = 0.9
-    better["entropy"][20:] = 3.0
-    better["coverage"][20:] = 0.1
-    shape = ground.difference_map(seen(**better), seen(**worse), quantity, 0.5, name="Idea")
-    image = shape.sheet.image.transpose(1, 0, 2)
-    low, same, high = colors.DIFFERENCE_ON_DARK
-    for at, color in ((9, high), (15, same), (20, low)):
-        np.testing.assert_allclose(image[at, 10, :3], color, atol=1e-6)
-    assert image[15, 10, 3] < 0.2 * image[9, 10, 3]  # what is alike is nearly clear
-    end = shape.legend.bounds[1]
-    assert end == pytest.approx({"ENTROPY": 3.0, "COVERAGE": 0.4}[quantity])
-    assert "Idea" in shape.legend.title and "worse" in shape.legend.ticks[0]
-    again = ground.difference_map(seen(**worse), seen(**worse), quantity, 0.5)
-    assert np.ptp(again.sheet.image[..., :3], axis=(0, 1)).max() < 1e-6
-
-
 def square(low, high):
     x0, y0 = low
     x1, y1 = high
     return np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)], float)
-
-
-def test_hatching_fills_a_square_and_leaves_its_hole_out():
-    hole = square((-1, -1), (1, 1))[::-1]
-    lines = ground_layers.hatch((square((-3, -3), (3, 3)), hole), 0.25).reshape(-1, 2, 2)
-    middle = lines.mean(axis=1)
-    assert (np.abs(middle).max(axis=1) <= 3.0).all()
-    assert not (np.abs(middle).max(axis=1) < 1.0).any(), "the hole is hatched"
-    # Lines that far apart, seen along the slant, cover as much as the area.
-    length = np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1).sum()
-    assert length * 0.25 / math.sqrt(2.0) == pytest.approx(36.0 - 4.0, rel=0.02)
 
 
 def found_blind(outlines, nearest=None, zone=None):

@@ -189,6 +189,21 @@ def test_after_a_score_its_own_map_is_shown_until_something_moves(rig):
     assert "as scored" not in scenes.drawn(rig)["ground"][""].legend.title
 
 
+def show_alone(view, layer):
+    """Switch all layers off but one."""
+    for name in ALL_LAYERS:
+        setattr(view, f"show_{name}", name == layer)
+
+
+def test_changes_are_heard_and_another_file_forgets(rig):
+    assert {scheduler.on_moving} <= set(signals.moving.listeners)
+    assert {scheduler.on_idle} <= set(signals.idle.listeners)
+    scenes.drawn(rig)
+    assert len(shown) > 5
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    assert len(shown) == 0
+
+
 @pytest.mark.parametrize("quantity", ["ENTROPY", "COVERAGE"])
 def test_the_map_keeps_its_scale_from_the_first_score_until_it_is_fitted_again(rig, quantity):
     def ends():
@@ -211,56 +226,3 @@ def test_the_map_keeps_its_scale_from_the_first_score_until_it_is_fitted_again(r
     bpy.context.view_layer.update()
     bpy.ops.pe.score()
     assert ends() == again
-
-
-def test_the_difference_map_is_of_the_variant_that_live_is_compared_with(rig):
-    bpy.ops.pe.save_variant()
-    settings = rig.perception_entropy
-    settings.view.ground_difference = True
-    assert "nothing to compare with" in scenes.drawn(rig)["ground"][""].legend.title
-    settings.live.against = settings.variants[0].key
-    before = scenes.drawn(rig)["ground"][""]
-    assert settings.variants[0].name in before.legend.title
-    alike = before.sheet.image[before.sheet.image[..., 3] > 0.0]
-    assert len(alike) and np.ptp(alike[:, :3], axis=0).max() < 1e-6
-    study = scenes.study()
-    rig.objects["eye"].rotation_euler.z = 3.0
-    bpy.context.view_layer.update()
-    look = sight.Sight(study.space, study.prior, study.vehicle)
-    maps = [look.ground(each.rig, None, ground_layers.FINE_M) for each in (scenes.study(), study)]
-    expected = graphics.difference_map(*maps, "ENTROPY", settings.view.ground_opacity)
-    found = scenes.drawn(rig)["ground"][""].sheet.image
-    np.testing.assert_allclose(found, expected.sheet.image, atol=1e-6)
-    assert np.ptp(found[..., 0]) > 0.1
-    settings.view.ground_quantity = "SENSORS"  # counts have no difference map
-    assert "Seen by" in scenes.drawn(rig)["ground"][""].legend.title
-
-
-def show_alone(view, layer):
-    """Switch all layers off but one."""
-    for name in ALL_LAYERS:
-        setattr(view, f"show_{name}", name == layer)
-
-
-def test_the_map_is_of_the_scene_s_own_space(rig):
-    view = rig.perception_entropy.view
-    show_alone(view, "ground")
-    rig.perception_entropy.space_x = (-20.0, 30.0)
-    sheet = scenes.drawn(rig)["ground"][""].sheet
-    assert (sheet.low, sheet.high) == ((-20.0, -15.0), (30.0, 15.0))
-    rig.perception_entropy.space_x = (-2000.0, 2000.0)
-    rig.perception_entropy.space_y = (-8.0, 8.0)
-    assert scenes.drawn(rig)["ground"][""].sheet.image.size < 4 * 2 * ground_layers.MAX_CELLS
-    rig.perception_entropy.space_x = (30.0, -20.0)  # a mistake: a score says which
-    for name in ALL_LAYERS:
-        setattr(view, f"show_{name}", True)
-    assert set(scenes.drawn(rig)) == ALL_LAYERS - {"ground", "blind", "reach", "focus", "birds_eye"}
-
-
-def test_changes_are_heard_and_another_file_forgets(rig):
-    assert {scheduler.on_moving} <= set(signals.moving.listeners)
-    assert {scheduler.on_idle} <= set(signals.idle.listeners)
-    scenes.drawn(rig)
-    assert len(shown) > 5
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    assert len(shown) == 0

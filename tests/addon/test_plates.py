@@ -67,18 +67,6 @@ def test_plates_fold_before_they_cover_the_car_or_a_quarter_of_the_view(car, are
     assert all(whole) == (area == 1e9 and car in (CAR, None))
 
 
-@pytest.mark.parametrize("scale", [1.0, 1.15, 1.4, 1.9, 2.0, 2.3])
-def test_a_plate_that_has_room_is_whole_at_any_scale(scale):
-    """A legend lost its colours where its corners, which are sums, were rounded."""
-    sizes = [(113.7 * scale, high * scale) for high in (60.1, 93.3)]
-    room = (130.0 + scale / 3.0, 32.1 * scale, 1400.7, 860.3)
-    placed = folded(sizes, 25.0 * scale, Surroundings(room, [], None, 4.1 * scale), 1e9)
-    for each, (wide, high) in zip(placed, sizes, strict=True):
-        assert not each.is_folded
-        assert each.box[2] - each.box[0] == pytest.approx(wide)
-        assert each.box[3] - each.box[1] == pytest.approx(high)
-
-
 def test_a_readout_too_wide_goes_on_below_and_loses_no_word():
     rows = [
         readout.TextRow(10.0, (("1.510", INK), ("no difference shown", INK))),

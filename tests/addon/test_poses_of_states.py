@@ -32,35 +32,6 @@ def parked(car):
     return car
 
 
-def told(scene):
-    """The lines of the panel below the lists of conditions."""
-    return list(scene.perception_entropy.result.conditions)
-
-
-def test_panel_headless_and_pe_agree_to_the_bit(parked, tmp_path):
-    bpy.ops.pe.add_row(rows="states")
-    add_open_state(parked)
-    bpy.ops.pe.add_row(rows="weathers", kind="CLEAR")
-    bpy.ops.pe.add_row(rows="weathers", kind="RAIN")
-    parked.perception_entropy.weathers[1].weight = 0.1
-    parked.frame_set(OPEN_FRAME)  # what is shown does not matter: all score the vehicle as drawn
-    assert bpy.ops.pe.score() == {"FINISHED"}
-    panel = json.loads(parked.perception_entropy.result_json)["conditions"]
-    wing = "in state 'door open', 'door' covers"
-    assert any(line.startswith(f"rear wing: {wing}") for line in told(parked)), told(parked)
-    assert [r["state"] for r in panel["rows"]] == 2 * ["As Drawn"] + 2 * ["door open"]
-    assert panel["rows"][1]["weight"] == 0.1
-    assert len({row["entropy"] for row in panel["rows"]}) == 4
-    assert bpy.ops.pe.export_study(filepath=str(tmp_path / "study.toml")) == {"FINISHED"}
-    blend = tmp_path / "parked.blend"
-    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
-    headless = run_here(blend, "score", "--json")
-    alone = pe_here("score", tmp_path / "study.toml", "--json")
-    assert headless.returncode == alone.returncode == 0, headless.stderr + alone.stderr
-    assert json.loads(headless.stdout)["conditions"] == panel
-    assert json.loads(alone.stdout)["conditions"] == panel
-
-
 def by_armature(scene, door):
     """Pose the door by a bone at its hinge: parent it, and key the bone's pose."""
     door.animation_data_clear()
@@ -120,3 +91,32 @@ def test_a_state_is_read_from_however_the_designer_poses(parked, pose):
     bpy.context.view_layer.update()
     corners = [door.matrix_world @ vertex.co for vertex in door.data.vertices]
     assert max(c.y for c in corners) == pytest.approx(outwards, abs=1e-3)
+
+
+def told(scene):
+    """The lines of the panel below the lists of conditions."""
+    return list(scene.perception_entropy.result.conditions)
+
+
+def test_panel_headless_and_pe_agree_to_the_bit(parked, tmp_path):
+    bpy.ops.pe.add_row(rows="states")
+    add_open_state(parked)
+    bpy.ops.pe.add_row(rows="weathers", kind="CLEAR")
+    bpy.ops.pe.add_row(rows="weathers", kind="RAIN")
+    parked.perception_entropy.weathers[1].weight = 0.1
+    parked.frame_set(OPEN_FRAME)  # what is shown does not matter: all score the vehicle as drawn
+    assert bpy.ops.pe.score() == {"FINISHED"}
+    panel = json.loads(parked.perception_entropy.result_json)["conditions"]
+    wing = "in state 'door open', 'door' covers"
+    assert any(line.startswith(f"rear wing: {wing}") for line in told(parked)), told(parked)
+    assert [r["state"] for r in panel["rows"]] == 2 * ["As Drawn"] + 2 * ["door open"]
+    assert panel["rows"][1]["weight"] == 0.1
+    assert len({row["entropy"] for row in panel["rows"]}) == 4
+    assert bpy.ops.pe.export_study(filepath=str(tmp_path / "study.toml")) == {"FINISHED"}
+    blend = tmp_path / "parked.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+    headless = run_here(blend, ["score", "--json"])
+    alone = pe_here(["score", tmp_path / "study.toml", "--json"])
+    assert headless.returncode == alone.returncode == 0, headless.stderr + alone.stderr
+    assert json.loads(headless.stdout)["conditions"] == panel
+    assert json.loads(alone.stdout)["conditions"] == panel

@@ -73,8 +73,8 @@ def test_all_presets_have_the_same_bits_everywhere(vehicle, tmp_path):
     study = tmp_path / "study.toml"
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
     pt.export_study(scenes.study(), study)
-    headless = run_here(blend, "check", "--preset", "all", "--json")
-    alone = pe_here("check", study, "--preset", "all", "--json")
+    headless = run_here(blend, ["check", "--preset", "all", "--json"])
+    alone = pe_here(["check", study, "--preset", "all", "--json"])
     assert headless.returncode == alone.returncode == 3, headless.stderr + alone.stderr
     assert json.loads(headless.stdout) == json.loads(alone.stdout)
     found = json.loads(headless.stdout)

@@ -1,42 +1,17 @@
 """Requirements in the scene: one record with the study file, verdicts of the engine to the bit."""
 
-import json
-
 import bpy
 import numpy as np
 import pytest
 
-from blender_addon import analysis_calls, bridge
+from blender_addon import bridge
 from blender_addon.operators import jobs
 from blender_addon.operators import requirements as operators
 from blender_addon.overlay.requirement_zones import MET, NOT_MET
-from pe_core.sensors import ObjectMeasurementCache
 from pe_core.study import requirement_file
 from tests.addon import scenes
 
 AHEAD = 'x = ["front + 1", "front + 2"], y = ["right", "left"]'
-FIELDS = [
-    ("criterion.points", {"points": 3}, 3),
-    ("criterion.pixels", {"pixels": 12.5}, 12.5),
-    ("criterion.share", {"share": 0.5}, 0.5),
-    ("criterion.ap", {"ap": 0.4}, pytest.approx(0.4)),
-    ("criterion.zone_share", {"zone_share": 0.9}, pytest.approx(0.9)),
-    ("criterion.of", {"of": "lidar"}, ("lidar",)),
-    ("criterion.sensors", {"sensors": 2}, 2),
-    ("under.one_lost", {"one_lost": True}, True),
-    ("under.mounting", {"mounting": True}, True),
-    ("zone.step", {"step": 0.25}, 0.25),
-    ("zone.y", {"zone": 'x = [1.0, 2.0], y = [-1.5, "left + 1"]'}, (-1.5, "left + 1")),
-    ("zone.z", {"z": (0.0, 0.5)}, (0.0, 0.5)),
-    ("zone.below", {"below": 2.0}, 2.0),
-    ("zone.near_side", {"near_side": "left"}, "left"),
-    ("zone.eyes", {"eyes": 1.2}, pytest.approx(1.2)),
-    ("criterion.blind_m2", {"asks": "ground", "blind_m2": 1.5}, 1.5),
-    ("criterion.blind_height", {"asks": "ground", "blind_height": 0.5}, 0.5),
-    ("criterion.blind_out", {"asks": "ground", "blind_out": 2.0}, 2.0),
-    ("bodies", {"asks": "ground"}, ()),
-]
-"""Of a requirement: an attribute, the panel's fields that set it, and what it is then."""
 
 
 @pytest.fixture
@@ -113,32 +88,6 @@ def test_bodies_are_one_several_or_of_an_own_size(held):
     assert row.problem == "" and len(scenes.study().requirements[1].bodies) == 2
 
 
-def copied(value):
-    """A property's value, which no later change of the row changes."""
-    return value if isinstance(value, str | int | float) else tuple(value)
-
-
-def test_each_field_is_set_read_back_and_taken_away(held):
-    row = rows(held)[1]
-    before = row.table
-    for path, fields, expected in FIELDS:
-        usual = {name: copied(getattr(row, name)) for name in fields}
-        for name, value in fields.items():
-            setattr(row, name, value)
-            assert row.problem == "", name
-        for name, value in fields.items():
-            told = getattr(row, name)
-            told = tuple(told) if isinstance(value, tuple) else told
-            assert told == (value if isinstance(value, str) else pytest.approx(value)), name
-        made = scenes.study().requirements[1]
-        for part in path.split("."):
-            made = getattr(made, part)
-        assert made == expected, path
-        for name, value in reversed(usual.items()):
-            setattr(row, name, value)
-        assert row.table == before, path
-
-
 def test_check_stores_the_verdicts_of_the_engine(held):
     bpy.ops.pe.check_requirements()
     verdicts = scenes.study().verdicts()
@@ -172,35 +121,6 @@ def test_verdicts_come_row_by_row_and_esc_keeps_those_that_are_found(held):
     told = check_by_hand(held, lambda job: job.stop() if job.verdicts else None)
     assert told.level == "WARNING"
     assert stored(held) == [whole[0], None, None]
-
-
-@pytest.mark.parametrize("first", ["view", "check"])
-def test_view_check_and_score_measure_nothing_twice(held, first, monkeypatch):
-    measured = []
-    again = ObjectMeasurementCache.measure_again
-
-    def noted(self, sensor):
-        measured.append(sensor.name)
-        return again(self, sensor)
-
-    monkeypatch.setattr(ObjectMeasurementCache, "measure_again", noted)
-    analysis_calls.clear()
-    acts = {"view": lambda: scenes.drawn(held), "check": bpy.ops.pe.check_requirements}
-    acts[first]()
-    assert measured
-    measured.clear()
-    for act in (*acts.values(), bpy.ops.pe.score):
-        act()
-    assert measured == []
-
-
-def test_a_score_stores_them_too_and_an_edit_forgets_one(held):
-    assert bpy.ops.pe.score() == {"FINISHED"}
-    told = json.loads(held.perception_entropy.result_json)["requirements"]
-    assert [each.margin_m for each in stored(held)] == [each["margin_m"] for each in told]
-    rows(held)[1].step = 0.4
-    assert stored(held)[1] is None and stored(held)[0] is not None
-    assert operators.shown_verdicts(held)[rows(held)[1].name].met is None
 
 
 class TestZones:

@@ -66,18 +66,6 @@ def test_what_is_typed_is_read(car):
         assert read(sensor) == pose
 
 
-def test_placing_survives_a_file(car, tmp_path):
-    poses = [*random_poses(20), *edge_poses()]
-    for number, pose in enumerate(poses):
-        scenes.add_sensor(f"s{number}")
-        bridge.place_rig(car, rig_of(f"s{number}", pose))
-    path = str(tmp_path / "rig.blend")
-    bpy.ops.wm.save_as_mainfile(filepath=path)
-    bpy.ops.wm.open_mainfile(filepath=path)
-    for number, pose in enumerate(poses):
-        assert read(bpy.context.scene.objects[f"s{number}"]) == pose
-
-
 def test_moved_after_placing_is_read_as_it_stands(car):
     bridge.place_rig(car, rig_of("roof", pe.Pose((1.0, 2.0, 3.0))))
     car.objects["roof"].location.x = 1.00002

@@ -3,10 +3,8 @@
 import bpy
 import pytest
 
-import pe_core as pe
-from blender_addon.engine import catalog, studies
+from blender_addon.engine import studies
 from tests.addon import scenes
-from tests.addon.command_line import pe_here
 
 
 def line_of(rig):
@@ -31,27 +29,6 @@ def test_what_is_pasted_is_what_was_copied_to_the_bit(car):
     assert bpy.ops.pe.paste_rig(text=line) == {"FINISHED"}
     assert line_of(scenes.study().rig) == line_of(before)
     assert car.perception_entropy.variants[-1].name == "Pasted"
-
-
-def test_the_line_is_a_study_file_and_pe_writes_one_of_it(car, tmp_path):
-    line = copied(car)
-    (tmp_path / "line.toml").write_text(line)
-    assert line_of(pe.load_study(tmp_path / "line.toml").rig) == line
-    assert pe_here("new", "--rig", line, "-o", tmp_path / "study.toml").returncode == 0
-    assert line_of(pe.load_study(tmp_path / "study.toml").rig) == line
-    export = pe_here("export", tmp_path / "study.toml", "--to", "line")
-    assert export.stdout.strip() == line
-
-
-def test_a_sensor_of_ones_own_travels_with_its_figures(car):
-    own = catalog.from_table(
-        "mine", {"kind": "camera", "width": 320, "height": 240, "hfov_deg": 70.0}
-    )
-    rig = pe.Rig([pe.Sensor("eye", own, pe.Pose((1.0, 0.0, 1.5)))])
-    assert line_of(studies.read_rig_line(line_of(rig))) == line_of(rig)
-    bpy.ops.pe.paste_rig(text=studies.rig_line(rig))
-    (found,) = scenes.study().rig
-    assert catalog.to_table(found.model) == catalog.to_table(own) and found.pose == rig["eye"].pose
 
 
 @pytest.mark.parametrize("text", ["hello", "sensor = []", "sensor = [{ name = 'a' }]"])

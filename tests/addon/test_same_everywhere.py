@@ -88,6 +88,11 @@ def told(result: dict) -> dict:
     return kept
 
 
+def output_of(verb, folder):
+    """The options with which a verb writes into a folder; a score needs none."""
+    return ["--no-review", "-o", folder] if verb == "optimize" else []
+
+
 @pytest.mark.parametrize("name", SCENES)
 def test_panel_headless_and_pe_find_the_same_bits(car, tmp_path, name):
     settings = car.perception_entropy
@@ -103,9 +108,9 @@ def test_panel_headless_and_pe_find_the_same_bits(car, tmp_path, name):
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
     assert getattr(bpy.ops.pe, verb)() == {"FINISHED"}
     panel = told(json.loads(settings.result_json))
-    for run, arguments in ((run_here, (blend, verb)), (pe_here, (verb, study))):
-        to = ("--no-review", "-o", tmp_path / run.__name__) if verb == "optimize" else ()
-        answer = run(*arguments, *to, "--json")
+    headless = run_here(blend, [verb, *output_of(verb, tmp_path / "headless"), "--json"])
+    alone = pe_here([verb, study, *output_of(verb, tmp_path / "alone"), "--json"])
+    for answer in (headless, alone):
         assert answer.returncode == 0, answer.stderr
         assert told(json.loads(answer.stdout)) == panel
 

@@ -1,20 +1,13 @@
 """Stories in the panel: added, checked by the engine's numbers, shown, kept by a study and back."""
 
 import json
-from dataclasses import replace
-from pathlib import Path
 
 import bpy
-import numpy as np
 import pytest
-from mathutils import Vector
 
-import pe_core as pe
-from blender_addon import film
 from blender_addon.operators.compare_variants import pending_variants
 from blender_addon.panels.condition_panel import conditions
 from pe_core.motion import RATE_HZ, stories
-from pe_tools import graphics
 from tests.addon import layouts, scenes
 
 
@@ -73,35 +66,3 @@ def test_the_3d_view_shows_what_a_check_says(car):
     assert rays == 2 * (int(driven.bodies[0].ap[k] > 0.0) - int(driven.bodies[0].ap[0] > 0.0))
     car.perception_entropy.view.show_story = False
     assert "story" not in scenes.drawn(car)
-
-
-def test_a_film_is_a_scene_of_its_own(car):
-    path = ((-2.0, 0.0, -8.333), (0.0, 0.0, 0.0))
-    story = stories()["cyclist_from_right"]
-    story = replace(story, actors=(replace(story.actors[0], path=path),))
-    study = scenes.study()
-    driven = study.drive_by(story)
-    made = film.film_scene(car, study, story)
-    assert (made.frame_start, made.frame_end) == (car.frame_start, car.frame_start + 48)
-    assert made.render.stamp_note_text == graphics.digest(driven)
-    assert "cabin" in made.objects, list(made.objects)
-    moving = graphics.BodiesInTime.of(driven, study.vehicle, 24.0)
-    strip = graphics.time_strip(driven)
-    left = made.objects["cells"].location.x
-    cursor = []
-    layer = made.view_layers[0]
-    for k in (0, 30, 48):
-        made.frame_set(made.frame_start + k)
-        layer.update()
-        cursor.append(made.objects["cursor"].evaluated_get(layer.depsgraph).location.x - left)
-        body = made.objects["cyclist"].evaluated_get(layer.depsgraph)
-        assert tuple(body.location)[:2] == pytest.approx(moving.bodies[0].positions[k], abs=1e-4)
-        ray = made.objects["roof cyclist"].evaluated_get(layer.depsgraph)
-        ends = [ray.matrix_world @ Vector((x, 0.0, 0.0)) for x in (-0.5, 0.5)]
-        if moving.bodies[0].by_sensor["roof"][k] > 0.0:
-            assert tuple(ends[0]) == pytest.approx((0.0, 0.0, 2.5), abs=1e-3)
-            assert tuple(ends[1]) == pytest.approx(tuple(body.location), abs=1e-3)
-    shares = [strip.share(time) for time in (-2.0, -0.75, 0.0)]
-    assert np.array(cursor) / cursor[-1] == pytest.approx(np.array(shares) / shares[-1], abs=1e-5)
-    with pytest.raises(pe.InputError, match=r"\.webm"):
-        film.write_film(car, study, story, Path("film.gif"))

@@ -5,10 +5,7 @@ import pytest
 
 from blender_addon import panels
 from blender_addon.engine import advice
-from blender_addon.live.state import LiveScore, live_state
 from blender_addon.operators import shortcuts, shown_way
-from blender_addon.overlay import scheduler
-from blender_addon.overlay.layer_cache import shown_of
 from blender_addon.overlay.layers import LAYERS
 from tests.addon import scenes
 from tests.addon.layouts import Window, drawn
@@ -41,36 +38,6 @@ def test_the_layer_shows_what_the_engine_finds(skyward):
     assert shape.found.to_dict() == found.to_dict()
     assert found.better is not None
     assert len(shape.labels) > len(found.clear_turns) and len(shape.through.points)
-
-
-def test_off_requests_nothing_and_another_sensor_is_another_way(skyward):
-    assert "steepest" in scenes.drawn(skyward)
-    bpy.context.view_layer.objects.active = bpy.data.objects["roof"]
-    bpy.data.objects["roof"].select_set(True)
-    assert scenes.drawn(skyward)["steepest"][""].found.sensor == "roof"
-    skyward.perception_entropy.view.show_steepest = False
-    assert "steepest" not in scenes.drawn(skyward)
-    bpy.context.view_layer.objects.active = None
-    skyward.perception_entropy.view.show_steepest = True
-    assert "steepest" not in scenes.drawn(skyward)
-
-
-def test_while_it_moves_the_way_follows_the_live_score(skyward):
-    before = scenes.drawn(skyward)["steepest"][""].found
-    bpy.data.objects["eye"].location.x += 0.1
-    bpy.context.view_layer.update()
-    scheduler.update(moving=True)  # Live is off: nothing is known of a sensor that moves
-    assert shown_of(skyward.name, "steepest")[""].shape.found is before
-    skyward.perception_entropy.live.on = True
-    scheduler.update(moving=True)  # not scored yet
-    assert shown_of(skyward.name, "steepest")[""].shape.found is before
-    study = scenes.study()
-    summary = study.evaluator(1024).summary(study.rig)
-    live_state(skyward.name).put(LiveScore(summary, None, False, study.rig))
-    scheduler.update(moving=True)
-    item = shown_of(skyward.name, "steepest")[""]
-    assert item.rough and item.shape.found.at == study.rig["eye"].pose.position
-    assert not item.shape.found.turns and item.shape.found.better is None
 
 
 def test_the_operator_moves_the_sensor_to_the_ghost(skyward):

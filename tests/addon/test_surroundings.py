@@ -36,9 +36,9 @@ def test_a_grabbed_body_is_counted_as_pe_does_and_nothing_else_notices(car, tmp_
     standing = body.standing
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
     asked = ("--at", *map(repr, standing.place), "--heading", repr(standing.heading), "--body")
-    inside = run_here(path, "explain", *asked, "child", "--json")
-    assert run_here(path, "export", "-o", tmp_path / "study").returncode == 0
-    outside = pe_here("explain", tmp_path / "study" / "study.toml", *asked, "child", "--json")
+    inside = run_here(path, ["explain", *asked, "child", "--json"])
+    assert run_here(path, ["export", "-o", tmp_path / "study"]).returncode == 0
+    outside = pe_here(["explain", tmp_path / "study" / "study.toml", *asked, "child", "--json"])
     assert inside.stdout == outside.stdout and inside.returncode == outside.returncode == 0
     assert json.loads(inside.stdout)["body"] == body.to_dict()
 

@@ -12,7 +12,6 @@ import pytest
 from blender_addon import bridge, diagnostics, result_staleness
 from blender_addon.engine import advice
 from blender_addon.operators import compare_variants
-from pe_tools.advice.score_comparison import NEVER
 from tests.addon import scenes
 from tests.addon.layouts import Layout
 
@@ -167,22 +166,6 @@ def test_a_variant_that_is_switched_to_shows_its_own_result(ideas):
     assert ideas.perception_entropy.result_stale, "its score was made under another prior"
 
 
-def test_hidden_sensors_stay_hidden_and_where_they_were(ideas, tmp_path):
-    """Blender does not work out the place of what is hidden, and a file does not hold it."""
-    ideas.objects["eye"].hide_set(True)
-    bpy.ops.pe.update_variant()
-    before = bridge.records_of_scene(ideas)
-    assert [record.visible for record in before] == [False, True]
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "hidden.blend"))
-    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "hidden.blend"))
-    scene = bpy.context.scene
-    assert bridge.same_sensors(bridge.records_of_scene(scene), before)
-    remove(scene, "eye")
-    switch(scene, "Variant")
-    assert bridge.same_sensors(bridge.records_of_scene(scene), before)
-    assert not scene.objects["eye"].visible_get()
-
-
 def test_a_held_sensor_is_reported_and_nothing_is_changed(ideas):
     bpy.ops.pe.save_variant()
     roof = ideas.objects["roof"]
@@ -213,19 +196,6 @@ def test_a_variant_that_cannot_be_scored_is_reported_and_the_others_are(ideas):
     ideas.perception_entropy.variants[1].score_json = ""
     with pytest.raises(RuntimeError, match=r"variant .Variant.*names, such as"):
         bpy.ops.pe.compare_variants()
-
-
-def test_a_story_that_is_never_confirmed_is_drawn_as_the_worst(addon):
-    """An orange square without a number; where all are confirmed but the first, a star."""
-    cells = {}
-    for margins in ((0.2, NEVER), (NEVER, 0.2), (NEVER, NEVER)):
-        row = advice.ComparedRow("story", "child", "margin", margins, errors=((0.0, 0.0),) * 2)
-        cells[margins] = compare_variants.cell_of(row, 1)
-    assert list(cells.values()) == [
-        ("none", False, "", 1),
-        ("0.20", True, "", -1),
-        ("none", False, "", 0),
-    ]
 
 
 def test_bars_have_the_largest_difference_first_and_the_longest_is_full(ideas):

@@ -130,26 +130,6 @@ def test_what_is_hidden_in_an_instance_does_not_count(parts, how):
     assert set(scenes.vehicle(parts).part_names) == left
 
 
-def test_hidden_children_and_sensors_of_instances_are_told(car):
-    """Sensors of an instanced collection cannot be placed: they are not scored, and named."""
-    kit = bpy.data.collections.new("Kit")
-    child = scenes.add_collection(kit, "Child")
-    scenes.add_box(child, "hidden")
-    sensor = scenes.add_sensor("inside", location=(0.0, 0.0, 2.0))
-    scenes.add_sensor("roof", location=(0.0, 0.0, 2.0))
-    for own in tuple(sensor.users_collection):
-        own.objects.unlink(sensor)
-    kit.objects.link(sensor)
-    codes = {"hidden_vehicle", "instanced_sensors"}
-    assert not [each for each in bridge.scene_advice(car) if each.code in codes]
-    car.perception_entropy.vehicle.objects.link(instance_of(kit, "kit"))
-    child.hide_render = True
-    bpy.context.view_layer.update()
-    told = {each.code: each.text for each in bridge.scene_advice(car) if each.code in codes}
-    assert "Child is hidden in renders" in told["hidden_vehicle"]
-    assert "inside" in told["instanced_sensors"] and "Kit" in told["instanced_sensors"]
-
-
 def test_curve_counts_once(parts):
     """Blender lists a curve twice, as itself and as its mesh."""
     curve = bpy.data.curves.new("bar", "CURVE")
@@ -177,3 +157,23 @@ def test_glass_is_named(parts):
     scenes.add_box(parts, "body")
     scenes.add_box(parts, "window").perception_entropy.see_through = True
     assert scenes.vehicle(parts).glass == ("window",)
+
+
+def test_hidden_children_and_sensors_of_instances_are_told(car):
+    """Sensors of an instanced collection cannot be placed: they are not scored, and named."""
+    kit = bpy.data.collections.new("Kit")
+    child = scenes.add_collection(kit, "Child")
+    scenes.add_box(child, "hidden")
+    sensor = scenes.add_sensor("inside", location=(0.0, 0.0, 2.0))
+    scenes.add_sensor("roof", location=(0.0, 0.0, 2.0))
+    for own in tuple(sensor.users_collection):
+        own.objects.unlink(sensor)
+    kit.objects.link(sensor)
+    codes = {"hidden_vehicle", "instanced_sensors"}
+    assert not [each for each in bridge.scene_advice(car) if each.code in codes]
+    car.perception_entropy.vehicle.objects.link(instance_of(kit, "kit"))
+    child.hide_render = True
+    bpy.context.view_layer.update()
+    told = {each.code: each.text for each in bridge.scene_advice(car) if each.code in codes}
+    assert "Child is hidden in renders" in told["hidden_vehicle"]
+    assert "inside" in told["instanced_sensors"] and "Kit" in told["instanced_sensors"]

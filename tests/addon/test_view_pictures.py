@@ -35,11 +35,12 @@ def test_a_picture_keeps_its_proportions_and_leaves_the_view_room(region, pictur
     assert height == pytest.approx(width * picture[1] / picture[0], abs=2)
 
 
+@pytest.mark.parametrize("highest", [camera_strip.STRIP_PX, 40.0])
 @pytest.mark.parametrize("width", [1200.0, 300.0])
-def test_the_strip_has_all_cameras_beside_each_other(width):
+def test_the_strip_has_all_cameras_beside_each_other(width, highest):
     pictures = [(1920, 1080), (640, 480), (1280, 320)]
-    sizes = camera_strip.strip_sizes(width, pictures, 1.0)
+    sizes = camera_strip.strip_sizes(width, highest, pictures, 1.0)
     assert sum(size.width for size in sizes) + 2 * camera_strip.GAP_PX <= width
-    assert len({size.height for size in sizes}) == 1 and sizes[0].height <= camera_strip.STRIP_PX
+    assert len({size.height for size in sizes}) == 1 and sizes[0].height <= highest
     for (across, up), size in zip(pictures, sizes, strict=True):
         assert size.width == pytest.approx(size.height * across / up, abs=4)

@@ -56,7 +56,7 @@ def installed(blender, extension_zip, tmp_path_factory) -> Installed:
     """Return Blender with the extension installed into a user folder of its own."""
     own = blender.with_resources(tmp_path_factory.mktemp("blender_user"))
     answer = own.run(
-        "--command", "extension", "install-file", "-r", "user_default", "--enable", extension_zip
+        ["--command", "extension", "install-file", "-r", "user_default", "--enable", extension_zip]
     )
     # install-file gives status 0 also when it refused: only starting with it tells.
     installed = Installed(own, tmp_path_factory.mktemp("startup") / "startup.blend")

@@ -18,7 +18,7 @@ class Blender:
     env: dict[str, str] = field(default_factory=dict)
 
     def run(
-        self, *arguments, timeout_s: float = HANG_S, given: str | None = None
+        self, arguments, timeout_s: float = HANG_S, given: str | None = None
     ) -> subprocess.CompletedProcess[str]:
         """Run ``blender ARGUMENTS`` to its end, with a text on its standard input."""
         return process.run([self.command, *map(str, arguments)], timeout_s, self.env, given)
@@ -41,15 +41,15 @@ class Installed:
     def script(self, script: Path, *arguments) -> subprocess.CompletedProcess[str]:
         """Run a Python script inside, without a window; an exception in it gives status 3."""
         return self.blender.run(
-            *self.START, "-b", "--python-exit-code", 3, "--python", script, "--", *arguments
+            [*self.START, "-b", "--python-exit-code", 3, "--python", script, "--", *arguments]
         )
 
     def pe(
-        self, blend: Path, *arguments, given: str | None = None
+        self, blend: Path, arguments, given: str | None = None
     ) -> subprocess.CompletedProcess[str]:
         """Run ``blender -b BLEND --command pe ARGUMENTS``, with a text on its standard input."""
         command = (*self.START, "-b", blend, "--command", "pe", *arguments)
-        return self.blender.run(*command, given=given)
+        return self.blender.run(command, given=given)
 
 
 def output_of(answer: subprocess.CompletedProcess[str]) -> str:

@@ -60,16 +60,16 @@ def complaints_in(answer: subprocess.CompletedProcess[str]) -> list[str]:
 
 def test_missing_file_is_one_line_and_status_1(installed, tmp_path):
     missing = tmp_path / "nowhere.blend"
-    answer = installed.pe(missing, "score", "--output", tmp_path)
+    answer = installed.pe(missing, ["score", "--output", tmp_path])
     assert answer.returncode == 1, output_of(answer)
     assert len(complaints_in(answer)) == 1, output_of(answer)
     assert "Traceback" not in answer.stderr
 
 
 def test_blender_and_engine_agree_to_the_last_bit(installed, sedan, tmp_path):
-    inside = installed.pe(sedan, "score", *FAST, "--json", "--output", tmp_path / "inside")
+    inside = installed.pe(sedan, ["score", *FAST, "--json", "--output", tmp_path / "inside"])
     assert inside.returncode == 0, output_of(inside)
-    exported = installed.pe(sedan, "export", "--output", tmp_path / "study")
+    exported = installed.pe(sedan, ["export", "--output", tmp_path / "study"])
     assert exported.returncode == 0, output_of(exported)
     (study,) = (tmp_path / "study").glob("*.toml")
     outside = alone("score", study, *FAST, "--json")
@@ -80,7 +80,7 @@ def test_blender_and_engine_agree_to_the_last_bit(installed, sedan, tmp_path):
 def test_the_engine_in_blender_is_held_to_the_golden_cases_with_the_same_bits(installed, tmp_path):
     """Another Python, another NumPy and rewritten imports: the values are the same ones."""
     inside = installed.blender.run(
-        *installed.START, "-b", "--command", "pe", "verify", "-o", tmp_path
+        [*installed.START, "-b", "--command", "pe", "verify", "-o", tmp_path]
     )
     assert inside.returncode == 0, output_of(inside)
     found = read(tmp_path / "verify.json")
@@ -96,7 +96,7 @@ def both_scores(installed, code, sedan, folder) -> tuple[dict, dict]:
     script.write_text(code, "utf-8")
     answer = installed.script(script, sedan, saved, folder)
     assert answer.returncode == 0, output_of(answer)
-    inside = installed.pe(saved, "score", *FAST, "--json")
+    inside = installed.pe(saved, ["score", *FAST, "--json"])
     assert inside.returncode == 0, output_of(inside)
     return document_in(inside.stdout), alone("score", folder / "study.toml", *FAST, "--json")
 
@@ -123,14 +123,14 @@ def test_a_film_without_a_window_is_that_of_its_drive_by(installed, sedan, tmp_p
     story = tmp_path / "story.toml"
     film = tmp_path / "film.webm"
     story.write_text(SHORT_STORY)
-    answer = installed.pe(sedan, "check", "--stories", story, "-o", film, "--json")
+    answer = installed.pe(sedan, ["check", "--stories", story, "-o", film, "--json"])
     assert answer.returncode in (0, 3), output_of(answer)
     data = film.read_bytes()
     assert data.startswith(b"\x1a\x45\xdf\xa3") and b"webm" in data[:64]
     (of,) = document_in(answer.stdout)["stories"]
     assert of["name"] == "crossing_child"
     assert b"perception-entropy " in data
-    again = installed.pe(sedan, "check", "--stories", story, "-o", film)
+    again = installed.pe(sedan, ["check", "--stories", story, "-o", film])
     assert again.returncode == 1 and film.read_bytes() == data, output_of(again)
 
 
@@ -139,6 +139,6 @@ def test_a_film_is_of_the_kind_that_its_name_says(installed, sedan, tmp_path):
     story = tmp_path / "story.toml"
     film = tmp_path / "film.mp4"
     story.write_text(SHORT_STORY)
-    answer = installed.pe(sedan, "check", "--stories", story, "-o", film)
+    answer = installed.pe(sedan, ["check", "--stories", story, "-o", film])
     assert answer.returncode in (0, 3), output_of(answer)
     assert b"ftyp" in film.read_bytes()[:16]

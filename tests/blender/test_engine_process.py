@@ -69,7 +69,9 @@ def test_killed_in_a_drag_and_in_a_search_it_goes_on(stage, installed, tmp_path)
     assert found["modules"] > 100
     stage.wait_until(f"{RUNNING} is None and {SETTINGS}.has_result")
     found = stage.do(f"kept['found'] = ({SETTINGS}.result.entropy,)")
-    answer = installed.pe(begun, "optimize", "--no-review", "--json", "--output", tmp_path / "out")
+    answer = installed.pe(
+        begun, ["optimize", "--no-review", "--json", "--output", tmp_path / "out"]
+    )
     assert answer.returncode == 0, output_of(answer)
     result = json.loads((tmp_path / "out" / "result.json").read_text())
     assert result["entropy"] <= result["before"]["entropy"]

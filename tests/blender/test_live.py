@@ -126,7 +126,7 @@ def test_a_drag_is_followed_and_ends_exact_to_the_bit(live, screenshots, install
     copy = tmp_path / "moved.blend"
     end = let_go["entropy"]
     live.do(f"bpy.ops.wm.save_as_mainfile(filepath={str(copy)!r}, copy=True)")
-    answer = installed.pe(copy, "score", "--samples", SAMPLES, "--json", "--output", tmp_path)
+    answer = installed.pe(copy, ["score", "--samples", SAMPLES, "--json", "--output", tmp_path])
     assert answer.returncode == 0, output_of(answer)
     found = json.loads((tmp_path / "result.json").read_text())
     assert found["entropy"] == end, "a window and the command line differ"

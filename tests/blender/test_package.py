@@ -37,7 +37,7 @@ def test_names_stay_english_where_blender_has_a_translation(report, code):
 
 
 def test_blender_s_own_tool_finds_the_zip_valid(blender, extension_zip):
-    answer = blender.run("--factory-startup", "--command", "extension", "validate", extension_zip)
+    answer = blender.run(["--factory-startup", "--command", "extension", "validate", extension_zip])
     assert answer.returncode == 0, output_of(answer)
 
 

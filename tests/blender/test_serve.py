@@ -35,7 +35,7 @@ def test_requests_over_a_pipe_are_answered_line_by_line(installed, sedan, tmp_pa
         {"do": "region", "sensor": "tail"},
     ]
     lines = "".join(f"{json.dumps({'id': k, **each})}\n" for k, each in enumerate(requests))
-    answer = installed.pe(sedan, "serve", given=lines)
+    answer = installed.pe(sedan, ["serve"], given=lines)
     assert answer.returncode == 0, output_of(answer)
     replies = [json.loads(line) for line in answer.stdout.splitlines() if line.startswith("{")]
     assert [each["id"] for each in replies] == list(range(len(requests))), output_of(answer)
@@ -46,7 +46,7 @@ def test_requests_over_a_pipe_are_answered_line_by_line(installed, sedan, tmp_pa
     assert moved["answer"]["sensors"]["roof"] == POSE
     typed = [f"--set=sensor.roof.{key}={value}" for key, value in POSE.items()]
     alone = json.loads(
-        pe("score", study, *typed, f"--set=sensor.roof.model={MODEL}", "--json").stdout
+        pe(["score", study, *typed, f"--set=sensor.roof.model={MODEL}", "--json"]).stdout
     )
     assert before["answer"]["after"] != after["answer"]["after"] == alone["after"]
     assert len(places["answer"]["places"]) == 10

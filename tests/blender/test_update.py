@@ -74,21 +74,23 @@ def report(blender, repositories, served, sedan, tmp_path_factory):
     own = blender.with_resources(folder / "user")
     add = ("repo-add", "--name", "PE", "--url", served, "pe_site", "--clear-all")
     for verb in (add, ("install", "--sync", "--enable", "perception_entropy")):
-        answer = own.run("--online-mode", "-b", "--command", "extension", *verb)
+        answer = own.run(["--online-mode", "-b", "--command", "extension", *verb])
         assert answer.returncode == 0, output_of(answer)
     scene = shutil.copy(sedan, folder / "scene.blend")
     answer = own.run(
-        "--online-mode",
-        "-b",
-        scene,
-        "--python-exit-code",
-        3,
-        "--python",
-        HERE / "inside_update.py",
-        "--",
-        folder / "report.json",
-        repositories / "newer",
-        repositories / "served",
+        [
+            "--online-mode",
+            "-b",
+            scene,
+            "--python-exit-code",
+            3,
+            "--python",
+            HERE / "inside_update.py",
+            "--",
+            folder / "report.json",
+            repositories / "newer",
+            repositories / "served",
+        ]
     )
     assert answer.returncode == 0, output_of(answer)
     assert "Traceback" not in answer.stderr, answer.stderr

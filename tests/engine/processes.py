@@ -41,15 +41,15 @@ ANALYSE = (
     "",
     (
         "import threading\n"
-        "from pe_tools.jobs import score_and_optimize\n"
-        "score_and_optimize.robustness = lambda *_, **__: threading.Event().wait()\n"
+        "from pe_tools.jobs import optimize_job\n"
+        "optimize_job.robustness = lambda *_, **__: threading.Event().wait()\n"
     ),
 )
 """Whether the analysis of a search never ends."""
 RUN = "from pe_tools.__main__ import main; main()"
 
 
-def pe(*arguments):
+def pe(arguments):
     """Run the command in this process: what it would print, warnings too, and its status."""
     out = io.StringIO()
     err = io.StringIO()
@@ -74,7 +74,7 @@ def finished(job):
 class Command:
     """A running ``pe``; its stderr is read as it comes."""
 
-    def __init__(self, *arguments, hang_in_score=0, hangs=False, **options):
+    def __init__(self, arguments, hang_in_score=0, hangs=False, **options):
         script = FEW_ERRORS + TELL_ALL + HANG.format(nth=hang_in_score) + ANALYSE[hangs] + RUN
         options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options}
         self.process = subprocess.Popen(

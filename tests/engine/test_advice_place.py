@@ -10,7 +10,6 @@ from pe_core.metric import average_precision, entropy_of, late_fusion, precision
 from pe_tools import advice
 from pe_tools.verify import oracle
 from tests.engine import shapes
-from tests.engine.refusals import wrongly_refused
 from tests.thorough import tries
 
 SPACE = pe.PerceptionSpace((-20, 20), (-10, 10), (0, 5), 0.5)
@@ -24,22 +23,6 @@ def one_beam(position=(0.0, 0.0, 1.25), elevations=(0.0,), max_range=15.0, **opt
 
 def ask(sensors, point, vehicle=None, space=SPACE):
     return advice.ask_place(pe.Rig(sensors), space, pe.Prior.uniform(), vehicle, point=point)
-
-
-def test_a_point_is_in_the_voxel_that_holds_it():
-    sensor = one_beam()
-    assert ask([sensor], (10.2, -3.1)).center == (10.25, -3.25, 0.25)
-    assert ask([sensor], (10.2, -3.1, None)).center == (10.25, -3.25, 0.25)
-    assert ask([sensor], (10.5, -3.0, 1.5)).center == (10.75, -2.75, 1.75)
-    assert ask([sensor], (20, 10, 5)).center == (19.75, 9.75, 4.75)
-
-
-NO_POINTS = [("x", (20.1, 0)), ("z", (0, 0, -1))]
-NO_POINTS += [("point", each) for each in ((1,), (1, 2, 3, 4), ("a", 2), (math.nan, 2))]
-
-
-def test_a_point_that_is_none_is_refused():
-    assert wrongly_refused(lambda point: ask([one_beam()], point), NO_POINTS, "place") == []
 
 
 def test_one_beam_by_hand():

@@ -196,20 +196,6 @@ def test_a_vehicle_that_faces_elsewhere(vehicles, sedan):
     assert (None, "faces") not in told(moved(unnamed, BACK))
 
 
-def test_names_are_taken_by_their_words():
-    """`detail` is no tail, and what is at both ends tells nothing."""
-    names = ("body", "FrontDetail", "rear_windshield", "TailLights")
-    boxes = [
-        (n, (x - 0.1, -0.5, 0), (x + 0.1, 0.5, 1))
-        for n, x in zip(names, (0, 2, 1, -2), strict=True)
-    ]
-    car = with_parts(*boxes)
-    assert (None, "faces") not in told(car)
-    assert told(moved(car, BACK))[None, "faces"].amount == (180.0,)
-    detail = pe.Vehicle(car.triangles * (-1, -1, 1), car.parts, ("body", "front", "x", "detail"))
-    assert (None, "faces") not in told(detail)
-
-
 def turned_by(vehicle, amount):
     """Return a vehicle turned about x, then about y [deg], and put on the ground."""
     sx, sy = np.sin(np.radians(amount[:2]))
@@ -266,14 +252,6 @@ def test_sunk_floating_or_beside_the_axis(vehicles):
             assert not codes & {"height", "not_centred"}, little
 
 
-def test_one_mirror_or_one_seat_leave_the_axis_where_it_is():
-    for low, high in (((0.5, 0.9, 0.9), (0.6, 1.2, 1.0)), ((-0.3, 0.2, 0.5), (0.3, 0.8, 1.3))):
-        with_one = pe.Vehicle(np.concatenate([CAR.triangles, shapes.box(low, high)]))
-        assert (None, "not_centred") not in told(with_one)
-        beside = told(moved(with_one, shift=(0, 0.5, 0)))[None, "not_centred"]
-        assert beside.amount[1] == pytest.approx(-0.5, abs=0.1)
-
-
 def test_a_size_in_another_unit_or_of_no_road_vehicle(sedan):
     """2.03 m over its mirrors: 3.25 m at 1.6 times the size; 4.70 m long, 0.6 of which is 4.5."""
     for factor in (0.0254, 0.01, 0.001):
@@ -308,13 +286,3 @@ def test_a_part_as_large_as_a_room(sedan):
         ours = [(each.code, each.part) for each in found if each.subject is None]
         assert ours == [("room", name) for name, _, _ in rooms]
         assert "inside" not in {each.code for each in found}
-
-
-def test_a_body_with_small_parts_is_no_room(vehicles):
-    """The bus's body beside an antenna, and a double-decker's beside its wheels."""
-    bus = pe.Vehicle(vehicles[1].triangles)
-    two = with_parts(("antenna", (0, 0, 2.6), (0.1, 0.1, 2.9)), vehicle=bus)
-    body = ("body", (-5.5, -1.25, 0.3), (5.5, 1.25, 4.4))
-    decker = with_parts(body, ("wheels", (-4, -1.2, 0), (4, 1.2, 1)))
-    for vehicle in (two, decker):
-        assert (None, "room") not in told(vehicle)

@@ -1,7 +1,6 @@
 """Scores and what a rig sees in words: figures as people read them, tables, moves."""
 
 import dataclasses
-import json
 import math
 from types import SimpleNamespace
 
@@ -12,11 +11,9 @@ import pe_core as pe
 import pe_tools as pt
 from pe_core.scoring.score import TrafficAp
 from pe_core.scoring.sight import Reach
-from pe_core.search.key_figures import dashboard
 from pe_tools import advice
 from pe_tools.advice.ranking import moved_words
 from pe_tools.advice.summary import outlook_words
-from pe_tools.cli.terminal import figure_lines
 from tests.engine import shapes
 
 INSIDE = "camera in the boot"
@@ -162,140 +159,9 @@ def test_what_is_reported_of_it(stopped, coverage, warned, stderr, lines):
     assert not advice.rig_words(score)[0].startswith("camera")
 
 
-@pytest.mark.parametrize("samples", [0, 2048])
-def test_a_wall_hides_the_left_half_of_the_picture(samples):
-    """A wall from straight ahead to the left, one metre off, higher than the picture."""
-    wall = pe.Vehicle(
-        shapes.box((1.0, 0.0, 0.0), (1.1, 3.0, 4.0)), np.zeros(12, np.int32), ("wall",)
-    )
-    sensor = shapes.camera(60.0, (0.0, 0.0, 2.0))
-    space = pe.PerceptionSpace((-2, 8), (-4, 4), (0, 4), 0.5)
-    score = pe.Evaluator(space, pe.Prior.uniform(), wall, samples=samples).score(pe.Rig([sensor]))
-    own = score.per_sensor["camera"]
-    assert own.occluded / own.beams == pytest.approx(0.5, abs=0.01)
-    assert own.occluded_by == {"wall": own.occluded}
-    assert 16_000 < own.beams <= 16_384
-
-
-@pytest.fixture(scope="module")
-def study():
-    """A small LiDAR on a box of a car."""
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(32, 360))])
-    return pe.Study(rig, shapes.box_car(), space=shapes.small_space())
-
-
-def test_they_are_those_of_sight(study):
-    look = study.sight()
-    found = advice.KeyFigures.of_rig(look, study.rig)
-    reach = look.reach(study.rig, "car")
-    blind = look.blind(study.rig, 0.5)
-    assert 0.0 < found.values["blind_ground"] == pytest.approx(blind.area, abs=1e-9) and (
-        found.height,
-        found.within,
-    ) == (0.5, 10.0)
-    assert found.reach["car"] == (reach.distance[0], reach.distance[0] >= reach.limit[0] - 0.5)
-    assert found.reach.keys() == set(study.prior.class_names)
-    assert found.traffic == look.in_traffic(study.rig) is not None
-    assert found.sectors == look.blind_sectors(study.rig)
-    assert advice.KeyFigures.from_dict(json.loads(json.dumps(found.to_dict()))) == found
-
-
-def in_traffic(near):
-    """Key figures of a rig with this AP near the vehicle."""
-    rings = {"near": near, "far": (0.33, 0.002)}
-    values = {"ap_near": near[0], "ap_far": 0.33, "traffic_ap": 0.4, "blind_ground": 1.0}
-    return advice.KeyFigures(
-        TrafficAp(0.4, 0.01, 8, rings), sectors=(), height=0.5, within=10.0, values=values
-    )
-
-
-def test_a_move_is_told_with_its_gain_and_its_error(study):
-    """The largest step and turn of each sensor that moved; AP by distance of start and result."""
-    x, y, z = study.rig["roof"].pose.position
-    up = study.rig.with_poses([pe.Pose.from_degrees((x - 0.03, y, z + 0.08), (0.0, 0.0, 12.0))])
-    start = in_traffic((0.41, 0.01))
-    result = in_traffic((0.474, 0.0101))
-    assert advice.gain_sentence(study.rig, up, start, result) == (
-        "roof 8 cm up and turned 12 deg: expected AP in traffic near 0.41 to 0.47, "
-        "far 0.33 to 0.33 (+- 0.02)"
-    )
-    assert advice.gain_sentence(study.rig, study.rig, start, result) == ""
-
-
-def test_key_figures_are_told_where_they_exist_and_to_where_the_space_ends():
-    """There is no AP at a middle distance, before or after."""
-    found = {"car": (19.9, False)}, {"car": (20.0, True), "cone": (30.0, True)}
-    known = in_traffic((0.4, 0.01))
-    told = [
-        dataclasses.replace(known, reach=each, values={**known.values, "reach": each["car"][0]})
-        for each in found
-    ]
-    parts = {"kind": "optimize", "figures": told, "before": score(), "after": score()}
-    (line,) = figure_lines(SimpleNamespace(**parts, dashboard=dashboard(told[1], 3.0)))
-    assert "reach 19 m -> 20 m and more, AP near 0.40 -> 0.40, AP far 0.33 -> 0.33" in line
-    assert (
-        "20 m and more -> 19 m"
-        in figure_lines(
-            SimpleNamespace(**parts | {"figures": told[::-1]}, dashboard=dashboard(told[0], 3.0))
-        )[0]
-    )
-
-
-def reach(by_degrees, name="pedestrian", limit=80.0):
-    """A reach along eight bearings: what is not named is 0."""
-    degrees = [0, 45, 90, 135, 180, 225, 270, 315]
-    distance = np.array([float(by_degrees.get(d, 0.0)) for d in degrees])
-    return Reach(
-        name,
-        ap=0.5,
-        bearings=np.radians(degrees),
-        distance=distance,
-        per_sensor={},
-        limit=np.full(8, limit),
-    )
-
-
 def blind(**zone):
     """Blind ground that begins at the body: how far it reaches by side."""
     return SimpleNamespace(zone=zone, within=10.0, height=0.5)
-
-
-ROUND = blind(front=4.24, rear=None, left=0.0, right=2.0)
-
-
-def said(reach, blind):
-    shares = SimpleNamespace(by_number=(1.0, 0.8, 0.22), zones={})
-    found = advice.Outlook({"car": 0.614, "cone": 0.2}, shares, reach, blind)
-    return list(outlook_words(found))
-
-
-def test_what_is_said():
-    assert said(reach({0: 43.9, 180: 80.0, 270: 12.0, 45: 99.0}), ROUND) == [
-        "expected AP: car 0.61, cone 0.20",
-        "a pedestrian is found (AP 0.5 or more) up to 43 m ahead, 80 m and more behind, "
-        "12 m right; not left",
-        "blind to what is 0.5 m tall, from the body: to 4.3 m ahead, beyond 10 m behind, "
-        "none left, to 2.0 m right",
-    ]
-
-
-def test_an_outlook_is_sight_s():
-    """Its figures are those of `Sight`, and the class is pedestrians unless it is asked for."""
-    study = pe.Study(
-        pe.Rig([shapes.lidar_on_roof(shapes.small_lidar()), shapes.camera()]),
-        shapes.box_car(),
-        shapes.small_space(),
-    )
-    sight = study.sight()
-    found = advice.outlook(sight, study.rig)
-    car = advice.outlook(sight, study.rig, "car")
-    assert found.reach.class_name == "pedestrian" and car.reach.class_name == "car"
-    assert found.expected_ap == sight.expected_ap(study.rig)
-    assert np.array_equal(car.reach.distance, sight.reach(study.rig, "car").distance)
-    assert found.blind.area == sight.blind(study.rig, 0.5).area
-    data = found.to_dict()
-    assert data["reach"]["bearings_deg"][:2] == [0.0, 5.0]
-    assert data["seen_by_at_least"] == list(sight.shares(study.rig).by_number)
 
 
 def test_shares_by_number_and_by_sensor_by_hand():
@@ -345,3 +211,55 @@ def test_figures_that_prefer_different_rigs_are_told():
         return advice.disagreement(["one", "other"], rows)
 
     assert told((0.0, 0.0)) == "" and "other by the widest blind sector" in told((20.0, 0.0))
+
+
+@pytest.fixture(scope="module")
+def study():
+    """A small LiDAR on a box of a car."""
+    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(32, 360))])
+    return pe.Study(rig, shapes.box_car(), space=shapes.small_space())
+
+
+def in_traffic(near):
+    """Key figures of a rig with this AP near the vehicle."""
+    rings = {"near": near, "far": (0.33, 0.002)}
+    values = {"ap_near": near[0], "ap_far": 0.33, "traffic_ap": 0.4, "blind_ground": 1.0}
+    return advice.KeyFigures(
+        TrafficAp(0.4, 0.01, 8, rings), sectors=(), height=0.5, within=10.0, values=values
+    )
+
+
+def test_a_move_is_told_with_its_gain_and_its_error(study):
+    """The largest step and turn of each sensor that moved; AP by distance of start and result."""
+    x, y, z = study.rig["roof"].pose.position
+    up = study.rig.with_poses([pe.Pose.from_degrees((x - 0.03, y, z + 0.08), (0.0, 0.0, 12.0))])
+    start = in_traffic((0.41, 0.01))
+    result = in_traffic((0.474, 0.0101))
+    assert advice.gain_sentence(study.rig, up, start, result) == (
+        "roof 8 cm up and turned 12 deg: expected AP in traffic near 0.41 to 0.47, "
+        "far 0.33 to 0.33 (+- 0.02)"
+    )
+    assert advice.gain_sentence(study.rig, study.rig, start, result) == ""
+
+
+def test_what_is_said():
+    distance = np.array([43.9, 99.0, 0.0, 0.0, 80.0, 0.0, 12.0, 0.0])
+    reach = Reach(
+        "pedestrian",
+        ap=0.5,
+        bearings=np.radians(np.arange(0, 360, 45)),
+        distance=distance,
+        per_sensor={},
+        limit=np.full(8, 80.0),
+    )
+    zone = {"front": 4.24, "rear": None, "left": 0.0, "right": 2.0}
+    blind = SimpleNamespace(zone=zone, within=10.0, height=0.5)
+    shares = SimpleNamespace(by_number=(1.0, 0.8, 0.22), zones={})
+    found = outlook_words(advice.Outlook({"car": 0.614, "cone": 0.2}, shares, reach, blind))
+    assert list(found) == [
+        "expected AP: car 0.61, cone 0.20",
+        "a pedestrian is found (AP 0.5 or more) up to 43 m ahead, 80 m and more behind, "
+        "12 m right; not left",
+        "blind to what is 0.5 m tall, from the body: to 4.3 m ahead, beyond 10 m behind, "
+        "none left, to 2.0 m right",
+    ]

@@ -40,7 +40,7 @@ def test_five_calls_score_search_check_and_export(folder, monkeypatch):
     calls = [shlex.split(line.partition("  #")[0]) for line in block("sh")]
     assert [call[1] for call in calls] == ["new", "score", "check", "optimize", "export"]
     for _, *call in calls:
-        answer = pe(*call)
+        answer = pe(call)
         assert answer.returncode in (0, NOT_MET), answer.stderr
         data = json.loads(answer.stdout)
         if call[0] == "new":
@@ -60,7 +60,7 @@ def test_every_request_of_the_session_is_answered(folder, monkeypatch):
     files_of_a_reader(folder, "")
     stdin = SimpleNamespace(buffer=io.BytesIO("\n".join(block("json")).encode()))
     monkeypatch.setattr(sys, "stdin", stdin)
-    replies = [json.loads(line) for line in pe("serve").stdout.splitlines()]
+    replies = [json.loads(line) for line in pe(["serve"]).stdout.splitlines()]
     assert [each["id"] for each in replies] == [1, 2, 3, 4, 5, 6, 7]
     assert [each.get("error") for each in replies] == [None] * len(replies)
     for reply in replies:

@@ -10,14 +10,9 @@ import math
 import numpy as np
 import pytest
 
-import pe_core as pe
-import pe_tools as pt
 from pe_core import catalog
-from pe_core.study.study_file import study_from_dict, study_to_dict
 from pe_tools.formats.angles import read_angles
 from tests.engine.refusals import wrongly_refused
-
-MODEL = {"kind": "lidar", "azimuth_step_deg": 90, "max_range_m": 100}
 
 HESAI = "Laser id,Elevation,Azimuth\n1,14.985,0.186\n2,13.283,0.185\n3,-1.5,-3.13\n"
 HESAI_DEG = [(14.985, -0.186), (13.283, -0.185), (-1.5, 3.13)]
@@ -165,35 +160,5 @@ def test_velodyne_s_calibration_has_the_beams_of_the_preset(write):
     assert read[1] == pytest.approx((math.degrees(-0.1249), -4.0), abs=1e-5)
 
 
-def study(angles, **more):
-    model = MODEL | {"azimuth_step_deg": 0.2, "angles": angles} | more
-    return {"sensor": [{"name": "own", "model": model, "position": [0, 0, 1.8]}]}
-
-
-def test_a_saved_study_stands_alone_with_the_same_beams_to_the_bit(write, tmp_path):
-    folder = write("-15 1.5\n0.1234567890123 7e-11\n", "unit.dat").parent
-    first = study_from_dict(study("unit.dat"), folder=folder)
-    (tmp_path / "elsewhere").mkdir()
-    pt.export_study(first, tmp_path / "elsewhere" / "copy.toml")
-    (folder / "unit.dat").unlink()
-    copy = pe.load_study(tmp_path / "elsewhere" / "copy.toml")
-    assert np.array_equal(copy.rig["own"].model.directions, first.rig["own"].model.directions)
-    assert study_to_dict(copy) == study_to_dict(first)
-    assert "angles" not in study_to_dict(first)["sensor"][0]["model"]
-
-
 def test_bad_files_are_refused_by_their_line(write):
     assert wrongly_refused(lambda text: read_angles(write(text)), BAD) == []
-
-
-BAD_STUDIES = [study(angles) for angles in ("none.csv", "angles.txt", ".", 3, "")]
-BAD_STUDIES += [study("a", elevations_deg=[1]), study("a", azimuth_offsets_deg=[1])]
-
-
-def test_a_study_names_its_field_and_the_angles_file(write):
-    folder = write("1\nx\n").parent
-    for data in BAD_STUDIES:
-        with pytest.raises(pe.InputError) as caught:
-            study_from_dict(data, "study.toml", folder)
-        assert caught.value.source == "study.toml"
-        assert caught.value.field.startswith("sensor[0].model.angles")

@@ -51,7 +51,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def described():
-    return json.loads(pe("--help", "--json").stdout)
+    return json.loads(pe(["--help", "--json"]).stdout)
 
 
 @pytest.mark.parametrize("verb", CALLS)
@@ -59,7 +59,7 @@ def test_each_verb_prints_one_document_as_its_schema_says(verb, folder, describe
     monkeypatch.chdir(folder)
     schema = described["answers"]
     for arguments in CALLS[verb]:
-        answer = pe(verb, *arguments, "--json")
+        answer = pe([verb, *arguments, "--json"])
         assert answer.returncode in (0, 3), answer.stderr
         data = json.loads(answer.stdout)
         jsonschema.validate({verb: data}, schema)
@@ -86,11 +86,11 @@ def test_the_help_as_data_is_that_of_the_parser(described):
     assert described["exit_statuses"] == {str(n): text for n, text in EXIT_STATUSES.items()}
     verbs = {each["name"]: each["arguments"] for each in described["verbs"]}
     for name, arguments in verbs.items():
-        shown = pe(name, "--help").stdout
+        shown = pe([name, "--help"]).stdout
         flags = {flag for each in arguments for flag in each["flags"]}
         printed = set(re.findall(r"(?m)^  (?:-\w(?: [^,\n]+)?, )?(--[\w-]+)", shown))
         assert {flag for flag in flags if flag.startswith("--")} == printed - {"--help"}, name
-        own = json.loads(pe(name, "--help", "--json").stdout)
+        own = json.loads(pe([name, "--help", "--json"]).stdout)
         assert [each["arguments"] for each in own["verbs"]] == [arguments]
         assert own["answers"]["properties"].keys() == {name}
     at = next(each for each in verbs["explain"] if each["name"] == "at")

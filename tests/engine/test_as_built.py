@@ -88,16 +88,6 @@ def test_costs_are_differences_of_scores_with_one_sensor_as_built(study):
     assert weights == sorted(weights, reverse=True)
 
 
-def test_what_falls_is_named_and_nothing_else(study):
-    roof, front, rear = sensors()
-    blind = moved(roof, (0.0, 0.0, -1.0))  # inside the body
-    turned = moved(front, yaw=180.0 * DEG)
-    limited = replace(study, limits=pe.Limits(blind_sector=pe.Limit(360, kept=False)))
-    found = compared(limited, pe.Rig([blind, turned, rear]))
-    assert found.fallen == ("ahead",)
-    assert compared(limited, pe.Rig([roof, front, rear])).fallen == ()
-
-
 def test_one_command_checks_a_calibration(study, tmp_path, capsys):
     design = tmp_path / "design.toml"
     pt.export_study(study, design)

@@ -3,14 +3,11 @@
 import _multiprocessing
 import math
 import os
-import queue
 import signal
-import socket
 import subprocess
 import sys
-import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
@@ -130,44 +127,12 @@ def test_results_do_not_depend_on_who_evaluates(evaluator, rigs, pool):
     assert backward[::-1] == alone
 
 
-def test_what_is_not_below_is_reported_alike_by_all(evaluator, rigs, pool):
-    """Whether an evaluator needs the vehicle to tell so depends on what it measured before."""
-    alone = [evaluator.entropy(rig) for rig in rigs]
-    cutoff = sorted(alone)[2]
-    expected = [entropy if entropy < cutoff else math.inf for entropy in alone]
-    assert expected.count(math.inf) == CANDIDATES - 2
-    for executor in (None, pool):
-        assert evaluated(evaluator, rigs, cutoff, executor) == expected
-        assert evaluated(evaluator, rigs[::-1], cutoff, executor) == expected[::-1]
-
-
 def test_an_objective_is_sent_to_a_process_once(tmp_path, rigs, pool):
     objective = Landscape(tmp_path)
     for _ in range(3):
         evaluated(objective, rigs, math.inf, pool)
     assert 1 <= len(objective.unpacked) <= 2
     assert len(set(objective.unpacked)) == len(objective.unpacked)
-
-
-@pytest.mark.thorough
-def test_workers_of_a_cluster_have_an_objective_by_a_plugin(tmp_path, evaluator, rigs):
-    """Dask: no call brings the payload."""
-    distributed = pytest.importorskip("distributed")
-    local = {"processes": False, "dashboard_address": None, "threads_per_worker": 1}
-    with distributed.Client(n_workers=2, **local) as client:
-        executor = client.get_executor(pure=False)
-        calls = []
-        objective = Landscape(tmp_path)
-        submit = executor.submit
-        executor.submit = lambda *call: calls.append(call) or submit(*call)
-        expected = [objective.entropy(rig) for rig in rigs]
-        for _ in range(2):
-            assert evaluated(objective, rigs, math.inf, executor) == expected
-        assert 1 <= len(objective.unpacked) <= 2
-        assert len(calls) == 2 * CANDIDATES
-        assert not any(call[2].data for call in calls)
-        found = evaluated(evaluator, rigs, math.inf, executor)
-    assert found == [evaluator.entropy(rig) for rig in rigs]
 
 
 def test_what_objectives_and_rigs_share_is_sent_once(evaluator, rigs):
@@ -257,57 +222,6 @@ def handler() -> Iterator[None]:
     before = signal.signal(signal.SIGTERM, end)
     yield
     signal.signal(signal.SIGTERM, before)
-
-
-@pytest.fixture
-def other_thread() -> Iterator[None]:
-    """A thread that blocks no signal: the system gives it those that the main thread blocks."""
-    ended = threading.Event()
-    thread = threading.Thread(target=ended.wait)
-    thread.start()
-    yield
-    ended.set()
-    thread.join()
-
-
-@pytest.fixture
-def kill() -> Iterator[Callable[[], None]]:
-    """Send SIGTERM to this process, and wait until a thread has got it."""
-    ours, systems = socket.socketpair()
-    systems.setblocking(False)
-    ours.settimeout(10.0)
-    before = signal.set_wakeup_fd(systems.fileno())
-
-    def kill() -> None:
-        os.kill(os.getpid(), signal.SIGTERM)
-        assert ours.recv(1) == bytes([signal.SIGTERM])
-
-    yield kill
-    signal.set_wakeup_fd(before)
-    for end in (ours, systems):
-        end.close()
-
-
-@POSIX
-@pytest.mark.usefixtures("handler", "other_thread")
-def test_a_handler_raises_after_the_submission_and_the_pool_still_ends(monkeypatch, kill):
-    with Processes(1) as processes:
-        assert processes.submit(int, "7").result() == 7
-        put = queue.Queue.put
-        whole = []
-
-        def put_meanwhile(numbers: queue.Queue, number: int) -> None:
-            kill()
-            put(numbers, number)
-            whole.append(number)
-
-        monkeypatch.setattr(queue.Queue, "put", put_meanwhile)
-        with pytest.raises(Ended):
-            processes.submit(int, "8")
-        monkeypatch.setattr(queue.Queue, "put", put)
-        answer = processes.submit(int, "9")
-        assert whole, "the task is in the pool's queue before the handler raises"
-        assert answer.result() == 9
 
 
 @POSIX

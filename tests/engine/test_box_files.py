@@ -2,9 +2,7 @@
 
 import json
 import math
-from dataclasses import replace
 
-import numpy as np
 import pytest
 
 import pe_core as pe
@@ -227,33 +225,6 @@ def test_bad_files_are_refused_by_their_line(write, tmp_path):
     assert wrongly_refused(lambda data: pt.read_boxes(write(data)), BAD, tmp_path) == []
 
 
-def test_many_boxes_are_what_each_of_them_is(write):
-    """Files in all three layouts hold the same boxes."""
-    rng = np.random.default_rng(1)
-    kitti = []
-    plain = ["class,x,y,z,length,width,height,yaw"]
-    annotations = []
-    for _ in range(50):
-        x = rng.uniform(-20, 20)
-        y = rng.uniform(-9, 9)
-        turn = rng.uniform(-3, 3)
-        place = f"{-y!r} 1.65 {x - CAMERA[0]!r} {turn!r}"
-        kitti.append(f"Cyclist 0 0 0 0 0 1 1 1.5 0.5 1.75 {place}")
-        yaw = -turn - math.pi / 2
-        plain.append(f"cyclist,{x!r},{y!r},0.75,1.75,0.5,1.5,{math.degrees(yaw)!r}")
-        rotation = [math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)]
-        box = {"translation": [x, y, 0.75], "size": [0.5, 1.75, 1.5], "rotation": rotation}
-        annotations.append(nuscenes_box("vehicle.bicycle", **box))
-    files = [write("\n".join(kitti)), write("\n".join(plain), "b"), write(annotations, "c")]
-    tables = [pt.read_boxes(f) for f in files]
-    for table in tables[1:]:
-        for column in ("x", "y", "z", "length", "width", "height"):
-            np.testing.assert_allclose(
-                getattr(table, column), getattr(tables[0], column), atol=1e-12
-            )
-        np.testing.assert_allclose(np.exp(1j * table.yaw), np.exp(1j * tables[0].yaw), atol=1e-9)
-
-
 def test_a_column_of_tracks_is_no_column_of_classes(tmp_path):
     """300 names took 7 GB, and a score of each."""
     path = tmp_path / "labels.csv"
@@ -264,30 +235,6 @@ def test_a_column_of_tracks_is_no_column_of_classes(tmp_path):
     assert (error.value.field, error.value.found) == ("class", "300")
     path.write_text("\n".join([CSV.splitlines()[0], *rows[:64]]))
     assert len(pt.read_boxes(path).classes) == 64
-
-
-def test_a_study_names_its_boxes(write):
-    write(KITTI)
-    path = write(STUDY, "study.toml")
-    study = pe.load_study(path)
-    assert study.prior.class_names == ("car", "pedestrian")
-    assert study.prior.boxes.file == "labels" and study.prior.focus[0].factor == 2.0
-    pe.save_study(study, path)
-    text = path.read_text()
-    assert 'boxes = "labels"' in text and "model = " not in text.split("[[sensor]]")[0]
-    assert "origin" not in text
-    assert pe.load_study(path).prior == study.prior
-
-
-def test_a_study_says_where_the_labels_origin_is(write):
-    write(KITTI)
-    text = changed(STUDY, 'boxes = "labels"', 'boxes = "labels"\norigin = [1.5, 0.0, 1.6]')
-    path = write(text, "study.toml")
-    prior = pe.load_study(path).prior
-    assert prior.boxes.x[0] == pytest.approx(11.5)
-    pe.save_study(pe.load_study(path), path)
-    assert "origin = [1.5, 0.0, 1.6]" in path.read_text()
-    assert pe.load_study(path).prior == prior
 
 
 @pytest.mark.parametrize(("name", "table"), [("study", "boxes.csv"), ("other", "other.boxes.csv")])
@@ -306,17 +253,6 @@ def test_an_exported_study_scores_the_same_bits_elsewhere(write, tmp_path, name,
     for each in (0, 4096):
         scores = [s.evaluator(each).score(s.rig).to_dict() for s in (study, copy)]
         assert scores[0] == scores[1]
-
-
-def test_boxes_in_memory_are_exported_too(write, tmp_path):
-    write(CSV)
-    study = pe.load_study(write(STUDY.replace('classes = ["pedestrian"]', ""), "s.toml"))
-    loose = replace(study, prior=pe.Prior.from_boxes([("car", 5, 0, 1, 4, 2, 1.5, 0.3)]))
-    outcome = pt.Outcome("score", loose, loose, *[loose.evaluator().score(loose.rig)] * 2)
-    data = pt.write_outcome(outcome, tmp_path / "out")
-    again = pe.load_study(tmp_path / "out" / "study.toml")
-    assert again.prior.boxes == loose.prior.boxes
-    assert again.evaluator().score(again.rig).to_dict() == data["after"]
 
 
 def test_bad_priors_of_boxes_are_refused(write, tmp_path):

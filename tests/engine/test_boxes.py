@@ -80,21 +80,6 @@ def test_every_class_sums_to_one_before_focus_and_shares_alike():
     assert [d.profile.sum() for d in densities] == pytest.approx([1.0, 1.0])
 
 
-def test_boxes_outside_the_space_are_counted():
-    table = boxes(*ROTATED, ("car", 30, 0, 1, 4, 2, 1.5, 0), ("tram", 0, 0, 9, 4, 2, 1.5, 0))
-    prior = pe.Prior.from_boxes(table)
-    report = prior.report(SPACE)
-    assert str(report) == "boxes: 6 boxes taken, 2 left out (2 outside the space)"
-    densities = prior.densities(SPACE)  # trams are not met in it
-    assert [d.ground.sum() for d in densities] == pytest.approx([1.0, 0.0])
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
-    for samples in (0, 2048):
-        score = pe.Evaluator(SPACE, prior, samples=samples).score(rig)
-        assert list(score.per_class) == ["car"] and math.isfinite(score.entropy)
-    with pytest.raises(pe.InputError, match=r"^boxes: boxes: expected a box in .*all 8 outside$"):
-        prior.densities(pe.PerceptionSpace((50, 60), (0, 10), (0, 5), 0.5))
-
-
 def test_tables_in_memory_are_taken():
     rows = [
         ("car", 1.0, 2.0, 0.75, 4.0, 2.0, 1.5, 0.5),
@@ -204,17 +189,6 @@ def test_the_first_bad_box_is_named():
     assert wrongly_refused(pe.Prior.from_boxes, BAD_BOXES, "boxes") == []
 
 
-def test_numbers_are_kept_as_a_file_would_hold_them():
-    """No negative zeros; yaws from -180 to 180 degrees, to 9 decimals."""
-    boxes = pe.Boxes.of([("car", -0.0, 1.0, 2.0, 1.0, 1.0, 1.0, yaw) for yaw in (0.1, -4.0, 9.0)])
-    assert math.copysign(1.0, boxes.x[0]) == 1.0
-    degrees = np.degrees(boxes.yaw)
-    assert degrees.tolist() == pytest.approx(
-        [5.729577951, 360.0 - 229.183118052, 515.662015618 - 360.0], abs=1e-9
-    )
-    assert np.degrees(boxes.yaw).round(9).tolist() == pytest.approx(degrees.tolist(), abs=1e-13)
-
-
 def test_the_labels_origin_is_three_lengths_of_a_thousand_kilometres_at_most():
     for origin in ((1e6, -1e6, 0.0), None):
         assert replace(pe.Boxes.of([ROW]), origin=origin).origin == origin
@@ -232,12 +206,6 @@ def test_boxes_are_equal_when_they_hold_the_same():
         assert pe.Boxes.of([row]) != one
     assert pe.Boxes.of([("bus", *ROW[1:])]) != one
     assert len(one) == 1 and one.source == "boxes"
-
-
-def test_classes_stand_in_the_paper_s_order_and_others_by_the_alphabet():
-    names = ("tram", "cone", "bus", "truck", "cyclist", "pedestrian", "car", "cone")
-    boxes = pe.Boxes.of([(name, *ROW[1:]) for name in names])
-    assert boxes.classes == ("car", "pedestrian", "cyclist", "truck", "cone", "bus", "tram")
 
 
 def test_impossible_priors_are_refused():

@@ -127,19 +127,6 @@ def test_sums_add_up_and_what_is_not_known_is_named_and_never_zero():
     assert BUILD_FIGURES["protrusion"].lacking(Placement.on(pe.Rig(known), None)) == ("no vehicle",)
 
 
-def test_a_sheet_of_the_catalogue_says_its_source_and_has_no_price():
-    sheets = {
-        n: e.table["data_sheet"] for n, e in pe.catalog.entries().items() if "data_sheet" in e.table
-    }
-    assert sheets[CAN]["mass"] == 0.83
-    assert all(set(t) <= {"mass", "power", "data_rate", "source"} for t in sheets.values())
-    assert all(len(table["source"]) > 20 for table in sheets.values())
-    table = dict(pe.catalog.entries()[CAN].table)
-    for wrong in ({"mass": -1, "source": "s"}, {"mass": 1}, {"weight": 1, "source": "s"}, 3):
-        with pytest.raises(pe.InputError, match="data_sheet"):
-            pe.catalog.from_table("mine", table | {"data_sheet": wrong})
-
-
 LIMITS = (
     ("mass", 1.0, cans((0, 0, 1.8), (1, 0, 1.8))),
     ("power", 15.0, cans((0, 0, 1.8), (1, 0, 1.8))),
@@ -234,13 +221,3 @@ def test_a_score_tells_what_can_be_built_and_of_whom_it_is_not_known(tmp_path, c
     assert data["unknown"]["mass"] == ["eye"] and "mass" not in data["values"]
     lines = built_lines([pt.advice.KeyFigures.from_dict(data)])
     assert len(lines) == 2 and set(lines) <= set(told) and "eye" in lines[1]
-
-
-def test_a_sheet_goes_through_the_study_file():
-    own = pe.DataSheet(0.4, None, 12.5, 99.0)
-    study = pe.Study(pe.Rig(cans((0, 0, 1.8), sheet=own)), None, shapes.small_space())
-    table = pe.study_to_dict(study)
-    assert table["sensor"][0]["mass"] == 0.4 and "power" not in table["sensor"][0]
-    assert pe.study_from_dict(table).rig["can 0"].sheet == own
-    with pytest.raises(pe.InputError, match="mass"):
-        pe.DataSheet(mass=-1.0)

@@ -140,28 +140,6 @@ def test_what_is_sure_is_so_all_round(mesh, position):
     assert not (sure & unsure).any()
 
 
-def test_a_picture_between_two_parts_of_a_mesh_hides_nothing():
-    """The parts lie on either side of the picture, on the same face."""
-    side = shapes.refined(shapes.box((5.0, 2.0, 1.0), (5.2, 3.0, 3.0)), 3)
-    narrow = np.array([(1.0, 0.1 * i, 0.1 * j) for i in (-1, 1) for j in (-1, 1)])
-    flags, _ = shade_of(np.concatenate([side, side * [1, -1, 1]]), (0.0, 0.0, 2.0), narrow)
-    assert not flags.hidden.any()
-
-
-def test_a_hole_of_one_triangle_is_seen_through():
-    """In a roof with nothing below it."""
-    whole = shapes.refined(roof(), 3)
-    position = np.array([0.05, 0.05, 3.4])
-    centers = whole.mean(axis=1)
-    holed = np.delete(whole, np.argmin(np.abs(centers - [2.0, 0.3, 3.0]).sum(axis=1)), axis=0)
-    sure = [shade_of(t, tuple(position), ALL_ROUND)[0].hidden.reshape(-1) for t in (whole, holed)]
-    _, grid = shade_of(holed, tuple(position), ALL_ROUND)
-    through = hidden_by_rays(whole - position, grid) & ~hidden_by_rays(holed - position, grid)
-    assert through.sum() > 100
-    assert sure[0][through].mean() > 0.8
-    assert not sure[1][through].any()
-
-
 def fan(corner):
     """Six triangles round a corner, level, 0.2 m to their outer ones."""
     angle = np.linspace(0.0, 2.0 * np.pi, 7)[:-1]

@@ -16,7 +16,7 @@ from pe_core.study.requirement_file import presets
 from pe_tools.cli import run_job
 from pe_tools.cli.check_verb import COLUMNS, NOT_MET
 from pe_tools.cli.verbs import main
-from pe_tools.jobs import CheckJob, SuggestJob
+from pe_tools.jobs import SuggestJob
 from tests.engine import shapes
 
 pytestmark = pytest.mark.usefixtures("few_errors")
@@ -102,14 +102,6 @@ def test_ctrl_c_keeps_the_verdicts_that_were_found(study, tmp_path, monkeypatch,
     assert [row["name"] for row in csv.DictReader(table.open())] == ["adult ahead"]
 
 
-def test_a_stopped_check_names_stories_that_were_not_driven_too(study):
-    study.write_text(STUDY + '[[story]]\npreset = "crossing_child"\n')
-    job = CheckJob(pe.load_study(study))
-    job.stop()
-    list(job)
-    assert job.missing == (job.study.stories[0].name, "adult ahead") and not job.driven
-
-
 def test_a_table_that_cannot_be_written_is_told_before_the_work_or_takes_no_verdict_along(
     study, tmp_path, monkeypatch, capsys
 ):
@@ -147,15 +139,6 @@ def test_a_score_has_the_verdicts_in_its_result(study, tmp_path, capsys):
     assert main(["check", str(tmp_path / "out" / "study.toml"), "--json"]) == 0
     again = json.loads(capsys.readouterr().out.split("\n{\n")[-1].join(["{\n", ""]))
     assert again["requirements"] == found["requirements"]
-
-
-def test_suggestions_are_printed_where_asked_for(study, capsys):
-    study.write_text(STUDY + SMALL)
-    assert main(["check", str(study), "--suggest", "--json"]) == NOT_MET
-    (own,) = json.loads(capsys.readouterr().out)["suggestions"].values()
-    assert main(["check", str(study), "--suggest"]) == NOT_MET
-    told = capsys.readouterr().out
-    assert all(f"bump: {each['text']}" in told for each in own) and "bump: " in told
 
 
 def test_a_blind_place_is_mended_by_the_job_and_by_the_command(study, capsys):

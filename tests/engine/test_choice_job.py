@@ -3,16 +3,15 @@
 import csv
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.search import EvaluatedRig, KeyFigures
+from pe_core.search import EvaluatedRig
 from pe_core.study import SEARCH
-from pe_tools import advice, jobs
-from pe_tools.cli import run_job, verbs
+from pe_tools import jobs
+from pe_tools.cli import verbs
 from pe_tools.cli.front_text import front_summary
 from pe_tools.jobs import design_study, front_job, write_front
 from tests.engine import mounting
@@ -21,7 +20,6 @@ from tests.engine.refusals import wrongly_refused
 pytestmark = pytest.mark.usefixtures("few_errors", "no_key_figures")
 SPACE = pe.PerceptionSpace((-12, 12), (-8, 8), (0, 3), 0.5)
 PRICES = {"Pandar64": 9.0, "Pandar40": 7.0, "Velodyne VLP-16 Puck": 2.0}
-CHOICES = Path(__file__).parents[2] / "blend_assets" / "choices"
 LIDARS = [{"model": "Pandar64", "price": 9}, {"model": "HDL-64E", "price": 5}]
 ROOF = {"sensors": ["roof"], "option": LIDARS}
 
@@ -91,22 +89,6 @@ def test_more_designs_are_looked_at_first_and_the_front_is_the_same(monkeypatch)
     assert found.searched < every.searched == 5
     assert [(d.name, d.entropy) for d in found.front] == [(d.name, d.entropy) for d in every.front]
     assert found.is_complete
-
-
-@pytest.mark.parametrize("keep", [(), ("blind_ground",)])
-def test_key_figures_of_designs_are_computed_only_where_some_are_wanted(monkeypatch, keep):
-    """A front shows its objectives alone; the other figures took most of the time of a search."""
-    computed = []
-
-    def of_rig(*_):
-        computed.append(1)
-        raise pe.InputError("space", "z", "the ground", "none")
-
-    monkeypatch.setattr(KeyFigures, "of_rig", of_rig)
-    given = study([pe.Choice(options(), ["roof"])], free=())
-    limits = pe.Limits(**dict.fromkeys(keep, True))
-    found = front_of(replace(given, limits=limits))
-    assert len(found.designs) == 3 and bool(computed) == bool(keep)
 
 
 def test_a_stop_keeps_the_front_so_far():
@@ -203,38 +185,6 @@ def test_on_a_surface_another_housing_keeps_the_place_of_its_base():
     design_study(given, {"roof": tall}).coding()  # its start is on the mount
 
 
-@pytest.fixture
-def file(tmp_path):
-    given = study([pe.Choice(options(), ["roof"])], free=(), currency="EUR")
-    pt.export_study(given, tmp_path / "car.toml")
-    return tmp_path / "car.toml"
-
-
-def test_the_table_tells_price_entropy_and_where_each_sensor_sits(file, tmp_path, capsys):
-    assert verbs.main(["optimize", str(file), "-o", str(tmp_path / "out")]) == 0
-    out = capsys.readouterr().out.splitlines()
-    assert out[0].split() == ["Price", "[EUR]", "Entropy", "[nats]", "design"]
-    data = json.loads((tmp_path / "out" / "front.json").read_text())
-    first = next(row for row in data["designs"] if row["on_front"])
-    assert out[1].split()[:2] == ["2", f"{first['entropy']:.3f}"]
-    assert out[1].endswith(f"  {mounting.CAN}")
-    assert out[2].strip() == f"roof: {mounting.CAN}; (-0.43, 0, 1.478) m"
-    assert out[-1] == advice.OTHER_HARDWARE and data["notes"] == [advice.OTHER_HARDWARE]
-    assert (tmp_path / "out" / "front.html").exists()
-    study = tmp_path / "out" / first["study"]
-    assert verbs.main(["score", str(study)]) == 0
-    assert f"{first['entropy']:.3f}" in capsys.readouterr().out
-
-
-def test_a_user_s_own_file_is_refused_before_the_work(file, tmp_path, capsys, monkeypatch):
-    (tmp_path / "out").mkdir()
-    (tmp_path / "out" / "front.csv").write_text("mine")
-    monkeypatch.setattr(run_job, "drive", lambda *_: pytest.fail("the work has begun"))
-    assert verbs.main(["optimize", str(file), "-o", str(tmp_path / "out")]) == 1
-    assert "front.csv: output: expected no file, or one that was" in capsys.readouterr().err
-    assert (tmp_path / "out" / "front.csv").read_text() == "mine"
-
-
 def test_an_interrupted_front_goes_on_to_the_same_bits(tmp_path, capsys):
     """Journals of half of the searches are lost, and half of the entries of another."""
     given = study([pe.Choice(options(), ["roof"])], free=("pitch",))
@@ -279,35 +229,6 @@ def data(choice=(), **more):
 
 def option(model, price):
     return {"sensors": ["roof"], "option": [{"model": model, "price": price}]}
-
-
-def test_what_is_read_is_written_again():
-    own = {
-        "kind": "lidar",
-        "elevations_deg": [-5.0, 0.0],
-        "azimuth_step_deg": 1.0,
-        "max_range_m": 9,
-    }
-    choice = {
-        "sensors": ["roof", "eye"],
-        "optional": True,
-        "option": [*LIDARS, {"model": own, "price": 0.1}],
-    }
-    limits = {"max_sensors": 2, "max_of_kind": {"lidar": 2}, "currency": "EUR"}
-    sensor = {"name": "held", "model": "Pandar40", "position": [0, 0, 1]}
-    first = pe.study_from_dict(
-        {
-            "sensor": [*data()["sensor"], sensor],
-            "selection": {**limits, "choice": [choice]},
-            "limits": {"price": 30},
-        }
-    )
-    written = pe.study_to_dict(first)
-    again = pe.study_from_dict(written)
-    assert pe.study_to_dict(again) == written
-    assert again.selection.max_of_kind == {"lidar": 2}
-    assert [o.price for o in again.selection.choices[0].options] == [9.0, 5.0, 0.1]
-    assert "selection" not in pe.study_to_dict(pe.study_from_dict(data()))
 
 
 REFUSED = [
@@ -368,11 +289,3 @@ def test_the_second_of_a_pair_goes_with_the_first():
         {**rest, "selection": {"choice": [{"sensors": ["left"], "option": LIDARS}]}}
     )
     assert [study.designs().price(picks) for picks in study.designs()] == [10.0, 18.0]
-
-
-@pytest.mark.parametrize(("name", "count"), [("roof_lidar", 8), ("bus_corners", 34)])
-def test_the_examples_have_the_designs_that_the_page_tells_of(name, count):
-    study = pe.load_study(CHOICES / f"{name}.toml")
-    assert len(list(study.designs())) == count
-    page = (CHOICES.parents[1] / "docs" / "mounts_and_search.md").read_text("utf-8")
-    assert f"`{name}.toml`" in page

@@ -88,19 +88,6 @@ def test_a_curve_of_the_study_wins_over_the_model():
     assert "scans" in repr(model) and "scans" not in repr(paper)
 
 
-def test_a_study_file_has_the_model_only_where_it_is_another(path):
-    study = pe.load_study(path)
-    assert study.model.model == "paper" and "model" not in study_to_dict(study).get("ap", {})
-    own = replace(study, model=pe.PerceptionModel("literal", model="scans", lidar=OWN))
-    data = study_to_dict(own)
-    assert data["ap"]["model"] == "scans"
-    again = study_from_dict(data, folder=path.parent)
-    assert again.model == own.model and again.model.lidar == OWN
-    data["ap"]["model"] = "guess"
-    with pytest.raises(pe.InputError, match=r'ap.model: expected .*"?scans'):
-        study_from_dict(data, folder=path.parent)
-
-
 def test_the_score_is_that_of_the_curves(path):
     """As if they were written out class by class; voxels are scored as before."""
     study = pe.load_study(path)
@@ -120,25 +107,6 @@ def test_the_score_is_that_of_the_curves(path):
 def test_what_is_not_the_paper_s_is_one_line(path, noted, capsys):
     assert main(["explain", str(path)]) == 0
     assert noted and capsys.readouterr().out.count(noted) == 1
-
-
-@pytest.mark.parametrize("model", ["bevfusion", "centerpoint"])
-def test_curves_of_published_detectors_are_told_with_source_and_span(model, capsys):
-    """They take the place of the classes' own; a class that they lack keeps its own."""
-    known = detectors()[model]
-    own = pe.PerceptionModel()
-    chosen = pe.PerceptionModel(model=model)
-    assert set(known.rows) == {"lidar"} and "within one rig" in known.trust
-    for name, row in known.rows["lidar"].items():
-        assert chosen.object_curve("lidar", name) == row.curve
-        low, high = row.m
-        ends = [row.curve.a * np.log(m) + row.curve.b for m in (low, high)]
-        assert 0.2 < ends[0] < ends[1] < 1.05 and row.rmse < 0.12
-    assert chosen.object_curve("lidar", "cone") == own.object_curve("lidar", "cone")
-    assert chosen.object_curve("camera", "car") == own.object_curve("camera", "car")
-    assert main(["sensors", "--curves"]) == 0
-    told = capsys.readouterr().out
-    assert f"\n{model}: {known.label}, {known.trust}; {known.source}\n" in told
 
 
 def test_the_curve_of_camera_rigs_is_that_of_the_study_and_of_cars_alone(capsys):
@@ -161,16 +129,6 @@ def test_the_curve_of_camera_rigs_is_that_of_the_study_and_of_cars_alone(capsys)
     told = capsys.readouterr().out
     assert f"\ncamera_rigs: {known.label}, {known.trust}; {known.source}\n" in told
     assert "a 0.047 to 0.439 (95 %)" in told
-
-
-def test_a_study_file_is_scored_by_the_curve_of_camera_rigs(path):
-    """Of cameras alone: cars change, the other classes do not."""
-    path.write_text(f'{STUDY}\n[ap]\nmodel = "camera_rigs"\n', "utf-8")
-    study = pe.load_study(path)
-    study = replace(study, rig=pe.Rig([study.rig["front"]]))
-    paper = replace(study, model=pe.PerceptionModel())
-    after, before = (each.evaluator().score(each.rig).objects.per_class for each in (study, paper))
-    assert {name for name in before if after[name].ap != before[name].ap} == {"car"}
 
 
 def by_definition(m, curve, distance):

@@ -11,7 +11,7 @@ import pe_core as pe
 from pe_core.scoring import NO_DIFFERENCE, is_noise
 from pe_core.scoring.targets import TargetRule
 from pe_tools.advice import ComparedRow, differences, worth_lines, worth_rows
-from pe_tools.advice.differences import KINDS, Worth, preferred, worth_text, worths
+from pe_tools.advice.differences import KINDS, Worth, worth_text, worths
 from tests.engine import shapes
 
 RESULTS = Path(__file__).parents[2] / "docs/validity/difference/results.json"
@@ -71,14 +71,6 @@ def test_the_table_has_the_rows_of_the_study():
     assert {worth.kind for worth in worths()} <= known
 
 
-def test_real_layouts_come_first():
-    rows = [ROW, replace(ROW, kind="lidars_layouts", k=1.0)]
-    kinds = tuple(KINDS["lidar"])
-    assert preferred(rows, kinds)["entropy"].kind == "lidars_layouts"
-    assert preferred(rows[:1], kinds)["entropy"].kind == "lidars_fixed"
-    assert preferred(rows, ("cameras",)) == {}
-
-
 @pytest.mark.parametrize(
     ("changes", "rigs", "one_vehicle"),
     [
@@ -120,32 +112,6 @@ def test_rigs_of_cameras_have_their_row_where_cars_within_50_m_are_scored_in_tra
     for count, said in ((3, False), (4, True), (10, True), (11, False)):
         rigs = [*cameras(1.0), *cameras(1.5, count=count)]
         assert bool(worth_rows(by, rigs, one_vehicle=False)) is said
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {},
-        {"space": WITHIN},
-        {"targets": IN_TRAFFIC},
-        {"space": WITHIN, "targets": TargetRule("objects")},
-        {"space": pe.PerceptionSpace((-50, 50), (-40, 40), (0, 5)), "targets": IN_TRAFFIC},
-        {"space": WITHIN, "targets": IN_TRAFFIC, "prior": pe.Prior.highway()},
-        {"space": WITHIN, "targets": IN_TRAFFIC, "model": pe.PerceptionModel(model="camera_rigs")},
-    ],
-    ids=["default", "voxels", "far", "alone", "narrow", "prior", "curve"],
-)
-def test_rigs_of_cameras_that_are_scored_otherwise_have_no_row(changes):
-    assert worth_rows(study(**changes), cameras(1.0, 1.5), one_vehicle=False) == {}
-
-
-def test_a_row_of_a_class_is_said_beside_that_class_alone():
-    own = replace(ROW, score="traffic_ap", of_class="car", within=50.0)
-    values = (0.5, 0.6, 0.7)
-    errors = row_of(values, 0.001).errors
-    for group, name, count in (("class", "car", 2), ("class", "truck", 0), ("in traffic", "", 0)):
-        row = ComparedRow(group, name, "ap", values, errors=errors, factor=2.13)
-        assert len(worth_lines(["a", "b", "c"], [row], {"traffic_ap": own})) == count
 
 
 def row_of(values, error, measure="entropy", group="rig"):

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from itertools import combinations
 
 import numpy as np
 import pytest
@@ -10,12 +9,12 @@ import pytest
 import pe_core as pe
 from pe_core import catalog
 from pe_core.sensors import kind_of
-from pe_tools.graphics import PAPER, VIEWPORT, beams, kinds
+from pe_tools.graphics import beams, kinds
 from pe_tools.graphics import colors as tints
 from pe_tools.graphics.colors import tints_of
 from pe_tools.outputs import mounted_view
 from tests.engine import shapes
-from tests.engine.drawn import box, car, lidar, mounted
+from tests.engine.drawn import car, mounted
 
 ChannelMode = beams.ChannelMode
 BeamChoice = beams.BeamChoice
@@ -30,26 +29,7 @@ PARKING = "Parking module 2.5 m"
 POSE = pe.Pose.from_degrees((1.0, 1.0, 0.7), (0, 4, -20))
 CAR = shapes.box_car()
 COVERED = replace(CAR, covers={"cabin": 1.0, "body": 2.0})
-EYES = {
-    "all cones": np.eye(3),
-    "no long": [(0.152, 1.053, -0.205), (0.115, 0.786, 0.099), (-0.004, -0.048, 1.052)],
-    "no middle": [(0.367, 0.861, -0.228), (0.280, 0.673, 0.047), (-0.012, 0.043, 0.969)],
-    "no short": [(1.256, -0.077, -0.179), (-0.078, 0.931, 0.148), (0.005, 0.691, 0.304)],
-}
-"""Linear sRGB as it is seen: Machado, Oliveira and Fernandes, 2009, severity 1."""
-TO_XYZ = np.array([(0.4124, 0.3576, 0.1805), (0.2126, 0.7152, 0.0722), (0.0193, 0.1192, 0.9505)])
-WHITE = np.array([0.9505, 1.0, 1.089])
-MIN_DISTANCE = 6.4
-"""In CIE Lab; some 2 can just be told side by side."""
-MIN_CONTRAST = 3.0
-"""Of what is drawn beside its ground: WCAG 2.1, 1.4.11."""
-SHADES = {
-    "viewport": (lambda color: color, VIEWPORT, (0.22, 0.22, 0.22)),
-    "paper": (tints.on_paper, PAPER, (0.97, 0.97, 0.97)),
-}
 KINDS = ("lidar", "camera", "radar", "ultrasonic")
-MIXES = ((11,), (0, 11), (0, 0, 11), (0, 0, 0, 11), (5, 6), (3, 8), (1, 6, 4), (4, 4, 2, 1))
-"""Rigs of eleven sensors, by kind: one kind alone, LiDARs and cameras, and mixes."""
 
 
 @pytest.fixture
@@ -59,10 +39,6 @@ def vehicle():
 
 def shown(sensor, vehicle, budget, channels=ChannelMode.ALL, number=1):
     return beams.shown_beams(beams.cast(sensor, vehicle), BeamChoice(budget, channels, number))
-
-
-def elevations_of(found):
-    return {round(v, 6) for v in np.degrees(np.arcsin(found.directions[:, 2]))}
 
 
 def test_agrees_with_the_engine_beam_by_beam(vehicle):
@@ -85,36 +61,6 @@ def test_the_share_of_stopped_beams_is_the_true_one(channels, height, low, high,
     found = shown(sensor, vehicle, budget=300, channels=channels, number=2)
     assert found.share == pytest.approx(true)
     assert abs(found.occluded.sum() - true * len(found.ends)) <= 1.0
-
-
-def test_few_stopped_beams_are_neither_lost_nor_a_fan():
-    """A post stops one beam in some hundreds: of 300 shown one or two are, never none."""
-    post = box((2.0, -0.02, 0.5), (2.04, 0.02, 2.5))
-    sensor = mounted(lidar(azimuths=7200))
-    true = (pe.beam_field(sensor, post).occluded_by >= 0).mean()
-    assert 0.0 < true < 0.005
-    for channels in (ChannelMode.FEW, ChannelMode.ALL):
-        assert 1 <= shown(sensor, post, 300, channels).occluded.sum() <= 2
-
-
-def test_one_channel_shows_its_own_share(vehicle):
-    """The lowest channel's, which the roof stops; not that of the whole sensor."""
-    sensor = mounted(position=(0.0, 0.0, 1.6))
-    lowest = shown(sensor, vehicle, budget=200, channels=ChannelMode.ONE, number=1)
-    assert elevations_of(lowest) == {-40.0} and lowest.occluded.all() and lowest.share == 1.0
-    highest = shown(sensor, vehicle, budget=200, channels=ChannelMode.ONE, number=5)
-    assert elevations_of(highest) == {10.0} and not highest.occluded.any()
-    assert elevations_of(
-        shown(sensor, vehicle, budget=200, channels=ChannelMode.ONE, number=99)
-    ) == {10.0}
-
-
-def test_a_rosette_shows_all_over_its_picture():
-    """Each beam of it is a channel: a few of those would show nothing."""
-    angles = np.linspace(0.0, 20.0, 3000)
-    away = np.column_stack([np.ones(3000), 0.2 * np.sin(angles), 0.2 * np.cos(7.0 * angles)])
-    rosette = pe.Lidar.from_directions("rosette", away, 50.0)
-    assert len(shown(mounted(rosette), None, 200, ChannelMode.FEW).ends) == 200
 
 
 def free_lines(sensor, found, vehicle=None):
@@ -207,14 +153,6 @@ def test_a_footprint_is_the_ground_in_the_picture(rotation):
     assert expected.any() and np.abs(outline[:, 2]).max() == 0.0
 
 
-def test_a_camera_that_looks_up_or_is_below_the_ground_has_no_footprint():
-    assert not len(kinds.footprint(mounted(WIDE, (0, 0, 1.4), (0, -40, 0)), 20.0))
-    below = kinds.footprint(mounted(WIDE, (0, 0, -0.1)), 20.0)
-    assert not len(below)
-    assert not len(kinds.footprint_lines(below, (1.0, 1.0, 1.0, 1.0)).points)
-    assert not len(kinds.footprint_faces(below, (1.0, 1.0, 1.0, 1.0)).points)
-
-
 def mounted_preset(name):
     return pe.Sensor("one", catalog.load(name), POSE)
 
@@ -249,25 +187,6 @@ def test_covers_let_radars_through_and_stop_sound():
         assert (plain.ends < 5.0).any()
 
 
-def linear(color):
-    """Linear light of an sRGB colour (IEC 61966-2-1)."""
-    color = np.asarray(color[:3], float)
-    return np.where(color <= 0.04045, color / 12.92, ((color + 0.055) / 1.055) ** 2.4)
-
-
-def lab(color, eyes):
-    """CIE Lab of a colour as some eyes see it."""
-    xyz = TO_XYZ @ np.clip(np.asarray(eyes) @ linear(color), 0.0, 1.0) / WHITE
-    x, y, z = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16.0 / 116.0)
-    return np.array([116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)])
-
-
-def contrast(color, ground):
-    """Contrast ratio of WCAG."""
-    low, high = sorted(float(TO_XYZ[1] @ linear(each)) for each in (color, ground))
-    return (high + 0.05) / (low + 0.05)
-
-
 def rig_of(counts):
     """Sensors without a colour of their own, so many of each kind."""
     models = [catalog.load(catalog.names(kind)[0]) for kind in KINDS]
@@ -276,26 +195,6 @@ def rig_of(counts):
         for kind, model, count in zip(KINDS, models, counts, strict=False)
         for k in range(count)
     ]
-
-
-@pytest.mark.parametrize("eyes", EYES)
-@pytest.mark.parametrize("shade", SHADES)
-def test_eleven_sensors_are_told_apart_and_from_what_is_occluded_or_blind(shade, eyes):
-    shown, palette, _ = SHADES[shade]
-    for counts in MIXES:
-        own = [shown(color) for color in tints.sensor_colors(rig_of(counts)).values()]
-        assert len(own) == 11
-        for one, other in combinations([*own, palette.occluded, palette.blind], 2):
-            if (one, other) != (palette.occluded, palette.blind):
-                apart = np.linalg.norm(lab(one, EYES[eyes]) - lab(other, EYES[eyes]))
-                assert apart > MIN_DISTANCE, (counts, one, other)
-
-
-@pytest.mark.parametrize("shade", SHADES)
-def test_each_stands_out_from_its_ground(shade):
-    shown, _, ground = SHADES[shade]
-    own = [shown(tints.rgb_of(tint)) for kind in KINDS for tint in tints_of(kind)]
-    assert len(own) == 44 and min(contrast(color, ground) for color in own) > MIN_CONTRAST
 
 
 def test_own_colours_are_kept_and_not_given_to_others():

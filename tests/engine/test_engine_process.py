@@ -75,26 +75,6 @@ def test_the_latest_of_a_topic_is_answered_and_lanes_do_not_wait_for_each_other(
     assert not dropped and isinstance(error[0], ValueError) and "server.py" in error[0].__notes__[0]
 
 
-def test_some_topics_are_delivered_before_the_others(engine):
-    """As for a redraw, which starts no process either."""
-    score = ask(engine, "score", math.factorial, 4)
-    other = ask(engine, "other", math.factorial, 3)
-    while not score:
-        assert engine.deliver_all("lively", "score")
-    for _ in range(50):
-        assert engine.deliver_all("score") and not other
-        time.sleep(0.005)
-    settled(engine)
-    assert (score, other) == ([24], [6])
-    again = ask(engine, "score", time.sleep, 0.1)
-    pid = engine.pid
-    killed(engine)
-    time.sleep(0.2)
-    assert engine.deliver_all("score") and engine.pid == pid and not again
-    settled(engine)
-    assert again == [None] and engine.pid != pid
-
-
 @pytest.mark.skipif(sys.platform == "win32", reason="its pipes have no mode that does not wait")
 def test_no_request_waits_for_the_engine(engine):
     """A process that reads nothing, as it has been stopped: a large request and many small ones are
@@ -157,19 +137,6 @@ def test_a_vehicle_is_sent_once_and_comes_back_as_the_same_object(engine, monkey
         assert got[0] is each
 
 
-def test_own_sensors_are_known_there(engine):
-    pe.catalog.add("Mine", {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 60})
-    try:
-        got = ask(engine, "load", pe.catalog.load, "Mine")
-        settled(engine)
-        assert pe.catalog.to_table(got[0]) == pe.catalog.to_table(pe.catalog.load("Mine"))
-    finally:
-        pe.catalog.remove("Mine")
-    gone = ask(engine, "load", pe.catalog.load, "Mine")
-    settled(engine)
-    assert isinstance(gone[0], pe.InputError)
-
-
 def test_a_killed_process_is_asked_again_once_then_it_is_told(engine):
     got = ask(engine, "sleep", time.sleep, 0.3)
     pid = engine.pid
@@ -187,18 +154,6 @@ def test_a_killed_process_is_asked_again_once_then_it_is_told(engine):
     again = ask(engine, "add", math.factorial, 3)
     settled(engine)
     assert again == [6]
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="limits memory of another process")
-def test_too_little_memory_is_an_answer(engine):
-    ask(engine, "up", math.factorial, 3)
-    settled(engine)
-    limit = psutil.Process(engine.pid).memory_info().vms + (64 << 20)
-    psutil.Process(engine.pid).rlimit(psutil.RLIMIT_AS, (limit, limit))
-    got = ask(engine, "large", bytes, 1 << 30)
-    settled(engine)
-    assert isinstance(got[0], MemoryError)
-    killed(engine)
 
 
 def small_search():
@@ -283,23 +238,6 @@ def test_a_stopped_search_keeps_the_best_and_a_dropped_one_nothing(engine):
             assert not got
         else:
             assert got[0].stopped and (got[0].robustness is None) is (presses == 2)
-
-
-def test_a_cancel_is_not_lost_with_the_process_that_was_told(engine):
-    watched = WatchedJob(OptimizeJob(small_search()))
-    stopped = []
-
-    def step():
-        if watched.seen.evaluations >= 1 and not stopped:
-            stopped.append(engine.pid)
-            psutil.Process(engine.pid).suspend()  # it takes no more messages
-            engine.cancel("job")
-            killed(engine)
-
-    got = run(engine, watched, step)
-    settled(engine)
-    assert stopped and engine.pid not in stopped
-    assert got == [None], "asked again, it ends before its first score"
 
 
 def test_a_process_that_cannot_start_is_told_in_a_line(engine, monkeypatch):

@@ -1,7 +1,6 @@
 """Scores: grid and sample against definition and each other; errors; who watches."""
 
 import math
-import threading
 from dataclasses import replace
 from itertools import pairwise, product
 from statistics import fmean, stdev
@@ -11,19 +10,10 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-import pe_tools as pt
-from pe_core.metric import (
-    POINTPILLARS,
-    average_precision,
-    entropy_of,
-    late_fusion,
-    precision_of,
-    sigma_of,
-)
-from pe_core.scoring import ScoreStopped, draw
+from pe_core.metric import average_precision, entropy_of, late_fusion, sigma_of
+from pe_core.scoring import ScoreStopped
 from pe_core.sensors import Voxels, kind_of
 from tests.engine import shapes
-from tests.limits import HANG_S
 from tests.thorough import THOROUGH, pairs
 
 SPACE = shapes.small_space()
@@ -141,13 +131,6 @@ def test_a_vehicle_that_fills_the_space_is_refused():
         pe.Evaluator(space, ROAD, everything)
 
 
-def test_a_lidar_beside_a_voxels_axis_warns_of_nothing():
-    """A tilted LiDAR whose own axis runs through a sampled voxel divides by nearly nothing."""
-    pose = pe.Pose((-0.34371, -0.18753, 1.58554), (0.0, -0.005813691738393112, 0.0))
-    sensor = pe.Sensor("roof", pe.catalog.load("Pandar64"), pose)
-    pe.Evaluator(pe.PerceptionSpace(), ROAD, samples=32_768).entropy(pe.Rig([sensor]))
-
-
 @pytest.mark.parametrize("at", [(0.0, 0.0, 1.75), (0.0, 0.0, 1.85), (-0.35, 0.0, 1.6)])
 def test_beams_down_from_the_middle_are_stopped(at):
     space = pe.PerceptionSpace((-3, 3), (-3, 3), (0, 2), 0.5)
@@ -239,23 +222,6 @@ def test_it_is_the_scatter_of_scores_on_other_samples(rig):
     assert 1.0 < told / stdev(s.entropy for s in scores) < 2.0
 
 
-def test_it_is_that_of_the_mean_of_sixteen_runs():
-    """By its definition: the scatter of the runs' means, n - 1, over the root of their number."""
-    vehicle = shapes.box_car()
-    sensor = STANDARD_ERROR_RIGS["lidar"]["roof"]
-    evaluator = pe.Evaluator(SPACE, pe.Prior.road(), vehicle, samples=3000)
-    sample = draw(pe.Prior.road().densities(SPACE), SPACE, 3000, vehicle.top(SPACE))
-    m = pe.measure(sensor, sample.centers, SPACE.interval, vehicle)
-    entropies = entropy_of(precision_of(m, POINTPILLARS)).tolist()
-    means = [
-        fmean(h for h, own in zip(entropies, sample.run.tolist(), strict=True) if own == run)
-        for run in range(16)
-    ]
-    score = evaluator.score(STANDARD_ERROR_RIGS["lidar"])
-    assert score.entropy == pytest.approx(fmean(entropies), abs=1e-8)
-    assert score.stderr == pytest.approx(stdev(means) / 4.0, abs=1e-8)
-
-
 @pytest.mark.parametrize(
     "rig, space, entropy",
     [
@@ -322,34 +288,3 @@ def test_a_score_ends_when_it_is_reported_and_the_next_is_sound(at):
     assert told == pytest.approx([0.0, 0.2, 0.4, 0.6, 0.8, 1.0][: len(told)])
     assert told[-1] == pytest.approx(at)
     assert own.score(rig()).to_dict() == evaluator_of_watch().score(rig()).to_dict()
-
-
-def test_a_stopped_job_s_thread_stops_as_well(monkeypatch):
-    """Its score is given up, and does not run on behind the program's back."""
-    started = threading.Event()
-    go = threading.Event()
-    done = threading.Event()
-    ended = []
-    whole = pe.Evaluator.score
-
-    def score(self, *args, **kwargs):
-        started.set()
-        go.wait(HANG_S)
-        try:
-            ended.append(whole(self, *args, **kwargs))
-        except ScoreStopped:
-            ended.append("stopped")
-            raise
-        finally:
-            done.set()
-
-    monkeypatch.setattr(pe.Evaluator, "score", score)
-    job = pt.ScoreJob(pe.Study(rig(), shapes.box_car(), WATCH_SPACE))
-    steps = iter(job)
-    next(steps)
-    next(steps)
-    assert started.wait(HANG_S)
-    job.stop()
-    assert not list(steps) and job.outcome is None
-    go.set()
-    assert done.wait(HANG_S) and ended == ["stopped"]

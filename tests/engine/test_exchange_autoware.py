@@ -40,34 +40,6 @@ INFO = """/**:
     left_overhang: 0.128
     vehicle_height: 2.5
 """
-UNITS = {
-    "top_unit": {
-        "camera0/camera_link": (0.0235, 0.0, 0.0345, 0.0, 0.0, 0.0),
-        "camera1/camera_link": (0.09841, -0.78172, -0.03618, 0.0, 0.22165, -1.047197),
-        "pandar_40p_left_base_link": (0.0, 0.77827, 0.002, 0.0, 0.0, 3.1415),
-        "tamagawa/imu_link": (-0.0195, -0.09185, 0.0165, 3.14159265359, 0.0, 0.0),
-    },
-    "front_unit": {"pandar_qt_front_base_link": (0.018, 0.0, 0.13, 0.0, 0.0, 1.57079)},
-    "rear_unit": {"pandar_40p_rear_base_link": (0.0, 0.0, 0.0, 0.0, 0.0, 1.57079)},
-}
-ON_BASE = {
-    "top_unit_base_link": (4.6621, 1.079, 2.8087, 0.0, 0.0, 0.0),
-    "front_unit_base_link": (5.6221, 0.0, 0.7547, 0.0, 0.0, 0.0),
-    "rear_unit_base_link": (-1.4271, 0.0, 0.4795, 0.0, 0.0, -3.1415),
-}
-"""Of the form of aip_x2's (tier4/aip_launcher): three units, a file each, on base_link."""
-X2_MODELS = {
-    "camera1": "Autoware sample kit",
-    "pandar_40p_left": "Hesai Pandar40P",
-    "pandar_40p_rear": "Hesai Pandar40P",
-    "pandar_qt_front": "Hesai PandarQT (QT64)",
-}
-EYE = """image_width: 2880
-image_height: 1860
-camera_name: camera0
-camera_matrix: {rows: 3, cols: 3, data: [1519.8, 0.0, 1443.5, 0.0, 1520.4, 929.7, 0.0, 0.0, 1.0]}
-"""
-D = [-0.31, 0.12, 0.0004, -0.0002, 0.04, 0.05, 0.01, 0.002]
 
 
 @pytest.fixture
@@ -130,49 +102,3 @@ def test_the_vehicle_s_own_file_says_where_the_axles_are(kit):
     (kit / "vehicle_info.param.yaml").write_text("/**:\n  ros__parameters:\n    wheel_base: 2\n")
     with pytest.raises(pe.InputError, match=r"ros__parameters\.wheel_radius"):
         read_vehicle_info(kit / "vehicle_info.param.yaml")
-
-
-@pytest.fixture
-def bus(tmp_path):
-    """The folder of a kit of three units, with the lens of one camera."""
-    for name, parent, frames in [
-        ("sensors", "base_link", ON_BASE),
-        *((unit, f"{unit}_base_link", frames) for unit, frames in UNITS.items()),
-    ]:
-        table = {frame: dict(zip(SIX, values, strict=True)) for frame, values in frames.items()}
-        text = yaml.safe_dump({parent: table}, sort_keys=False)
-        (tmp_path / f"{name}_calibration.yaml").write_text(text)
-    eye = yaml.safe_load(EYE)
-    eye["distortion_model"] = "rational_polynomial"
-    eye["distortion_coefficients"] = {"rows": 1, "cols": 8, "data": D}
-    (tmp_path / "camera_info").mkdir()
-    text = yaml.safe_dump(eye, default_flow_style=None, sort_keys=False)
-    (tmp_path / "camera_info" / "camera0.yaml").write_text(text)
-    return tmp_path
-
-
-def test_a_kit_of_several_units_is_a_study_and_a_kit_again(bus):
-    """Places by hand; every number of the lens; and all files as they were."""
-    reference = pe.Reference(-2.0, 0.4)
-    found = pt.import_rig(bus, None, reference, X2_MODELS)
-    assert found.to_choose == () and len(found.rig) == 5
-    left = found.rig["pandar_40p_left"].pose
-    rear = found.rig["pandar_40p_rear"].pose
-    lifted = 2.8087 + 0.002 + 0.047  # the foot of a Pandar40P is 47 mm below its scan
-    assert left.position == pytest.approx((4.6621 - 2.0, 1.079 + 0.77827, lifted), abs=1e-9)
-    assert rear.rotation_deg[2] == pytest.approx(-90.0, abs=0.01), "behind, turned back"
-    before = {path.name: yaml.safe_load(path.read_text()) for path in bus.glob("*.yaml")}
-    pe.save_study(pe.Study(found.rig, reference=reference), bus / "study.toml")
-    again = pe.load_study(bus / "study.toml").rig
-    lens = again["camera0"].model.projection
-    keys = ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6")
-    assert [getattr(lens, key) for key in keys] == D
-    assert (lens.fx, lens.fy, lens.cx, lens.cy) == (1519.8, 1520.4, 1443.5, 929.7)
-    pt.export_rig(again, "autoware", bus, reference, replace=True)
-    for name, old in before.items():
-        new = yaml.safe_load((bus / name).read_text())
-        assert list(new) == list(old)
-        for parent, frames in old.items():
-            assert list(new[parent]) == list(frames)
-            for frame, values in frames.items():
-                assert new[parent][frame] == pytest.approx(values, abs=1e-6), frame

@@ -8,7 +8,6 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_tools.exchange import import_rig, rig_files, ros
-from pe_tools.exchange.camera_info import info_name
 from pe_tools.formats.xml_text import without_comments
 
 PUCK = "Velodyne VLP-16 Puck"
@@ -105,17 +104,6 @@ def test_a_frame_with_an_optical_frame_below_it_is_a_camera(tmp_path):
     frames = ("base_link", "eye"), ("eye", "eye_optical"), ("base_link", "ears")
     path.write_text("<launch>" + "".join(CALL.format(*f, "") for f in frames) + "</launch>")
     assert [(s.name, s.kind) for s in ros.read(path).sensors] == [("eye", "camera"), ("ears", None)]
-
-
-def test_a_damaged_file_beside_the_one_that_is_read_is_named(tmp_path):
-    path = tmp_path / "rig.launch.xml"
-    path.write_text(CALL.format("base_link", "eye", "") + CALL.format("eye", "eye_optical", ""))
-    beside = tmp_path / info_name("eye")
-    beside.parent.mkdir()
-    beside.write_text("image_width: much")
-    found = import_rig(path, "ros")
-    assert found.rig["eye"].kind == "camera" and found.to_choose == ("eye",)
-    assert any("camera_info/eye.yaml: image_width: expected" in line for line in found.lines)
 
 
 def test_comments_are_left_out_wherever_they_begin():

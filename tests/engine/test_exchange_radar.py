@@ -16,8 +16,6 @@ from pe_tools.formats.yaml_text import parse_yaml
 from pe_tools.outputs import scene_files
 from tests.engine.conftest import CHECKOUT, EXAMPLE_PLUGIN
 
-AXLE = pe.Reference(-1.38, 0.3)
-
 
 def test_a_radar_of_carla_is_its_field_of_view(tmp_path):
     radar = {

@@ -377,7 +377,7 @@ def test_figures_are_of_the_result_beside_the_study_while_it_is_of_it(tmp_path):
     pt.write_mesh(tmp_path / "box.npz", pe.Mesh(body.triangles, body.parts, body.part_names))
     (tmp_path / "study.toml").write_text(STUDY, "utf-8")
     out = tmp_path / "out"
-    assert pe_command("score", tmp_path / "study.toml", "-o", out).returncode == 0
+    assert pe_command(["score", tmp_path / "study.toml", "-o", out]).returncode == 0
     result = out / "result.json"
     scored = json.loads(result.read_text("utf-8"))
     result.write_text(json.dumps(scored | {"after": scored["after"] | {"coverage": 0.125}}))
@@ -385,7 +385,7 @@ def test_figures_are_of_the_result_beside_the_study_while_it_is_of_it(tmp_path):
     def stated(*changes):
         rig = tmp_path / "rig.usda"
         call = (out / "study.toml", "--to", "usd", "-o", rig, "--replace", *changes)
-        assert pe_command("export", *call).returncode == 0
+        assert pe_command(["export", *call]).returncode == 0
         return float(re.search(r'"coverage" = (\S+)', rig.read_text("utf-8"))[1])
 
     assert stated() == 0.125

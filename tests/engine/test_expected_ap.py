@@ -8,15 +8,14 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.scoring.requirements import BODIES, Requirement, Zone
 from pe_core.scoring.sampling import CENTERED, HELD_OUT
 from pe_core.search import Front, Goals
 from pe_core.search.tolerance import without_each
-from pe_core.study import Conditions, load_study_data, study_from_dict, study_to_dict
+from pe_core.study import Conditions
 from pe_core.study.condition_table import ExpectedApEvaluator, search_evaluator, study_objective
 from pe_tools import jobs
 from pe_tools.cli.terminal import summary
-from pe_tools.jobs import front_dict, result_dict
+from pe_tools.jobs import result_dict
 from pe_tools.page import ReportContext
 from pe_tools.page.sections.score import flatness as flatness_section
 from tests.engine import shapes
@@ -98,26 +97,6 @@ def test_a_search_raises_the_ap_and_tells_both(plain):
     assert "30 placements evaluated on 8 scenes of objects" in text
 
 
-def test_the_objective_is_in_the_file_and_another_one_is_refused(tmp_path):
-    given = replace(study(), vehicle=None)
-    pe.save_study(given, tmp_path / "study.toml")
-    assert load_study_data(tmp_path / "study.toml")["optimize"]["objective"] == AP
-    assert study_to_dict(pe.load_study(tmp_path / "study.toml")) == study_to_dict(given)
-    data = study_to_dict(given)
-    data["optimize"]["objective"] = "ap"
-    with pytest.raises(pe.InputError, match="objective: expected one of entropy, expected_ap, fo"):
-        study_from_dict(data, "study.toml")
-
-
-def test_a_target_is_an_ap(plain):
-    target = -plain.history[-1].value.objective - 1e-6
-    outcome = finished(replace(study(), limits=pe.Limits(ap=target)))
-    assert outcome.stop_reason == "target" and -outcome.history[-1].value.objective >= target
-    assert f"ended at its target of an expected AP of {target:g}" in summary(outcome)
-    with pytest.raises(pe.InputError, match=r"limits: ap: .*-1\.25"):
-        pe.Limits(ap=-1.25)
-
-
 def test_the_analysis_is_of_the_ap():
     outcome = finished(study(evaluations=96))
     found = outcome.flatness
@@ -160,51 +139,6 @@ def test_tolerance_and_conditions_are_means_of_the_ap():
     assert mean.value(foggy.rig).objective == pytest.approx(expected, abs=2e-9)
     outcome = finished(foggy)
     assert outcome.in_traffic[1].ap > 0.0 and outcome.conditions is not None
-
-
-def test_requirements_come_before_the_ap():
-    """The start looks over a child ahead; the search first meets the requirement."""
-    zone = Zone(x=("front + 1.5", "front + 3.5"), y=(-0.6, 0.6), step=0.5)
-    given = study(
-        evaluations=60,
-        requirements=[Requirement("ahead", zone, (BODIES["child"],))],
-        rig=pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180), (-1.5, 0.0, 1.7))]),
-        free={"roof": ("x", "z", "pitch")},
-    )
-    given = replace(given, limits=pe.Limits(requirements=True))
-    job = pt.OptimizeJob(given, 1)
-    texts = [p.value_text for p in job if p.stage == "optimizing"]
-    assert [v.met for v in given.verdicts()] == [False]
-    assert [v.met for v in job.outcome.verdicts] == [True]
-    assert any(text.startswith("constraints broken by ") for text in texts)
-    assert texts[-1].startswith("expected AP 0.")
-    first = result_dict(job.outcome)["history"][0]
-    assert first[AP] is None and first["violation"] > 0.0
-
-
-def chosen(**more):
-    """A study with a choice of two LiDARs, many beams for more money."""
-    given = study(**more)
-    many = shapes.small_lidar(32, 360)
-    few = shapes.small_lidar(4, 90)
-    options = [pe.Option(replace(many, name="many"), 9.0), pe.Option(replace(few, name="few"), 2.0)]
-    return replace(given, selection=pe.Selection([pe.Choice(options, ["roof"])]))
-
-
-def test_choices_are_a_front_of_price_and_ap():
-    job = pt.FrontJob(chosen(), 1)
-    list(job)
-    found = job.trade_off
-    assert found.objectives == ("price", "ap") and found.searched == 2
-    for design in found.designs:
-        assert (
-            design.figures["ap"] == ap_of(design.study, design.study.rig) == -design.value.objective
-        )
-        assert design.figures["entropy"] == design.entropy == design.score.entropy
-    by_price = {d.name: d.figures["ap"] for d in found.designs}
-    assert by_price["many"] > by_price["few"] and len(found.front) == 2
-    data = front_dict(found)
-    assert data["objectives"] == ["price", "ap"] and data["notes"] == []
 
 
 def test_a_front_of_objectives_has_the_ap_in_traffic_and_wants_it_among_them():

@@ -11,7 +11,6 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_core import catalog
-from pe_core.motion import stories
 from pe_core.search import FIGURES
 from pe_tools import advice
 from pe_tools.cli.verbs import main
@@ -87,13 +86,6 @@ def test_what_is_no_place_or_would_be_ignored_is_named_by_its_option(study, aske
     assert message in capsys.readouterr().err
 
 
-def test_a_place_in_the_vehicle_is_not_called_visible(study, capsys):
-    """Nor is there a place without an answer: no whole column of voxels is within this one."""
-    assert main(["explain", study, "--at", "0.1", "0.1", "0.5", "--suggest"]) == 0
-    (line,) = capsys.readouterr().out.splitlines()
-    assert line.endswith("inside the vehicle, which does not count")
-
-
 def test_a_body_stands_on_the_ground_and_is_told_with_who_sees_it(study, capsys):
     loaded = pe.load_study(study)
     near, far = (advice.StandingBody("adult", (x, 1.0), 90.0) for x in (8.0, 500.0))
@@ -135,16 +127,6 @@ def test_compare_tells_blind_ground_reach_and_ap_and_a_known_rig_beside(tmp_path
     assert main([*call, "--beside", "nobody"]) == 1
     out, err = capsys.readouterr()
     assert out == "" and "expected" in err and "scoring" not in err
-
-
-def test_a_known_rig_beside_has_returns_and_stories_of_the_study(tmp_path, capsys):
-    """Else the two would not be comparable, and a story would read as never confirmed."""
-    study = saved(tmp_path, "car.toml", returns="road", stories=(stories()["crossing_child"],))
-    call = ["compare", study, "--samples", "1024", "--beside", "paper_car_pandar64", "--json"]
-    assert main(call) == 0
-    data = json.loads(capsys.readouterr().out)
-    assert data["notes"][0] == advice.OTHER_HARDWARE, "not: other returns"
-    assert all("crossing_child" in own["margins"] for own in data["figures"].values())
 
 
 @pytest.mark.parametrize(

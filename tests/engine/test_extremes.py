@@ -45,8 +45,16 @@ def extremes(rule):
     ]
 
 
+def numbers_of(model):
+    """Return the names of the numbers of a sensor or of a class."""
+    return [f.name for f in dataclasses.fields(model) if type(getattr(model, f.name)) is float]
+
+
 def changes(cls):
     """Yield changes of a class of settings, one at a time."""
+    if cls is pe.ObjectClass:
+        names = numbers_of(pe.Prior.road().classes[0])
+        yield from ({name: end} for name in names for end in (0.0, 5e-324, 1e9))
     for name, declared in settings_of(cls).items():
         rule = declared.rule
         if isinstance(rule, Number | Angle):
@@ -92,6 +100,12 @@ def in_condition(**conditions):
     answers(study(conditions=pe.Conditions(**conditions)))
 
 
+def of_classes(change):
+    """A class of the prior: its numbers have rules, but are no settings."""
+    car = pe.Prior.road().classes[0]
+    answers(study(prior=pe.Prior("road", (replace(car, **change),))))
+
+
 def curve(change):
     model = pe.PerceptionModel(lidar=ApCurve(**{"a": 0.15, "b": 0.6} | change))
     answers(study(model=model))
@@ -130,6 +144,10 @@ USES = {
     ),
     Stop: lambda change: searched(goals=goal(stop=Stop(**change))),
     Limits: lambda change: answers(study(limits=Limits(**change))),
+    pe.Focus: lambda change: answers(
+        study(prior=replace(pe.Prior.road(), focus=(pe.Focus(**{"factor": 2.0} | change),)))
+    ),
+    pe.ObjectClass: of_classes,
 }
 
 
@@ -143,11 +161,6 @@ def test_a_setting_at_the_ends_of_its_numbers_has_an_answer_or_one_line(cls, cha
         USES[cls](change)
     except pe.InputError as error:
         assert "\n" not in str(error) and len(str(error)) < 400
-
-
-def numbers_of(model):
-    """Return the names of a sensor's numbers."""
-    return [f.name for f in dataclasses.fields(model) if type(getattr(model, f.name)) is float]
 
 
 @pytest.mark.parametrize(

@@ -3,23 +3,15 @@
 import csv
 import errno
 import os
-import re
 import stat
-import subprocess
 import sys
-from pathlib import Path
 
 import pytest
-from hypothesis import given
-from hypothesis.strategies import lists, sampled_from
 
-from pe_core.base import errors, files
-from pe_core.base.errors import InputError, available_bytes
+from pe_core.base import files
+from pe_core.base.errors import InputError
 from pe_core.base.files import (
     csv_text,
-    decode_text,
-    encode_like,
-    file_stem,
     put_in_place,
     read_bytes,
     require_new,
@@ -96,23 +88,6 @@ def test_only_files_are_written_over(tmp_path, kind):
         write_bytes(path, b"data")
     assert os.lstat(path).st_mode == before
     assert [p.name for p in tmp_path.iterdir()] == ["out"]
-
-
-def test_the_least_of_all_limits_counts(monkeypatch, tmp_path):
-    """Free memory, a container's limit, in either generation, and that of the process."""
-    (tmp_path / "meminfo").write_text("MemTotal: 9000 kB\nMemAvailable:    5000 kB\n")
-    (tmp_path / "v2").write_text("max\n")
-    (tmp_path / "v1").write_text("4000000\n")
-    monkeypatch.setattr(errors, "MEMINFO", tmp_path / "meminfo")
-    monkeypatch.setattr(errors, "GROUP_LIMITS", (tmp_path / "v2", tmp_path / "none"))
-    assert available_bytes() == 5_120_000
-    monkeypatch.setattr(errors, "GROUP_LIMITS", (tmp_path / "v2", tmp_path / "v1"))
-    assert available_bytes() == 4_000_000
-    (tmp_path / "statm").write_text("100 50 20\n")
-    monkeypatch.setattr(errors, "STATM", tmp_path / "statm")
-    most = 101 * resource.getpagesize()
-    monkeypatch.setattr(resource, "getrlimit", lambda _: (most, most))
-    assert available_bytes() == resource.getpagesize()
 
 
 def test_several_files_are_written_together_or_not_at_all(tmp_path):
@@ -220,53 +195,9 @@ def test_a_file_that_is_replaced_keeps_its_permissions_and_a_link_to_it_stays(tm
     assert fresh[0] == fresh[1], "a new file has the permissions of the user's other new files"
 
 
-@given(
-    old=lists(sampled_from(["a", "", "b # c", "\u2028", "\x0b"]), max_size=8),
-    ends=lists(sampled_from(["\n", "\r\n", "\r"]), min_size=8, max_size=8),
-    mark=sampled_from([b"", b"\xef\xbb\xbf"]),
-    last=sampled_from(["", "\n", "\r\n"]),
-)
-def test_a_text_that_is_not_changed_has_its_old_bytes(old, ends, mark, last):
-    ends[len(old) - 1 :] = [last]
-    data = mark + "".join(a + b for a, b in zip(old, ends, strict=False)).encode()
-    assert encode_like(decode_text(data), data) == data
-
-
-def test_a_changed_line_has_the_end_of_most_lines():
-    old = b"a\r\nb\r\nc\nd\r\n"
-    assert encode_like("a\nB\nc\nnew\nd\n", old) == b"a\r\nB\r\nc\nnew\r\nd\r\n"
-    assert encode_like("a\nb", b"a") == b"a\nb"
-
-
 @pytest.mark.parametrize("text", [*FORMULAS, *PLAIN])
 def test_no_cell_of_a_table_is_a_formula_and_ours_are_read_back(text):
     ((cell, number, empty),) = csv.reader([csv_text([[text, -1.5, None]])])
     assert (cell == text) == (text in PLAIN) and (number, empty) == ("-1.5", "")
     assert cell == text or cell[0] == "'"
     assert unmarked(cell) == text
-
-
-@pytest.mark.parametrize("joint", ["_", "-"])
-@pytest.mark.parametrize("name", ["a.", "..", 'a<b>:"c|?*', "ü", "雷达", "x" * 300])
-def test_every_file_system_takes_the_names_of_files(name, joint):
-    stem = file_stem(name, "sensor", joint=joint)
-    assert re.fullmatch("[A-Za-z0-9_-]{1,107}", stem)
-
-
-def test_a_process_that_ends_at_once_waits_for_a_file_that_is_being_written(tmp_path):
-    """SIGTERM in the middle of a write left its temporary file."""
-    code = (
-        "import os, pathlib, threading, time\n"
-        "from pe_core.base import files\n"
-        "sync, began = os.fsync, threading.Event()\n"
-        "os.fsync = lambda number: (began.set(), time.sleep(0.5), sync(number))\n"
-        "path = pathlib.Path('result.json')\n"
-        "threading.Thread(target=files.write_bytes, args=(path, b'whole')).start()\n"
-        "began.wait()\n"
-        "files.finish_writing()\n"
-        "os._exit(0)\n"
-    )
-    environment = os.environ | {"PYTHONPATH": str(Path(files.__file__).parents[2])}
-    subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=environment, check=True)
-    assert [path.name for path in tmp_path.iterdir()] == ["result.json"]
-    assert (tmp_path / "result.json").read_bytes() == b"whole"

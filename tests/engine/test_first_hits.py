@@ -118,18 +118,6 @@ def test_hits_are_those_of_every_triangle_tested(mesh, seed):
 
 
 @pytest.mark.parametrize("mesh", MESHES)
-def test_hits_do_not_depend_on_how_much_is_looked_at_at_once(mesh, monkeypatch):
-    """A box at a time, some rays at a time: ties are then between what was met and what is."""
-    monkeypatch.setattr(raycast, "FIRST_BOXES", 1)
-    monkeypatch.setattr(raycast, "MAX_BOXES", 2)
-    monkeypatch.setattr(raycast, "PAIRS_AT_ONCE", 16)
-    monkeypatch.setattr(raycast, "RAYS_AT_ONCE", 700)
-    rng = np.random.default_rng(9)
-    triangles = MESHES[mesh](rng)
-    assert_same(triangles, rays_at(triangles, rng, 100))
-
-
-@pytest.mark.parametrize("mesh", MESHES)
 @pytest.mark.parametrize("few", [3, 10**9])
 def test_rays_followed_by_themselves_hit_the_same(mesh, few, monkeypatch):
     """Some of the rays into some of the boxes, and all into all; many at once and one by one."""

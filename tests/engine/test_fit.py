@@ -131,20 +131,6 @@ def test_tables_without_a_curve_are_refused():
     assert wrongly_refused(lambda v: fit_ap_curve(table(*v)), NO_CURVE) == []
 
 
-def test_the_snippet_of_a_class_of_objects_is_the_study_s_table():
-    fit = fit_ap_curve(ApTable(np.array([1.0, 2.0, 4.0]), np.array([0.2, 0.3, 0.4]), np.ones(3)))
-    for name in ("car", "road works \N{CONSTRUCTION SIGN}"):
-        table = tomllib.loads(study_snippet(fit, "lidar", name))
-        assert list(table["ap"]["objects"]["lidar"][name]) == ["a", "b"]
-
-
-def test_the_snippet_names_the_table_and_how_many_points_it_used(tmp_path):
-    rows = "m,ap\n0.01,0.001\n1,0.2\n2.718281828459045,0.3\n7.38905609893065,0.5\n"
-    found = fit_ap_curve(read_ap_table(written(tmp_path, rows)))
-    assert found.left_out == {"at the clip": 1}
-    assert "3 of 4 points of ap.csv" in study_snippet(found, "lidar")
-
-
 def test_a_table_by_range_gives_the_curve_of_what_the_model_measures(tmp_path):
     """AP made of a known curve at the radar's own m by range: the fit finds the curve again."""
     m = m_by_range(catalog.load(RADAR), np.array(RANGES), "car")
@@ -161,11 +147,3 @@ def test_a_table_by_range_gives_the_curve_of_what_the_model_measures(tmp_path):
     assert (curve["a"], curve["b"]) == pytest.approx((0.3, 0.1), abs=1e-5)
     times = (4.6 + 1.9) * 1.7 / (2.0 * 0.1**2)
     assert fitted(None)["radar"]["b"] == pytest.approx(0.1 + 0.3 * math.log(times), abs=1e-4)
-
-
-def test_a_table_by_range_needs_a_model_and_a_class_with_a_size(tmp_path):
-    path = written(tmp_path, "range_m,ap\n10,0.5\n20,0.4\n30,0.3\n")
-    with pytest.raises(pe.InputError, match="line 1"):
-        read_ap_table(path)
-    with pytest.raises(pe.InputError, match="object: expected one of car"):
-        read_ap_table(path, partial(m_by_range, catalog.load(RADAR), class_name="dog"))

@@ -6,9 +6,7 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_core.scoring.sampling import HELD_OUT
-from pe_tools.advice.flatness import AxisCost, StepCosts, axis_costs, flatness_lines
-from pe_tools.cli.terminal import summary
-from pe_tools.jobs import result_dict
+from pe_tools.advice.flatness import AxisCost, StepCosts, axis_costs
 from tests.engine import shapes
 from tests.engine.processes import finished
 
@@ -82,10 +80,3 @@ def test_costs_of_a_slope_are_its_gradient_and_all_else_is_flat():
 def test_a_cost_within_its_error_is_not_noticed():
     assert AxisCost("roof", "x", {-1.0: 0.02, 1.0: 0.0}, stderr=0.02).word == "flat"
     assert AxisCost("roof", "x", {-1.0: 0.02, 1.0: 0.0}, stderr=0.001).word == "steep"
-
-
-def test_it_is_in_result_json_and_on_the_terminal(outcome):
-    assert len(result_dict(outcome)["flatness"]["axes"]) == 6
-    text = summary(outcome)
-    for line in flatness_lines(outcome.flatness):
-        assert line in text

@@ -9,7 +9,7 @@ import pytest
 
 import pe_core as pe
 from pe_tools.outputs import OutputRequest, scene_files
-from pe_tools.outputs.ground_plan import ground_plan, outline_from_above, polygons, signed_area
+from pe_tools.outputs.ground_plan import ground_plan
 
 from .shapes import box, box_car, camera, lidar_on_roof, small_lidar
 
@@ -47,30 +47,6 @@ def test_a_wall_hides_the_ground_behind_it():
     eye = camera(90.0, position=(0.0, 0.0, 1.0))
     (one,) = plan_of(eye, vehicle=wall)[0].footprints
     assert np.vstack(one.outlines)[:, 0].max() == pytest.approx(5.0, abs=1e-3)
-
-
-def test_the_body_s_outline_is_that_from_above():
-    outline = outline_from_above(box_car())
-    assert area(outline) == pytest.approx(4.6 * 1.8, rel=0.01)
-    assert np.abs(np.vstack(outline)).max(axis=0) == pytest.approx([2.3, 0.9], abs=0.02)
-
-
-def square(x, y, half, clockwise=False):
-    ring = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1), (1, 1)]) * half + (x, y)
-    return ring[::-1] if clockwise else ring
-
-
-def test_a_hole_is_in_the_smallest_ring_round_it():
-    """A ring with a hole, in which an island with a hole of its own lies."""
-    loops = (
-        square(0, 0, 10),
-        square(1, 0, 6, clockwise=True),
-        square(1, 0, 4),
-        square(2, 1, 1, clockwise=True),
-    )
-    found = polygons(loops)
-    areas = [[signed_area(ring) for ring in polygon] for polygon in found]
-    assert areas == [[400.0, -144.0], [64.0, -4.0]]
 
 
 def test_footprints_are_polygons_of_the_ground():

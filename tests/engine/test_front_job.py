@@ -2,7 +2,6 @@
 
 import json
 import math
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +12,7 @@ import pe_tools as pt
 from pe_core.search import Front, Goals, pareto_front
 from pe_tools.cli.verbs import main
 from pe_tools.jobs import FrontJob, FrontJournals, front_dict
-from pe_tools.jobs.front_objectives import FrontFigures, ScalarValue, spread, weights_of
+from pe_tools.jobs.front_objectives import FrontFigures, ScalarValue, spread
 from pe_tools.page.build import write_front_page
 from tests.engine import shapes
 
@@ -118,15 +117,6 @@ def test_a_path_that_fails_and_mounting_errors_count_in_the_margin():
     assert margin(off, tolerance=loose) < margin(ahead, tolerance=loose)
 
 
-def test_weights_are_on_the_simplex_and_each_objective_comes_first_alone():
-    for objectives in (2, 3, 4):
-        weights = weights_of(9, objectives)
-        assert len(weights) == 9
-        assert [max(w) for w in weights[:objectives]] == [1.0] * objectives
-        assert np.allclose(np.sum(weights, axis=1), 1.0) and np.min(weights) >= 0.0
-        assert len(set(weights)) == 9
-
-
 def test_the_front_of_points_is_what_no_other_beats():
     rng = np.random.default_rng(3)
     points = rng.integers(0, 6, (60, 3)).tolist()
@@ -184,44 +174,6 @@ def test_journals_that_are_not_of_this_front_are_refused(whole):
             list(job)
 
 
-class Counted(ThreadPoolExecutor):
-    """Two threads as workers, which unpickle what they are sent; `tasks` counts them."""
-
-    tasks = 0
-
-    def submit(self, *args, **kwargs):
-        self.tasks += 1
-        return super().submit(*args, **kwargs)
-
-
-def test_a_front_by_an_executor_is_the_same():
-    """One that keeps a requirement as well."""
-    asked = {}
-    names = ("entropy", "height", "worst_loss", "blind_ground")
-    given = replace(study(names, 2), search=replace(study(names, 2).search, evaluations=40))
-    zone = pe.requirements.Zone(x=(4.0, 5.0), y=(-1.0, 1.0))
-    body = pe.requirements.Body("post", (0.3, 0.3, 0.5))
-    ask = pe.requirements.Requirement("ahead", zone, [body], pe.requirements.Criterion())
-    given = replace(given, limits=pe.Limits(requirements=True), requirements=(ask,))
-    with Counted(2) as workers:
-        for executor in (None, workers):
-            job = FrontJob(given, 1)
-            job.executor = executor
-            list(job)
-            designs = job.trade_off.designs
-            found = [(d.name, d.figures, [s.pose for s in d.study.rig]) for d in designs]
-            asked[executor] = found, job.journals.entries()
-    assert asked[None] == asked[workers]
-    evaluated = sum(map(len, asked[None][1].values()))
-    assert workers.tasks == evaluated - len(asked[None][1]), "all but the starts"
-
-
-def apart(rig):
-    """How far the sensors are apart along x [m]; lower is better."""
-    along = [sensor.pose.position[0] for sensor in rig]
-    return max(along) - min(along)
-
-
 def droop(rig):
     """How far the sensors are below the highest place, summed [m]."""
     return sum(2.6 - sensor.pose.position[2] for sensor in rig)
@@ -247,14 +199,6 @@ def test_functions_are_objectives_beside_those_of_a_name(tmp_path):
     assert data["objectives"] == ["entropy", "droop"]
     write_front_page(found, data, tmp_path)
     assert "Droop" in (tmp_path / "front.html").read_text()
-
-
-def test_several_functions_alone_are_those_of_processes_too():
-    here = front_of((apart, droop))
-    there = front_of((apart, droop), workers=2)
-    assert here.objectives == ("apart", "droop")
-    assert [d.figures for d in here.front] == [d.figures for d in there.front]
-    assert front_of((apart, lambda rig: droop(rig)), workers=2).objectives[1] == "<lambda>"
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core import sensors as kinds
 from pe_core.metric import (
     POINTPILLARS,
     RTM3D,
@@ -20,7 +19,6 @@ from pe_core.metric import (
 from pe_core.metric.entropy import ap_of_entropy
 from pe_core.metric.fusion import DIGITS, Fusion, PlaneFusion, VisibleRows, group_sum
 from pe_core.sensors.lidar.kernel_voxels import compact
-from pe_core.study import study_from_dict, study_to_dict
 from tests.engine import shapes
 from tests.engine.refusals import wrongly_refused
 
@@ -103,42 +101,6 @@ def test_entropies_of_a_plane(kind):
     np.testing.assert_allclose(alone, [[H0, H0], [HC, H0], [H0, H0]], atol=2e-4)
 
 
-def test_two_groups_of_beams_in_a_plane():
-    beams = np.array([[[0, 1], [1, 2]]], np.uint16)
-    more = np.array([[[0, 1], [0, 0]]], np.uint8)
-    area = VisibleRows(slice(0, 1), np.array([[[0.0, 100.0]]]))
-    groups = [("lidar", beams), ("lidar", more), ("camera", area)]
-    fusion = PlaneFusion(Fusion(pe.PerceptionModel()), (2, 2))
-    np.testing.assert_allclose(
-        fusion.entropies(groups, 0), [[H0, H1_1_C], [H1, H2]], rtol=0.0, atol=1e-8
-    )
-    np.testing.assert_allclose(
-        fusion.entropies(groups[:2], 0), [[H0, H1_1], [H1, H2]], rtol=0.0, atol=1e-8
-    )
-    assert fusion.seen(groups, 0).tolist() == [[False, True], [True, True]]
-    literal = PlaneFusion(Fusion(pe.PerceptionModel("literal")), (2, 2))
-    assert literal.entropies(groups, 0)[0, 0] == pytest.approx(H0 - math.log(3.0), abs=1e-8)
-
-
-@pytest.mark.parametrize("kind", [np.float32, np.float64])
-def test_no_pixels_are_none_even_where_the_least_is_enough(kind):
-    """A curve that is saturated whatever it is given leaves what is not seen as it is."""
-    model = pe.PerceptionModel(camera=pe.ApCurve(1e-9, 5.0))
-    area = np.array([[[0.0, 1e-9, 1e9]]], kind)
-    fusion = PlaneFusion(Fusion(model), (1, 3))
-    found = fusion.entropies([("camera", VisibleRows(slice(0, 1), area))], 0)
-    expected = [[H0, SATURATED, SATURATED]]
-    np.testing.assert_allclose(found, expected, atol=1e-5)
-
-
-def test_areas_far_beyond_a_picture_and_far_below_a_pixel_are_reported_apart():
-    """1e-6 px, where AP is clipped, and 4e9, beyond 4,617,918 px, where it is too."""
-    area = np.array([[[1e-6, 4e9, 1.0]]], np.float32)
-    fusion = PlaneFusion(Fusion(pe.PerceptionModel()), (1, 3))
-    found = fusion.entropies([("camera", VisibleRows(slice(0, 1), area))], 0)
-    np.testing.assert_allclose(found, [[H0, SATURATED, 6.229700087]], atol=1e-3)
-
-
 def test_rows_seen_add_up_where_they_overlap():
     left = VisibleRows(slice(2, 4), np.full((1, 2, 1), 1.0, np.float32))
     right = VisibleRows(slice(3, 6), np.full((1, 3, 1), 10.0, np.float32))
@@ -168,17 +130,6 @@ def test_whole_numbers_are_looked_up_as_far_as_they_matter():
     assert flat.saturation_count("lidar") == 65_535
 
 
-def test_a_model_tells_its_curves():
-    own = pe.ApCurve(0.2, 0.5)
-    model = pe.PerceptionModel(lidar=own)
-    assert model.curve("lidar") is own and model.lidar is own
-    assert model.camera == RTM3D and list(model.curves) == list(kinds.KINDS)
-    assert [model.curves[kind] for kind in ("lidar", "camera")] == [own, RTM3D]
-    assert pe.PerceptionModel().lidar == POINTPILLARS
-    with pytest.raises(AttributeError, match="sonar"):
-        _ = model.sonar
-
-
 def test_impossible_models_are_refused():
     assert wrongly_refused(lambda v: pe.PerceptionModel(**v), IMPOSSIBLE_MODELS) == []
 
@@ -199,13 +150,6 @@ def test_sums_of_a_group_hold_what_their_parts_add_up_to():
     assert group_sum([word, word]).tolist() == [120_000, 120_000]
     assert group_sum([byte, word]).tolist() == [60_250, 60_250]
     assert group_sum([np.array([1.5]), np.array([2])]).tolist() == [3.5]
-
-
-def test_areas_in_single_precision_count_by_eleven_binary_digits():
-    """From 64 to 128 px the eleventh digit is 1/16 px: 100.00 and 100.06 px are one number."""
-    m = np.array([100.0, 100.06, 100.0625], np.float32)
-    added = PlaneFusion(Fusion(pe.PerceptionModel()), (1, 1)).added("camera", m)
-    assert added[0] == added[1] < added[2]
 
 
 @pytest.mark.parametrize("blind", ["floor", "literal"])
@@ -351,21 +295,6 @@ def rig(curve, kind_wide=False):
 
 
 @pytest.mark.parametrize("samples", [0, 1024])
-@pytest.mark.parametrize("blind", ["floor", "literal"])
-def test_a_curve_of_all_of_a_kind_is_that_kind_s(samples, blind):
-    def score(some, **curves):
-        model = pe.PerceptionModel(blind, **curves)
-        prior = pe.Prior.uniform()
-        car = shapes.box_car()
-        return pe.Evaluator(SPACE, prior, car, samples=samples, model=model).score(some)
-
-    one = score(rig(BETTER))
-    other = score(rig(BETTER, kind_wide=True), lidar=BETTER)
-    assert one.to_dict() == other.to_dict()
-    assert one.entropy < score(rig(None)).entropy
-
-
-@pytest.mark.parametrize("samples", [0, 1024])
 def test_sensors_of_one_kind_with_two_curves_are_fused_late(samples):
     """Of two LiDARs in one place each counts by its own curve: alone as that curve scores it."""
     lidar = shapes.small_lidar()
@@ -382,15 +311,6 @@ def test_a_group_has_one_curve():
     lidar = shapes.small_lidar()
     with pytest.raises(pe.InputError, match="'lidar': expected one AP curve, found two"):
         pe.Rig([pe.Sensor("a", lidar, curve=BETTER), pe.Sensor("b", lidar)])
-
-
-def test_a_study_holds_it():
-    sensor = {"name": "a", "model": "Pandar64", "position": [0, 0, 2], "ap": {"a": 0.2, "b": 0.8}}
-    study = study_from_dict({"sensor": [sensor]})
-    assert study.rig["a"].curve == BETTER
-    assert study_to_dict(study)["sensor"][0]["ap"] == {"a": 0.2, "b": 0.8}
-    with pytest.raises(pe.InputError, match=r"ap\.b"):
-        study_from_dict({"sensor": [sensor | {"ap": {"a": 0.2}}]})
 
 
 def test_curves_of_objects_are_by_kind_and_class():

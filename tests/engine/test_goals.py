@@ -11,8 +11,7 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_core.scoring.sampling import HELD_OUT
-from pe_core.search import Front, Goals, Start, Stop
-from pe_core.study import load_study_data, study_to_dict
+from pe_core.search import Goals, Start
 from pe_tools.cli.terminal import summary
 from pe_tools.cli.verbs import parser
 from pe_tools.jobs import HistoryRow, best_so_far, result_dict, stopping
@@ -20,12 +19,6 @@ from tests.engine import shapes
 from tests.engine.processes import finished as driven
 
 pytestmark = pytest.mark.usefixtures("few_errors", "no_key_figures")
-GOALS = Goals(
-    Stop(60.0, 0.001, 50),
-    ("roof",),
-    [Start("other", {"front": pe.Pose.from_degrees((0.0, 0.5, 2.0), (0.0, 5.0, 90.0))})],
-    Front(("entropy", "height"), 4),
-)
 
 
 def study(goals=None, names=("roof",), **search):
@@ -78,12 +71,6 @@ def test_limits_are_set_by_key_or_option(tmp_path):
     path.write_text(path.read_text().replace("blind_ground =", "blind_grund ="))
     with pytest.raises(pe.InputError, match=r"limits.*blind_ground.*blind_grund|blind_grund"):
         pe.load_study(path)
-
-
-def test_a_search_stops_for_want_of_gain(plain):
-    outcome = finished(study(Goals(Stop(gain=100.0, over=20))))
-    assert outcome.stop_reason == "gain" and 20 < outcome.evaluations < 60
-    assert finished(study(Goals(Stop(gain=1e-9, over=1000)))).evaluated == plain.evaluated
 
 
 def test_a_search_that_races_tells_within_what_another_seed_would_end(plain):
@@ -147,12 +134,6 @@ def test_several_starts_share_the_budget_and_the_best_end_is_the_result(plain):
     assert goes_on.evaluated == outcome.evaluated
 
 
-def test_a_budget_below_the_number_of_starts_is_no_unlimited_one():
-    starts = [Start(f"at {z}", {"roof": pe.Pose((0.0, 0.0, z))}) for z in (1.8, 2.0, 2.2)]
-    outcome = finished(study(Goals(starts=starts), evaluations=2))
-    assert [end.evaluations for end in outcome.starts] == [1, 2, 3, 4]
-
-
 def test_the_curve_of_a_search_never_rises_and_ends_at_its_last_value(plain):
     """Neither with a further start, nor where the best is evaluated again with more samples."""
     poses = {"roof": pe.Pose((0.0, 0.0, 2.2))}
@@ -181,20 +162,6 @@ def test_values_of_fewer_samples_are_shifted_to_those_of_more():
 
 def journal_of(outcome, count):
     return pe.search.Journal(outcome.evaluated[:count])
-
-
-def test_goals_are_in_the_file_and_nothing_is_written_of_the_default(tmp_path):
-    given = study(names=("roof", "front"))
-    given = replace(given, vehicle=None, search=replace(given.search, goals=GOALS))
-    pe.save_study(given, tmp_path / "study.toml")
-    table = load_study_data(tmp_path / "study.toml")["optimize"]
-    assert table["stop"] == {"seconds": 60.0, "gain": 0.001, "over": 50}
-    assert table["front"] == {"objectives": ["entropy", "height"], "points": 4}
-    again = pe.load_study(tmp_path / "study.toml")
-    assert study_to_dict(again) == study_to_dict(given)
-    assert again.search.goals.starts[0].poses["front"].rotation_deg == (0.0, 5.0, 90.0)
-    bare = study_to_dict(replace(given, search=replace(given.search, goals=Goals())))
-    assert not {"stop", "fixed", "start", "front"} & set(bare["optimize"])
 
 
 def typed_study(path, *changes):

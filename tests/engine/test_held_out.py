@@ -11,8 +11,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.scoring.sampling import CENTERED, HELD_OUT, SEARCHED, draw
-from pe_core.search import Front, Goals
+from pe_core.scoring.sampling import HELD_OUT, SEARCHED, draw
 from pe_core.search.tolerance import FRESH, mounted_off
 from pe_tools.jobs import result_dict
 from tests.engine import shapes
@@ -105,20 +104,6 @@ def test_what_a_step_costs_is_that_of_all_voxels(outcome, whole):
         change = whole.entropy(rig.with_poses(poses)) - base
         off.append((row.cost[1.0] - change) / row.stderr)
     assert np.sqrt(np.mean(np.square(off))) < MAX_ERRORS
-
-
-@pytest.mark.usefixtures("few_errors", "no_key_figures")
-def test_a_front_is_reported_on_other_voxels_too():
-    front = Front(("entropy", "height", "worst_loss"), 3)
-    given = study(goals=Goals(front=front), evaluations=90)
-    job = pt.FrontJob(given, 1)
-    list(job)
-    reported = given.evaluator(SAMPLES, shift=CENTERED)
-    for design in job.trade_off.front:
-        rig = design.study.rig
-        assert design.figures["entropy"] == reported.entropy(rig)
-        lost = [reported.entropy(pe.Rig([s])) - reported.entropy(rig) for s in rig]
-        assert design.figures["worst_loss"] == pytest.approx(max(lost), abs=2e-9)
 
 
 def test_a_figure_that_a_search_keeps_is_searched_in_other_scenes():

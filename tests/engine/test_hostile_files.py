@@ -326,6 +326,7 @@ UNFOLDING = [
 ]
 
 
+@pytest.mark.thorough
 def test_texts_that_unfold_are_refused_in_one_line():
     assert wrongly_refused(lambda given: given[0]("kit", given[1]), UNFOLDING, "kit") == []
 

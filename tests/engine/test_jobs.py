@@ -8,7 +8,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_tools.jobs import HistoryRow, score_and_optimize
+from pe_tools.jobs import HistoryRow, optimize_job
 from tests.engine import shapes
 
 pytestmark = pytest.mark.usefixtures("few_errors", "no_key_figures")
@@ -76,7 +76,7 @@ def test_a_stop_ends_the_analysis_and_the_result_does_not_wait_for_it(when, monk
     """Before it begins, or while it runs for as long as it likes; the search was stopped or not."""
     goes_on = threading.Event()
     left = list(when)
-    monkeypatch.setattr(score_and_optimize, "robustness", lambda *_, **_named: goes_on.wait(60.0))
+    monkeypatch.setattr(optimize_job, "robustness", lambda *_, **_named: goes_on.wait(60.0))
     job = pt.OptimizeJob(study())
     for progress in job:
         while left and progress.stage == left[0] and progress.evaluations >= 20:

@@ -4,12 +4,9 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.geometry.grids import GroundGrid
 from pe_core.metric.frames import Frames
 from pe_core.metric.fusion import Fusion
-from pe_core.sensors.kernels import GroundView
 from pe_core.sensors.lidar.beams import BeamCache
-from pe_core.sensors.measurement_cache import VisibleGroundCache
 from tests.engine import shapes
 
 SAMPLES = 2048
@@ -73,20 +70,6 @@ def test_the_measurements_that_a_score_turns_into_precision_grow_with_the_sensor
         work.append(sum(converted))
     few, more, many = work
     assert more < 2.2 * few and many < 2.2 * more
-
-
-def test_eight_squares_that_a_sensor_marks_take_a_byte_and_say_the_same():
-    rig = ring(3)
-    grid = GroundGrid((-10.0, -10.0), (201, 199), 0.1)
-    view = GroundView(grid, 0.5, shapes.box_car())
-    ours = VisibleGroundCache(view, {})
-    marked = ours.marked(rig)
-    by_sensor = ours.by_sensor
-    assert ours.kept_bytes <= len(rig.sensors) * (201 * 199 / 8 + 1)
-    alone = [VisibleGroundCache(view, {}).marked(pe.Rig([sensor])) for sensor in rig]
-    assert all(np.array_equal(by_sensor[s.name], m) for s, m in zip(rig, alone, strict=True))
-    assert np.array_equal(marked, np.logical_or.reduce(alone)) and marked.any()
-    assert marked.dtype == bool and not marked.all()
 
 
 def test_sensors_of_one_model_and_orientation_share_their_rotated_beams():

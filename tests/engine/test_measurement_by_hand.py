@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from pe_core.sensors import LIDAR as LIDAR_KIND
-from pe_core.sensors import kind_of
 from pe_core.sensors.camera.definition import frustum_distance
 from pe_core.sensors.camera.sample_areas import pixel_areas
 from tests.engine import shapes
@@ -274,39 +272,6 @@ def test_the_vehicle_hides_what_is_behind_it_and_nothing_before_it():
 def test_centres_have_three_finite_numbers(centers):
     with pytest.raises(pe.InputError, match="measure: centers"):
         pe.measure(at(camera()), centers, 1.0)
-
-
-def test_what_kinds_of_sensors_have_in_common():
-    """LiDARs share a fusion group and are stopped by glass; cameras stand alone and see through."""
-    assert (pe.Lidar.fuses_early, pe.Lidar.sees_through_glass) == (True, False)
-    assert (pe.Camera.fuses_early, pe.Camera.sees_through_glass) == (False, True)
-    models = [lidar(), lidar(), camera(), camera()]
-    rig = pe.Rig([pe.Sensor(n, m) for n, m in zip("abcd", models, strict=True)])
-    groups = [[s.name for s in members] for members in rig.groups.values()]
-    assert groups == [["a", "b"], ["c"], ["d"]]
-    ahead = pe.catalog.load("Hesai ATX")
-    assert kind_of(ahead).summary(ahead) == "250 channels, 120 x 20 deg, 230 m"
-
-
-def test_tables_say_what_they_said():
-    """360 / 0.7 = 514.29 azimuths: 514."""
-    model = pe.catalog.from_table("mine", LIDAR)
-    assert (model.azimuth_count, model.max_range) == (514, 80.0)
-    assert np.degrees(model.elevations).tolist() == pytest.approx([-10, 0.5])
-    table = pe.catalog.to_table(model)
-    assert table == {
-        "kind": "lidar",
-        "azimuth_count": 514,
-        "max_range_m": 80.0,
-        "horizontal_fov_deg": [-180.0, 180.0],
-        "elevations_deg": [-10.0, 0.5],
-    }
-    turned = LIDAR | {"azimuth_offsets_deg": [0, 1.25], "horizontal_fov_deg": [-60, 45]}
-    table = pe.catalog.to_table(pe.catalog.from_table("mine", turned))
-    assert table["azimuth_offsets_deg"] == [0.0, 1.25]
-    assert table["horizontal_fov_deg"] == [-60.0, 45.0]
-    assert pe.catalog.to_table(pe.catalog.from_table("mine", CAMERA)) == CAMERA
-    assert LIDAR_KIND.read("mine", LIDAR | {"azimuth_count": 12}, None).azimuth_count == 12
 
 
 def test_wrong_tables_are_refused():

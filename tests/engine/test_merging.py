@@ -219,21 +219,6 @@ def test_an_export_needs_a_place(tmp_path, capsys):
     assert "--into" in capsys.readouterr().err
 
 
-def test_a_kit_that_is_there_keeps_its_text(tmp_path):
-    """Three times: LiDARs whose model stands in are lifted and let down alike."""
-    kit = copied(tmp_path / "kit", "autoware")
-    before = data_of(kit)
-    for _ in range(3):
-        rig = import_rig(kit, None, AXLE).rig
-        pt.export_rig(rig, "autoware", kit, AXLE, replace=True)
-    assert data_of(kit) == before, "and no camera_info"
-    new = tmp_path / "new"
-    pt.export_rig(rig, "autoware", new, AXLE)
-    again = import_rig(new, None, AXLE).rig
-    for name in ("hesai_top", "hesai_left"):
-        assert again[name].pose.position == pytest.approx(rig[name].pose.position, abs=1e-9)
-
-
 @pytest.mark.parametrize("name", RIG_FORMATS)
 def test_an_export_over_the_last_one_is_the_same(name, tmp_path):
     rig = pe.Rig([NEW, pe.Sensor("roof", pe.Lidar("own", np.radians([-9.0, 3.0]), 36, 80.0), POSE)])

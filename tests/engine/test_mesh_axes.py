@@ -1,17 +1,13 @@
 """Axes of mesh files: asked for, said by the file, guessed by names and shape; and always told."""
 
-from dataclasses import fields
-
 import numpy as np
 import pytest
 
 import pe_core as pe
 from pe_core.scene.mesh import AXIS_NAMES, BodyShape
 from pe_core.scene.vehicle_description import up_of
-from pe_core.study.study_file import study_from_dict, study_to_dict
 from tests.engine.mesh_files import glb_file, gltf, obj_bytes, read, stl_binary
 
-SENSOR = {"name": "roof", "model": "Pandar64", "position": [0, 0, 2]}
 # A car in the ground frame: a body, a cabin nearer to its rear, a nose. No side is like another.
 BOXES = {
     "body": ((-2.0, -0.9, 0.25), (2.0, 0.9, 0.8)),
@@ -149,23 +145,6 @@ def test_scale_and_rotation_come_last(tmp_path):
     low, high = (f(mesh.triangles.reshape(-1, 3), axis=0) for f in (np.min, np.max))
     # The box of x -1 to 4, y -1 to 1.5: halved, then x becomes y and y becomes -x.
     np.testing.assert_allclose([low, high], [(-0.75, -0.5, 0.125), (0.5, 2.0, 1.0)], atol=1e-12)
-
-
-def study_of(folder, data, **vehicle):
-    (folder / "car.obj").write_bytes(data)
-    return study_from_dict(
-        {"sensor": [SENSOR], "vehicle": {"mesh": "car.obj", **vehicle}}, folder=folder
-    )
-
-
-def test_the_keys_come_back_from_a_file(tmp_path):
-    keys = {"scale": 1.5, "rotation": [0.0, 0.0, 30.0], "up": "+y", "forward": "-z"}
-    assert len(keys) == len(fields(pe.MeshAxes))
-    study = study_of(tmp_path, obj("ours"), **keys)
-    assert study.axes == pe.MeshAxes("+y", "-z", 1.5, (0.0, 0.0, 30.0))
-    again = study_from_dict(study_to_dict(study), folder=tmp_path)
-    assert again.axes == study.axes and again.faces == study.faces
-    assert np.array_equal(again.vehicle.triangles, study.vehicle.triangles)
 
 
 def slab(low, high):

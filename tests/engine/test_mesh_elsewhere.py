@@ -44,12 +44,6 @@ AREAS = {  # square inches
     "a fan": (HOLED[0], f"<trifans count='1'>{INPUT}<p>0 1 2 3</p></trifans>", 4000.0),
     "lines": (HOLED[0], f"<linestrips>{INPUT}<p>0 1</p></linestrips>{POLYLIST}", 4000.0),
 }
-MISSING_IMAGE = """<library_effects><effect id="e"><profile_COMMON><newparam sid="s">
-<surface type="2D"><init_from>none.png</init_from></surface></newparam>
-<technique sid="t"><lambert><diffuse>
-<texture texture="s" texcoord="c"/></diffuse></lambert></technique></profile_COMMON></effect>
-</library_effects><library_materials><material id="m"><instance_effect url="#e"/></material>
-</library_materials>"""
 
 
 def install(monkeypatch, value):
@@ -165,11 +159,6 @@ def test_collada_s_polygons_have_the_shoelace_area(monkeypatch, tmp_path, name):
     area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2.0
     assert area == pytest.approx(right * 0.0254**2, rel=1e-6)
     assert mesh.notes == (("left out: 1 set of lines",) if name == "lines" else ())
-
-
-def test_collada_with_a_missing_image_is_read(monkeypatch, tmp_path):
-    with_image = DAE.replace("<library_geometries>", f"{MISSING_IMAGE}<library_geometries>")
-    assert len(read_dae(monkeypatch, tmp_path, with_image).triangles) == 2
 
 
 @pytest.mark.parametrize("index", ["-1", "4", "99999999999"])

@@ -100,14 +100,6 @@ def test_convex_polygons_are_fans_and_keep_their_order():
     assert found.polygons.tolist() == [0, 0, 0, 0, 1]
 
 
-def test_a_ring_that_crosses_itself_is_counted_and_ends():
-    bow = np.array([(0.0, 0.0, 0.0), (2.0, 2.0, 0.0), (2.0, 0.0, 0.0), (0.0, 1.0, 0.0)])
-    even = np.array([(0.0, 0.0, 0.0), (1.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)])
-    lying = np.zeros((7, 3))
-    found = triangulate("car", np.concatenate([bow, even, lying]), np.array([4, 4, 7]))
-    assert found.crossing == 2 and len(found.triangles) == 2 + 2 + 5
-
-
 def test_too_many_corners_of_a_concave_ring_are_refused():
     ring = star(np.random.default_rng(1), MAX_CONCAVE_CORNERS + 1)
     with pytest.raises(InputError, match="concave polygons"):
@@ -157,22 +149,6 @@ def test_concave_faces_have_the_shoelace_area_in_each_format(tmp_path, name, suf
     assert mesh.notes == ()
 
 
-def test_an_edge_that_is_followed_twice_leads_to_a_hole(tmp_path):
-    """A square of 4 m with a hole of 1 m, as programs write it to OBJ: 15 m2."""
-    points = [
-        (0, 0, 0),
-        (4, 0, 0),
-        (4, 4, 0),
-        (0, 4, 0),
-        (1, 1, 0),
-        (1, 2, 0),
-        (2, 2, 0),
-        (2, 1, 0),
-    ]
-    mesh = read(tmp_path, "a.obj", obj_bytes(points, [(0, 1, 2, 3, 0, 4, 5, 6, 7, 4)]))
-    assert area(mesh.triangles) == pytest.approx(15.0, rel=1e-12)
-
-
 def strips(points):
     """A PLY with an edge and a list of strips besides its face."""
     head = ply_header("ascii", len(points), 1).replace(
@@ -210,11 +186,6 @@ def test_geometry_that_is_left_out_is_counted_in_one_line(tmp_path, name, data, 
         text = f'[vehicle]\nmesh = "{name}"\n[[sensor]]\nname = "roof"\nmodel = "Pandar64"\n'
         (tmp_path / "study.toml").write_text(f"{text}position = [0, 0, 2]\n")
         assert mesh.notes[0] in pe.load_study(tmp_path / "study.toml").vehicle_line
-
-
-def test_polygons_that_cross_themselves_are_told(tmp_path):
-    data = obj_bytes([(0, 0, 0), (2, 2, 0), (2, 0, 0), (0, 1, 0)], [(0, 1, 2, 3)])
-    assert "1 polygon" in read(tmp_path, "a.obj", data).notes[0]
 
 
 def test_instances_of_a_glb_are_placed(tmp_path):

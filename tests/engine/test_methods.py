@@ -3,21 +3,17 @@
 import hashlib
 import math
 from concurrent.futures import ThreadPoolExecutor
-from itertools import pairwise
 
 import pytest
 
 import pe_core as pe
 from pe_core.search import METHODS, Parametrization, Value, pose_values
 from pe_core.search.methods import Given, Question
-from pe_core.search.methods.method import Incumbent, Phase
-from pe_core.search.methods.portfolio_survey import to_best_corners
 from tests.engine import mounting, shapes
 from tests.engine.mounting import can, roof
 from tests.engine.recording import Recorder, distance_to
 
 SPACE = shapes.small_space()
-PHASE = Phase(0, 1000)
 
 
 def fingerprint(steps):
@@ -109,28 +105,6 @@ def test_a_schedule_chooses_no_method():
         next(pe.optimize(objective=None, rig=rig, search_space=space, seed=0, schedule=schedule))
 
 
-def test_on_another_level_the_best_so_far_is_evaluated_anew(monkeypatch):
-    """A method that asks twice for one better placement: on few voxels, then on many."""
-    rig, space = mounting.space(can())
-    better = Parametrization(rig, space).candidate([0.5, 0.0, 1.5, 0.0])
-
-    def ask(given):
-        yield Question((better,), level=0, total=2)
-        yield Question((better,), level=1, total=2, round=1)
-
-    monkeypatch.setitem(METHODS, "twice", pe.Method("Twice", "for a test", ask))
-    coarse = Recorder(distance_to({"x": 0.5}))
-    fine = Recorder(lambda rig: 7 + rig["roof"].pose.position[0])
-    steps = list(pe.optimize([coarse, fine], rig, space, method="twice"))
-    assert [(s.level, s.entropy, s.improved) for s in steps[1:]] == [
-        (0, 0.0, True),
-        (1, 7.5, True),
-        (1, 7.5, False),
-    ]
-    assert [s.evaluations for s in steps] == [1, 2, 3, 4]
-    assert [s.fraction for s in steps] == [0.0, 0.5, 0.5, 1.0]
-
-
 def test_what_a_method_asks_follows_from_its_answers_alone():
     """Sent the same answers, it asks the same again: what a journal of answers rests on."""
     rig, space = mounting.space(can())
@@ -151,33 +125,6 @@ def test_what_a_method_asks_follows_from_its_answers_alone():
         assert asked[0] == asked[1]
 
 
-@pytest.fixture(scope="module")
-def coding():
-    return Parametrization(*mounting.space(can(), can((0.2, 0.1, 1.6), "b")))
-
-
-def answered(asking, value):
-    """Drive a part of a method: each candidate is worth `value` of it; return what it returns."""
-    try:
-        question = next(asking)
-        while True:
-            answers = [c and Value(0.0, value(c)) for c in question.candidates]
-            question = asking.send(answers)
-    except StopIteration as stop:
-        return stop.value
-
-
-def test_a_corner_that_is_worse_than_the_start_is_left(coding):
-    given = Given(coding, coding.start, Value(0.0, 3.0))
-    incumbent = Incumbent(coding.start, Value(0.0, 3.0))
-    answered(to_best_corners(given, incumbent, PHASE), lambda c: 4.0)
-    assert incumbent.best is given.start and incumbent.value == Value(0.0, 3.0)
-    assert incumbent.count > 0
-    answered(to_best_corners(given, incumbent, PHASE), lambda c: 2.0 + c.vector[0] / 10.0)
-    assert incumbent.value < Value(0.0, 2.0)
-    assert incumbent.best.vector[0] == given.parametrization.variables[0].low
-
-
 def test_a_lower_level_screens_candidates_but_makes_none_the_incumbent(monkeypatch):
     rig, space = mounting.space(can())
     coding = Parametrization(rig, space)
@@ -193,23 +140,3 @@ def test_a_lower_level_screens_candidates_but_makes_none_the_incumbent(monkeypat
     *_, first, screened, last = pe.optimize(levels, rig, space, method="screened")
     for step in (first, screened, last):
         assert (step.best["roof"].pose, step.entropy, step.level) == (rig["roof"].pose, -0.43, 1)
-
-
-def test_the_last_placements_are_evaluated_on_all_voxels_of_the_search():
-    samples = METHODS["portfolio"].samples
-    assert [samples(count, 600, 2) for count in (65_536, 4_096, 1_024, 0)] == [
-        (16_384, 65_536),
-        (2_048, 4_096),
-        (1_024, 1_024),
-        (16_384, 0),
-    ]
-    assert samples(65_536, 0, 2) == samples(65_536, 640, 2) == (16_384, 65_536, 262_144)
-    assert samples(2**24, 0, 1) == (2**22, 2**24, 2**24) and samples(0, 0, 1) == (16_384, 0)
-    rig, space = mounting.space(can())
-    both = [Recorder(distance_to({"x": 0.5})), Recorder(distance_to({"x": 0.6}))]
-    steps = list(pe.optimize(both, rig, space, method="portfolio", evaluations=200))
-    levels = [step.level for step in steps]
-    assert levels == sorted(levels) and set(levels) == {0, 1}
-    assert pose_values(steps[-1].best["roof"].pose)["x"] == pytest.approx(0.6, abs=0.01)
-    for before, after in pairwise(steps):
-        assert after.entropy <= before.entropy or after.level > before.level

@@ -75,16 +75,6 @@ def test_a_sensor_stays_on_the_area_though_the_part_goes_on():
         assert pose.position[0] == pytest.approx(max(x, 0.0), abs=1e-5)
 
 
-def test_the_faces_of_a_file_s_part_are_those_of_the_area(folder):
-    study = study_from_dict(
-        data({"area": {"file": "areas.npz", "parts": ["front half"]}}), "study.toml", folder
-    )
-    area = study.search.mounting.mounts["area"].area
-    assert area == pe.MountArea(painted(), "areas.npz", ["front half"])
-    assert area != pe.MountArea(painted() + 1.0, "areas.npz", ["front half"])
-    assert study.coding().candidate((-1.0, 0.0, TOP, 0.0)).rig["roof"].pose.position[0] == 0.0
-
-
 @pytest.mark.usefixtures("few_errors", "no_key_figures")
 def test_a_study_with_areas_is_written_with_them_and_searches_the_same(folder, tmp_path):
     rig, space = mounting.space(mounting.can(START), mount={"roof": area_mount()})
@@ -128,10 +118,3 @@ def test_what_is_wrong_with_an_area_is_one_line(folder, name):
         study_from_dict(data(mount), "study.toml", folder)
     line = str(error.value).replace(f"{folder}/", "")
     assert told in line and "\n" not in line
-
-
-def test_an_area_needs_a_vehicle():
-    rig = pe.Rig([mounting.can(START)])
-    where = pe.Mounting({"area": area_mount()}, {"roof": "area"})
-    with pytest.raises(pe.InputError, match="area: expected"):
-        pe.Study(rig, search=pe.Search(mounting=where)).coding()

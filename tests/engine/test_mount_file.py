@@ -1,6 +1,5 @@
 """Mounts, ties and constraints in the study file, and one line for whatever is wrong with them."""
 
-import math
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +8,7 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_core.search import Parametrization
-from pe_core.study.study_file import study_from_dict, study_to_dict
+from pe_core.study.study_file import study_from_dict
 from tests.engine import mounting
 from tests.engine.mounting import CAN, ON_ROOF, TOP
 from tests.engine.refusals import wrongly_refused
@@ -49,39 +48,6 @@ def line(folder, *sensors, **optimize):
     told = str(error.value)
     assert "\n" not in told and told.startswith("study.toml: ")
     return told.removeprefix("study.toml: ")
-
-
-def test_a_file_says_all_that_there_is(folder):
-    rack = [SLOT, SLOT | {"name": "there", "rotation": [0, 10, 0]}]
-    sensors = [
-        sensor(mount="area"),
-        sensor("left", (0.0, 0.5, 2.5)),
-        sensor("right", (0.0, -0.5, 2.5)),
-        sensor("on the rack", SLOT["position"], mount="rack"),
-        sensor("beside it", (0.0, 0.2, 1.9)),
-    ]
-    study = read(
-        folder,
-        *sensors,
-        limits={"height": 2.6, "width": 1.9, "distance": 0.2},
-        clear_housings=True,
-        no_go=[{"name": "hatch", "x": [-0.2, 0.3], "y": [-math.inf, 0]}],
-        mount=[AREA | {"orientation": "normal"}, {"name": "rack", "slot": rack}],
-        pairs=[["left", "right"]],
-        groups=[["on the rack", "beside it"]],
-    )
-    found = study.search.mounting
-    assert found.mounts["area"] == pe.SurfaceMount(("roof",), 0.04, "normal")
-    assert [slot.name for slot in found.mounts["rack"].slots] == ["here", "there"]
-    assert found.mounts["rack"].slots[1].pose.rpy == (0.0, math.radians(10), 0.0)
-    assert found.on == {"roof": "area", "on the rack": "rack"}
-    assert found.pairs == (("left", "right"),)
-    assert found.groups == (("on the rack", "beside it"),)
-    hatch = pe.NoGo("hatch", (-0.2, 0.3), (-math.inf, 0.0))
-    assert found.constraints == pe.Constraints(True, [hatch])
-    assert study.limits == pe.Limits(height=2.6, width=1.9, distance=0.2)
-    again = study_from_dict(study_to_dict(study), "study.toml", folder)
-    assert (again.search, again.limits) == (study.search, study.limits)
 
 
 def test_the_example_of_the_page_is_a_study(folder):

@@ -90,18 +90,6 @@ def test_on_a_surface_the_housing_is_kept_clear_without_being_asked_for():
     assert broken(far, mount={"roof": roof()}, vehicle=vehicle) == []
 
 
-def test_who_follows_a_sensor_on_a_surface_is_kept_clear_too():
-    """A wall stands on the roof's right half alone."""
-    wall = shapes.box((-0.1, -0.7, TOP), (0.1, -0.3, TOP + 0.3))
-    car = mounting.car()
-    parts = np.concatenate([car.parts, np.zeros(len(wall))]).astype(np.int32)
-    vehicle = pe.Vehicle(np.concatenate([car.triangles, wall]), parts, car.part_names)
-    two = [can((0.0, y, ON_ROOF[2]), name) for name, y in (("left", 0.5), ("right", -0.5))]
-    options = {"mount": {"left": roof()}, "pairs": [("left", "right")]}
-    assert broken(*two, vehicle=vehicle, **options) == ["the body for 'right'"]
-    assert broken(*two, **options) == []
-
-
 def test_housings_keep_out_of_each_other_where_that_is_asked_for():
     for gap, told in ((1.03, []), (0.97, ["clear housings of 'a' and 'b'"])):
         two = can((0, 0, FLYING), "a"), can((2 * gap * RADIUS, 0, FLYING), "b")
@@ -144,31 +132,6 @@ def test_bounds_of_a_sensor_on_a_surface_hold_where_the_surface_leads():
     for x in (-0.6, -0.4, -0.1, 0.1):
         broken = set() if -0.5 < x < 0.0 else {"bounds of x of 'roof'"}
         assert coding.broken(coding.candidate([x, 0.0, TOP, 0.0]).rig) == broken
-
-
-def test_what_does_not_move_is_nobody_s_fault():
-    """A fixed sensor in the body is as it is; only what comes between it and others counts."""
-    fixed = can((0.0, 0.0, 1.1), "fixed")
-    moving = can((0.0, 0.0, FLYING), "moving")
-    rig = pe.Rig([fixed, moving])
-    limits = pe.Limits(height=0.5, width=0.01, distance=2.0)
-    clear = pe.Mounting(constraints=pe.Constraints(clear_housings=True))
-    search = pe.Search({"fixed": (), "moving": ("x",)}, mounting=clear)
-    coding = pe.Study(rig, mounting.car(), search=search, limits=limits).coding()
-    assert coding.broken(rig) == {
-        "limits.height of 'moving'",
-        "limits.width of 'moving'",
-        "limits.distance of 'fixed' and 'moving'",
-    }
-
-
-def test_mirror_images_keep_to_the_rules_themselves():
-    left = can((0.0, 0.5, FLYING), "left")
-    right = can((0.0, -0.5, FLYING), "right")
-    area = pe.Constraints(no_go=[pe.NoGo("filler", y=(-0.6, -0.4))])
-    assert broken(left, right, pairs=[("left", "right")], constraints=area) == [
-        "no_go 'filler' for 'right'"
-    ]
 
 
 # --- hulls ---------------------------------------------------------------------------------------
@@ -224,16 +187,6 @@ def test_what_is_open_at_first_sight_is_not_enclosed(place, open_):
     assert is_enclosed(car, np.array(place)) is (place == (0.0, 0.0, 1.1))
 
 
-def test_a_place_under_an_overhang_is_open_by_its_side():
-    """As a bumper under a bus's front: above is the body, ahead the road."""
-    vehicle = pe.Vehicle(
-        np.concatenate([shapes.box((-1, -1, 0), (1, 1, 1)), shapes.box((-1, -1, 1), (1.1, 1, 2))])
-    )
-    assert is_open(vehicle, np.array([1.05, 0.0, 0.5]))
-    assert is_open(vehicle, np.array([0.0, 1.05, 0.5]))
-    assert not is_open(vehicle, np.array([0.0, 0.0, 0.5]))
-
-
 # --- none that fits -------------------------------------------------------------------------------
 
 
@@ -264,17 +217,3 @@ def test_rules_that_exclude_each_other_are_named_and_no_others(few_tries):
         "optimize: limits.height of 'roof' leaves no feasible placement: expected a placement that "
         "breaks no rule, found none in 201 tried"
     )
-
-
-def test_two_rules_that_leave_no_place_together(few_tries):
-    areas = [pe.NoGo("front", x=(-0.5, 3.0)), pe.NoGo("rear", x=(-3.0, -0.4))]
-    limits = pe.Constraints(no_go=areas)
-    coding = Parametrization(*mounting.space(can(), mount={"roof": roof()}, constraints=limits))
-    told = "no_go 'front' for 'roof' and no_go 'rear' for 'roof' exclude each other"
-    with pytest.raises(pe.InputError, match=told):
-        feasible_start(coding)
-    for area in areas:  # either alone leaves some
-        alone = pe.Constraints(no_go=[area])
-        feasible_start(
-            Parametrization(*mounting.space(can(), mount={"roof": roof()}, constraints=alone))
-        )

@@ -1,6 +1,5 @@
 """Searches with mounts: what breaks a rule is nowhere, and a LiDAR stands on its roof."""
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -138,24 +137,6 @@ def test_the_sedan_s_roof_lidar_stands_on_the_roof_on_a_base_of_40_mm(sedan):
     nearest = int(np.argmin(hits.distance))
     assert found.vehicle.part_names[found.vehicle.parts[hits.face[nearest]]] == "roof"
     assert hits.distance[nearest] == pytest.approx(BASE_M, abs=2e-4)
-
-
-def test_result_json_says_the_mounts(sedan):
-    out, found = sedan
-    data = json.loads((out / "result.json").read_text("utf-8"))
-    surface = {"mount": "roof", "parts": ["roof"], "standoff": 0.04, "orientation": "upright"}
-    assert data["mounts"] == {"roof": surface}
-    assert data["inputs"]["study"]["optimize"]["mount"][0]["parts"] == ["roof"]
-    assert found.search.mounting.on == {"roof": "roof"}
-
-
-def test_the_result_can_be_searched_again(sedan):
-    """What a search leaves lies on its mount: its study is the start of another."""
-    _, found = sedan
-    coding = found.coding()
-    assert coding.allowed(found.rig)
-    again = coding.candidate(coding.start.vector).rig["roof"].pose
-    assert again.position == pytest.approx(found.rig["roof"].pose.position, abs=2e-5)
 
 
 def floating(*, slot=False):

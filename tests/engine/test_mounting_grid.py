@@ -80,24 +80,6 @@ def test_neighbours_are_tried_before_the_nearest_is_taken(study):
             assert other is None or objective.value(other.rig) >= best
 
 
-def test_bounds_without_a_value_on_the_grid_are_told(study):
-    narrow = {"front": {"y": (0.001, 0.004)}}
-    start = study.rig["front"].moved(pe.Pose((2.4, 0.002, 1.2), (0, 0, 0)))
-    rig = pe.Rig([study.rig["roof"], start])
-    held = replace(study, rig=rig, search=replace(study.search, limits=narrow))
-    walk = search.GridWalk(held.coding(), held.search.grid)
-    assert walk.off == ("front y",)
-
-
-def test_a_grid_is_a_table_of_the_file_and_off_by_default(study):
-    table = pe.study_to_dict(study)["optimize"]
-    assert table["grid"] == {"position": STEP_M, "angle": pytest.approx(2.0)}
-    bare = replace(study, search=replace(study.search, grid=pe.MountingGrid()))
-    assert "grid" not in pe.study_to_dict(bare)["optimize"]
-    with pytest.raises(pe.InputError, match=r"grid\.position"):
-        pe.MountingGrid(-0.1)
-
-
 def rig_at(x, yaw=0.0):
     lidar = pe.Sensor("roof", shapes.small_lidar(2, 8), pe.Pose((x, 0.0, 1.8), (0, 0, yaw)))
     return pe.Rig([lidar, shapes.camera(name="still")])
@@ -114,12 +96,3 @@ def test_the_ten_best_agree_within_their_largest_distance():
     assert found.loss == pytest.approx(0.02)
     assert "all 3 within 6 cm" in found.sensors[0].text(found.count)
     assert advice.consensus_of(known[:1], ["roof"], search.Mounting()) is None
-
-
-def test_a_result_has_its_consensus(study):
-    found = searched(study)
-    agreed = found.consensus
-    assert agreed is not None and 2 <= agreed.count <= 10
-    assert {row.sensor for row in agreed.sensors} == {"roof", "front"}
-    assert all(row.distance >= 0.0 for row in agreed.sensors) and agreed.loss >= 0.0
-    assert pt.result_dict(found)["consensus"]["placements"] == agreed.count

@@ -5,6 +5,7 @@ import tracemalloc
 import pytest
 
 import pe_core as pe
+from pe_core.metric.fusion import Fusion
 from pe_core.scoring import grid_scorer
 from tests.engine import shapes
 
@@ -21,6 +22,14 @@ def study(lidars, cameras):
     return pe.Study(pe.Rig(rig), shapes.box_car(), SPACE)
 
 
+def needed_by(ours):
+    """Memory [bytes] that a score on the grid is estimated to take, by two threads."""
+    densities = ours.prior.densities(SPACE)
+    fusion = Fusion(pe.PerceptionModel())
+    scorer = grid_scorer.GridScorer(SPACE, densities, ours.vehicle, fusion, workers=2)
+    return scorer.needs([[sensor] for sensor in ours.rig], SPACE)
+
+
 @pytest.mark.parametrize(("lidars", "cameras"), [(1, 0), (2, 2), (5, 1), (0, 3)])
 def test_estimates_are_near_what_is_taken(lidars, cameras):
     """Within the factor that is documented, for all that a score tells."""
@@ -32,7 +41,7 @@ def test_estimates_are_near_what_is_taken(lidars, cameras):
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
-    estimate = evaluator._scorer.needs([[s] for s in ours.rig], SPACE)
+    estimate = needed_by(ours)
     assert peak / grid_scorer.FACTOR <= estimate <= peak * grid_scorer.FACTOR
 
 
@@ -54,7 +63,7 @@ def test_an_estimate_of_samples_is_not_below_what_is_taken(lidars, cameras):
 def test_too_little_memory_is_one_line_with_what_would_fit(monkeypatch):
     ours = study(4, 1)
     evaluator = ours.evaluator(0, workers=2)
-    enough = evaluator._scorer.needs([[s] for s in ours.rig], SPACE)
+    enough = needed_by(ours)
     monkeypatch.setattr(grid_scorer, "available_bytes", lambda: enough - 1)
     words = (
         r"score: memory: .* in the [\d.]+ MB .*try samples = 262144 or interval = 0\.4, found about"

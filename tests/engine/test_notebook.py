@@ -1,17 +1,12 @@
 """What notebooks use: priors and vehicles of their own, functions as objectives, short values."""
 
-import inspect
-import sys
-from dataclasses import is_dataclass, replace
-
 import numpy as np
 import pytest
 import trimesh
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.base.notebook import ShortRepr, Tabular
-from pe_core.prior.grid import Grid
+from pe_core.base.notebook import Tabular
 from tests.engine.processes import finished
 from tests.engine.shapes import box_car
 
@@ -63,12 +58,6 @@ def test_a_grid_is_read_at_the_centres_of_another_space_and_takes_focus_weights(
     assert not found[56:].any() and not found[:, :, 8:].any()
     halved = pe.Prior.from_grid(np.ones((40, 24)), SPACE, [pe.Focus(3.0, x=(0, 10))])
     assert voxels(halved)[20:].sum() == pytest.approx(0.75)
-
-
-@pytest.mark.parametrize("wrong", [{"weights": np.zeros((40, 24))}, {"file": 3}])
-def test_a_grid_without_weight_or_with_no_path_is_refused(wrong):
-    with pytest.raises(pe.InputError):
-        Grid(**{"weights": np.ones((40, 24)), "space": SPACE} | wrong)
 
 
 @pytest.mark.parametrize("by_height", [False, True])
@@ -160,18 +149,6 @@ def values():
     ]
 
 
-def test_public_dataclasses_that_hold_arrays_are_short():
-    """Every public dataclass with an array or another dataclass of arrays says it briefly."""
-    classes = [value for value in vars(pe.public).values() if inspect.isclass(value)]
-    big = [
-        each
-        for each in classes
-        if is_dataclass(each) and "ndarray" in str(each.__annotations__).lower()
-    ]
-    assert len(big) > 8
-    assert not [each.__name__ for each in big if not issubclass(each, ShortRepr)]
-
-
 def test_tables_are_html_and_data_frames(values):
     tabular = [value for value in values if isinstance(value, Tabular)]
     assert {type(value).__name__ for value in tabular} == {
@@ -195,33 +172,6 @@ def test_tables_are_html_and_data_frames(values):
     named = study().rig.with_poses([pe.Pose((1, 2, 3))]).to_pandas()
     assert named.loc[0, ["x [m]", "y [m]", "z [m]"]].tolist() == [1, 2, 3]
     assert "&lt;b&gt;" in pe.Rig([pe.Sensor("<b>", LIDAR)])._repr_html_()
-
-
-@pytest.mark.parametrize("package", ["pandas", "matplotlib"])
-def test_without_a_package_a_line_says_what_to_install(monkeypatch, values, package):
-    monkeypatch.setitem(sys.modules, package, None)
-    with pytest.raises(pe.InputError, match=r"pip install .perception-entropy") as told:
-        values[1].to_pandas() if package == "pandas" else pt.plot.ground(values[0])
-    assert told.value.field == package
-
-
-@pytest.mark.parametrize("name", ["$$", "$x", "a$b$c", r"$\frac$", r"\$", "100 $"])
-def test_names_of_anybody_s_file_are_no_mathematics(name):
-    import matplotlib.pyplot as plt
-
-    one = study()
-    (sensor,) = one.rig
-    parts = one.vehicle.parts
-    vehicle = pe.Vehicle(one.vehicle.triangles, parts, [name + p for p in one.vehicle.part_names])
-    named = replace(one, vehicle=vehicle).with_rig(pe.Rig([replace(sensor, name=name)]))
-    figure, (top, low, last) = plt.subplots(3)
-    pt.plot.rig(named, axes=top)
-    pt.plot.beams(named, name, axes=low)
-    pt.plot.compare({name: named.evaluator().score(named.rig)}, axes=last)
-    figure.canvas.draw()
-    texts = [each.get_text() for each in top.get_legend().get_texts()]
-    assert [text.replace(r"\$", "$") for text in texts] == [name]
-    plt.close(figure)
 
 
 def test_plots_draw_on_given_axes_and_refuse_what_is_none():

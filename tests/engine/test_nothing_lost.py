@@ -41,7 +41,7 @@ def entropy_of(path):
 
 
 def test_the_first_signal_evaluates_keeps_and_analyses_the_best(study, out):
-    with Command("optimize", "--no-review", study, "-o", out, *ENDLESS) as command:
+    with Command(["optimize", "--no-review", study, "-o", out, *ENDLESS]) as command:
         command.wait_for_better()
         command.send(signal.SIGHUP)
         assert command.end() == SIGNALS[signal.SIGHUP]
@@ -51,7 +51,7 @@ def test_the_first_signal_evaluates_keeps_and_analyses_the_best(study, out):
 
 
 def test_the_second_signal_ends_the_analysis(study, out):
-    with Command("optimize", "--no-review", study, "-o", out, *ENDLESS, hangs=True) as command:
+    with Command(["optimize", "--no-review", study, "-o", out, *ENDLESS], hangs=True) as command:
         command.wait_for_better()
         command.send(signal.SIGINT)
         command.wait_for_stage("analysing")  # it would analyse for ever
@@ -62,7 +62,9 @@ def test_the_second_signal_ends_the_analysis(study, out):
 
 
 def test_the_third_signal_ends_at_once_with_the_best_kept(study, out):
-    with Command("optimize", "--no-review", study, "-o", out, *ENDLESS, hang_in_score=2) as command:
+    with Command(
+        ["optimize", "--no-review", study, "-o", out, *ENDLESS], hang_in_score=2
+    ) as command:
         command.wait_for_better()
         command.send(signal.SIGINT)
         command.wait_for_stage("scoring the result")  # it would wait there for ever
@@ -79,7 +81,7 @@ def test_the_third_signal_ends_at_once_with_the_best_kept(study, out):
     [(signal.SIGINT, "score"), (signal.SIGTERM, "optimize"), (signal.SIGHUP, "score")],
 )
 def test_a_signal_during_the_first_score_ends_it_with_nothing_written(study, out, verb, signum):
-    with Command(verb, study, "-o", out, hang_in_score=1) as command:
+    with Command([verb, study, "-o", out], hang_in_score=1) as command:
         command.wait_for_stage("scoring")
         command.send(signum)
         assert command.end() == SIGNALS[signum]
@@ -114,7 +116,9 @@ def test_closed_streams_end_nothing(study, out):
         for number in (0, 1, 2):
             os.close(number)
 
-    with Command("optimize", "--no-review", study, "-o", out, *SHORT, preexec_fn=close) as command:
+    with Command(
+        ["optimize", "--no-review", study, "-o", out, *SHORT], preexec_fn=close
+    ) as command:
         assert command.end() == 0
     assert not result(out)["stopped"]
 
@@ -160,41 +164,9 @@ def test_a_set_is_replaced_whole_or_stays(study, out, failing_call, call):
 
 
 def test_a_file_that_appears_meanwhile_is_not_written_over(study, out):
-    with Command("optimize", "--no-review", study, "-o", out, *ENDLESS) as command:
+    with Command(["optimize", "--no-review", study, "-o", out, *ENDLESS]) as command:
         command.wait_for_better()
         (out / "history.csv").write_text("mine")
         command.send(signal.SIGTERM)
         assert command.end() == 1
     assert (out / "history.csv").read_text() == "mine"
-
-
-def test_a_signal_to_the_whole_group_is_the_parent_s_affair():
-    """As of a terminal: workers, which may still be starting, and all other helpers ignore it."""
-    code = (
-        "import os, signal, sys\n"
-        "from pe_core.search import Processes\n"
-        f"signal.signal({signal.SIGINT:d}, signal.SIG_IGN)\n"
-        "processes = Processes(2)\n"
-        "found = [processes.submit(os.getpid) for _ in range(2)]\n"
-        f"os.killpg(os.getpgid(0), {signal.SIGINT:d})\n"
-        "assert all(future.result() for future in found)\n"
-        "processes.shutdown(cancel_futures=True)\n"
-    )
-    command = [sys.executable, "-c", code]
-    run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, start_new_session=True)
-    assert (run.returncode, run.stderr) == (0, "")
-
-
-def test_python_says_nothing_of_semaphores_after_an_interrupted_run():
-    """Its helper that tracks them lives longer, and would write over the prompt."""
-    code = (
-        "import os\n"
-        "from pe_core.search import Processes\n"
-        "from pe_tools.cli import leave\n"
-        "processes = Processes(2)\n"
-        "processes.submit(os.getpid).result()\n"
-        "leave(130)\n"
-    )
-    command = [sys.executable, "-c", code]
-    run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
-    assert (run.returncode, run.stderr) == (130, "")

@@ -117,11 +117,6 @@ def test_as_many_stand_in_a_scene_as_the_density_says(many):
     assert set(by_scene.tolist()) == {8, 9} and many.scenes == 512
 
 
-def test_a_smaller_space_has_its_part_of_them():
-    half = pe.PerceptionSpace(x=(0.0, 80.0))
-    assert pe.Prior.road().objects_at_once(half)["car"] == pytest.approx(4.1)
-
-
 def test_classes_share_alike_however_many_there_are_and_focus_multiplies():
     found = drawn(pe.Prior.road([pe.Focus(3.0, x=(0, math.inf), classes=["car"])]))
     shares = [found.weights[own(found, c.name)].sum() for c in ROAD.classes]
@@ -195,19 +190,6 @@ def test_a_prior_without_weight_on_the_objects_is_reported():
             gauss_y=0.5,
             laplace_share=0.0,
         )
-
-
-@pytest.mark.parametrize("shift", [0.0, 0.31, 0.5, 0.77])
-def test_which_scenes_have_one_more_of_a_class_says_nothing_of_another_class(shift):
-    """Counts of classes are not correlated; truck and cone, alike in number, least of all."""
-    found = drawn(targets=TargetRule("objects", True, 256), shift=shift)
-    objects = found.objects
-    classes = range(len(found.objects.class_names))
-    counts = [np.bincount(objects.scenes[objects.labels == c], minlength=256) for c in classes]
-    uneven = [each for each in counts if np.ptp(each) == 1]
-    assert len(uneven) == 4 and all(np.ptp(each) <= 1 for each in counts)
-    others = np.corrcoef(uneven) - np.eye(len(uneven))
-    assert np.abs(others).max() < 3.0 / math.sqrt(256.0)  # what chance leaves
 
 
 def test_labelled_boxes_are_sampled_nearest_first():

@@ -11,7 +11,6 @@ import pytest
 import pe_core as pe
 from pe_core.scoring import sight
 from pe_core.scoring.targets.object_metric import RINGS, SECTORS, ObjectSums, RingObjects
-from pe_core.scoring.targets.object_metric import _reach as reach_of
 from pe_core.scoring.targets.object_metric import reach as reach_by_direction
 from pe_core.scoring.targets.object_sampling import SampledObjects
 from pe_core.sensors import KINDS, measure_objects
@@ -201,29 +200,6 @@ def test_a_golden_case():
     assert (score.entropy, score.objects.ap) == pytest.approx(GOLDEN, abs=1e-8)
 
 
-def test_objects_that_are_all_alike_leave_something_to_doubt():
-    behind = pe.Rig([pe.Sensor("eye", shapes.small_lidar(max_range=0.5), pe.Pose((0, 0, 2)))])
-    score = scorer().score(behind)
-    assert score.entropy == pytest.approx(16.651, abs=1e-3) and score.coverage == 0.0
-    assert 0.0 < score.stderr < 0.2
-    assert set(score.objects.per_class["car"].reach.values()) == {0.0}
-
-
-def test_reach_is_reported_of_the_side_that_a_sensor_looks_to():
-    """A LiDAR over a quarter to the left: a car is found there, and on no other side."""
-    left = shapes.small_lidar(32, 360, horizontal_fov=(math.pi / 4, 3 * math.pi / 4))
-    reach = scorer().score(pe.Rig([shapes.lidar_on_roof(left)])).objects.per_class["car"].reach
-    assert reach["left"] > 5.0
-    assert all(reach[side] == 0.0 for side in ("front", "rear", "right", "front right"))
-
-
-def test_reach_ends_where_the_mean_ap_falls_below_a_half():
-    found = [1.0, 1.0, 0.75, 0.25, 0.9, *[0.0] * 11]
-    assert reach_of(found) == 5.0 * 3.0  # half way between the middles at 12.5 and 17.5 m
-    assert reach_of([0.0, *found[:-1]]) == 5.0 * 4.0  # blind at first
-    assert reach_of([0.4] * 16) == 0.0 and reach_of([0.5] * 16) == 80.0
-
-
 # --- curves -------------------------------------------------------------------------------------
 
 
@@ -278,12 +254,6 @@ def test_a_study_s_keys_make_its_evaluator():
     assert study.looks_at(0) == study.looks_at(65_536) == 8
 
 
-def test_a_search_s_coarser_levels_have_fewer_scenes():
-    study = study_from_dict({"sensor": [SENSOR], "metric": {"targets": "objects"}})
-    assert [study.looks_at(n) for n in (0, 65_536, 16_384, 1024)] == [256, 256, 64, 32]
-    assert study.evaluator(16_384).targets.scenes == 64
-
-
 def test_reach_by_hand():
     """One object of each of two classes; the second in the third ring ahead, found by 0.8.
 
@@ -296,12 +266,3 @@ def test_reach_by_hand():
     rings = RingObjects(objects, np.array([0, (8 + 0) * RINGS + 2]))
     found = reach_by_direction(rings, 1, np.array([0.9, 0.8]))
     assert found == {name: 0.0 for name in SECTORS} | {"front": 5.0 * (2.5 + 0.3 / 0.8)}
-
-
-def test_a_class_without_objects_hides_no_other():
-    """Between cars and trucks no pedestrian and no cyclist is sampled; trucks are found."""
-    few = pe.Prior("road", ROAD.classes, density={"pedestrian": 0, "cyclist": 0})
-    score = scorer(few).score(rig())
-    assert list(score.objects.per_class) == ["car", "truck", "cone"]
-    assert score.objects.per_class["truck"].reach["front"] > 5.0
-    assert (score.per_sensor["roof"].beams, score.per_sensor["roof"].occluded) == (0, 0)

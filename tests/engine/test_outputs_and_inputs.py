@@ -1,14 +1,15 @@
 """No verb replaces a file that it has read, whichever option named the file."""
 
-import argparse
+import json
 from pathlib import Path
 
 import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_tools.cli.verbs import main, parser
+from pe_tools.cli.verbs import main
 from tests.engine import shapes
+from tests.engine.processes import pe as run_pe
 
 STORY = """
 [[story]]
@@ -79,12 +80,12 @@ def read_by(call):
 
 def outputs_of(verb):
     """Return the metavars of the options of a verb that name an output."""
-    return {a.metavar for a in verb._actions if "-o" in a.option_strings}
+    return {each["value"] for each in verb["arguments"] if "-o" in each["flags"]}
 
 
 def test_every_verb_with_an_output_is_tried():
-    (verbs,) = (a for a in parser()._actions if isinstance(a, argparse._SubParsersAction))
-    writing = {name: outputs_of(verb) for name, verb in verbs.choices.items() if outputs_of(verb)}
+    verbs = json.loads(run_pe(["--help", "--json"]).stdout)["verbs"]
+    writing = {verb["name"]: outputs_of(verb) for verb in verbs if outputs_of(verb)}
     files = {name for name, metavars in writing.items() if metavars != {"DIR"}}
     assert files == {call.split()[0] for call in CALLS.values()}
     assert set(writing) - files == {*FOLDERS} | ALONE

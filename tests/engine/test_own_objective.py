@@ -9,8 +9,7 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_tools.cli.terminal import summary
-from pe_tools.jobs import checkpoint, result_dict, write_outcome
-from pe_tools.page import ReportContext, page_bytes
+from pe_tools.jobs import checkpoint, write_outcome
 from tests.engine import shapes
 
 pytestmark = pytest.mark.usefixtures("few_errors", "no_key_figures")
@@ -65,21 +64,6 @@ def test_a_search_minimises_the_function_and_reports_it_beside_the_entropy(objec
     assert not any("broken" in text or "voxels" in text or "entropy" in text for text in texts)
 
 
-def test_files_lines_and_page_call_it_by_its_name(tmp_path):
-    _, job = searched(cable_cost)
-    data = write_outcome(job.outcome, tmp_path)
-    assert data["objective"] == "cable_cost"
-    assert data["value"] == {"before": job.outcome.own.before, "after": job.outcome.own.after}
-    first = data["history"][0]
-    assert first["cable_cost"] == pytest.approx(137_000.0) and "entropy" not in first
-    assert "cable_cost" in (tmp_path / "history.csv").read_text().splitlines()[0]
-    lines = summary(job.outcome).splitlines()
-    assert lines[0].startswith("cable cost  137000.000 -> ")
-    page = page_bytes([ReportContext("own", job.outcome)]).decode()
-    assert "Cable cost goes from 137" in page and "Best cable cost so far" in page
-    assert "Best entropy" not in page
-
-
 def test_limits_of_the_study_are_kept_and_larger_figures_are_no_violation():
     given = replace(study(), limits=pe.Limits(blind_ground=True))
     job = pt.OptimizeJob(given, 1, objective=cable_cost)
@@ -89,20 +73,6 @@ def test_limits_of_the_study_are_kept_and_larger_figures_are_no_violation():
     assert end <= start
     free = searched(cable_cost)[1].best.rig
     assert cable_cost(free) <= job.outcome.own.after
-
-
-def test_a_function_may_have_constraints_of_its_own():
-    """Figures of any size are below the values of broken constraints."""
-
-    class Low:
-        def violation(self, rig, enough=math.inf):
-            return max(0.0, rig.sensors[0].pose.position[2] - 1.7)
-
-    _, job = searched(pe.Objective(cable_cost, (Low(),)))
-    assert [row.value.is_feasible for row in job.history][:: len(job.history) - 1] == [False, True]
-    first, *_, last = result_dict(job.outcome)["history"]
-    assert first["cable_cost"] is None and first["violation"] == pytest.approx(0.1)
-    assert last["violation"] == 0.0 and last["cable_cost"] == cable_cost(job.best.rig)
 
 
 def test_a_target_and_a_gain_are_of_the_function():

@@ -15,7 +15,7 @@ from pe_core.search.methods.portfolio_steps import BATCH, MultiscaleDescent
 from pe_core.search.methods.portfolio_survey import Survey
 from tests.engine import mounting
 from tests.engine.mounting import can
-from tests.engine.recording import Recorder, distance_to, flat
+from tests.engine.recording import Recorder, distance_to
 
 PHASE = Phase(0, 1000)
 
@@ -178,44 +178,12 @@ def test_sensors_in_slots_exchange_them_and_move_two_at_a_time():
     assert len(recorder.rigs) < 600  # it ends where nothing better is left
 
 
-def test_the_first_survey_is_the_same_for_every_seed_and_the_second_is_not():
-    rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"))
-    asked = [searched(flat, rig, space, evaluations=60, seed=seed)[0].rigs for seed in (0, 1)]
-    first, second = (
-        [[s.pose for s in rig] for rig in rigs[: 1 + 4 * portfolio.SURVEYED]] for rigs in asked
-    )
-    half = 1 + 2 * (18 // 4)
-    assert first[:half] == second[:half] and first[half] != second[half]
-
-
-def test_a_survey_asks_for_one_sensor_at_a_time_and_tells_what_the_next_has_to_be_below():
-    rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"))
-    coding = Parametrization(rig, space)
-    survey = Survey(Given(coding, coding.start, Value(0.0, 5.0)))
-    part = survey.survey(Incumbent(coding.start, Value(0.0, 5.0)), PHASE, 4)
-    question = next(part)
-    assert (len(question.candidates), question.cutoff) == (4, Value(0.0, 5.0))
-    assert {c.rig["b"].pose for c in question.candidates} == {rig["b"].pose}
-    question = part.send([Value(0.0, figure) for figure in (6.0, 3.0, 4.0, 7.0)])
-    assert question.cutoff == Value(0.0, 3.0)
-    assert len({c.rig["roof"].pose for c in question.candidates}) == 1
-
-
 def rugged(rig):
     """A wide valley that both sensors share, with ripples as high as its slope."""
     values = [pose_values(sensor.pose)[axis] for sensor in rig for axis in "xy"]
     away = [value - aim for value, aim in zip(values, (1.2, 0.5, -1.4, -0.6), strict=True)]
     ripples = sum(0.05 * (1.0 - math.cos(30.0 * each)) for each in away)
     return sum(each * each for each in away) + ripples
-
-
-def test_among_small_valleys_a_descent_goes_on():
-    rig, space = mounting.space(can(), can((0.2, 0.1, 1.6), "b"), free=("x", "y"))
-    ends = [
-        descended(rugged, rig, space, evaluations=200, seed=seed)[0].value.objective
-        for seed in range(5)
-    ]
-    assert np.median(ends) < 0.12 < rugged(rig) / 10.0
 
 
 def test_a_descent_neither_leaves_its_ranges_nor_breaks_a_rule():
@@ -229,19 +197,3 @@ def test_a_descent_neither_leaves_its_ranges_nor_breaks_a_rule():
     assert found.best.rig["roof"].pose.position[0] == pytest.approx(
         -0.2 - mounting.RADIUS, abs=0.03
     )
-
-
-def test_a_descent_ends_where_every_step_breaks_a_rule(monkeypatch):
-    rig, space = mounting.space(can((-1.0, 0.0, 1.6)))
-    monkeypatch.setattr(Parametrization, "allowed", lambda *_: False)
-    found, asked = descended(lambda rig: 0.0, rig, space, 100)
-    assert asked == [] and found.count == 0
-
-
-def test_infinite_values_are_left_behind():
-    def half(rig):
-        x = pose_values(rig["roof"].pose)["x"]
-        return x * x if x > -0.5 else math.inf
-
-    rig, space = mounting.space(can((-1.0, 0.0, 1.6)), free=("x", "y"))
-    assert half(rig) == math.inf and descended(half, rig, space, 200)[0].value.objective < 0.01

@@ -7,7 +7,7 @@ import pytest
 
 import pe_core as pe
 from pe_core.prior.classes import sampled_positions
-from pe_core.scoring.sampling import draw, scrambled_sobol
+from pe_core.scoring.sampling import draw
 from tests.engine import shapes
 
 SPACE = shapes.small_space()
@@ -61,15 +61,6 @@ def test_samples_follow_the_prior_and_each_of_its_classes():
         assert np.abs(drawn - density.ground.sum(axis=1) / density.ground.sum()).max() < 2e-3
         heights = np.bincount(sample.index[:, 2], likely, SPACE.shape[2]) / likely.sum()
         assert np.abs(heights - density.profile).max() < 5e-3
-
-
-@pytest.mark.parametrize("shift", [(0.5, 0.5, 0.5), (0.0, 0.1, 0.9)])
-def test_azimuth_and_height_are_a_net(shift):
-    """Each of 4096 boxes of any shape of that area holds one of 4096 points, scrambled or not."""
-    points = scrambled_sobol(4096, shift)[:, :2]
-    for bits in range(13):
-        cells = np.floor(points * [1 << bits, 1 << (12 - bits)]).astype(int)
-        assert len(np.unique(cells, axis=0)) == 4096
 
 
 def centre_density(cls, x, y):
@@ -127,24 +118,6 @@ def test_a_road_s_car_by_hand():
     assert along[j] == pytest.approx(along[239 - j], rel=1e-9)  # as often behind as ahead
 
 
-def test_lopsided_lanes_stay_where_they_are():
-    """y is to the left: a lane at +10 m is met at +10 m, one named twice twice as often."""
-    cls = pe.ObjectClass(
-        name="x",
-        size=(4.0, 2.0, 1.5),
-        height_spread=0.2,
-        decay_x=30.0,
-        laplace_y=1.0,
-        gauss_y=0.5,
-        laplace_share=0.0,
-        lanes=(10.0, 10.0, -20.0),
-    )
-    across = pe.Prior("road", (cls,)).densities(DENSITY_SPACE)[0].ground.sum(axis=0)
-    y = DENSITY_SPACE.centers(1)
-    assert across[abs(y - 10.0) < 4.0].sum() == pytest.approx(2 / 3, abs=1e-6)
-    assert across[abs(y + 20.0) < 4.0].sum() == pytest.approx(1 / 3, abs=1e-6)
-
-
 def test_focus_regions_are_where_they_are_said():
     """A region of 3 x 2 voxels ahead on the right counts three times; its edge is no part of it."""
     space = pe.PerceptionSpace((0.0, 4.0), (-2.0, 2.0), (0.0, 1.0), 0.5)
@@ -165,14 +138,6 @@ def test_sampled_positions_reach_both_ends_of_the_space():
     x, y = sampled_positions(pe.Prior.road().classes[0], DENSITY_SPACE, u, u)
     assert x == pytest.approx([-60.0, 0.0, 60.0], abs=1e-6)
     assert y[[0, 2]] == pytest.approx([-30.0, 30.0], abs=1e-6)
-
-
-def test_focus_regions_at_positions_are_those_on_the_grid():
-    """One position inside, one beyond each of the four edges, and one on an edge."""
-    focus = pe.Focus(3.0, (1.0, 2.5), (-1.5, -0.5))
-    x = np.array([2.0, 0.5, 3.0, 2.0, 2.0, 2.5])
-    y = np.array([-1.0, -1.0, -1.0, -2.0, 0.0, -1.0])
-    assert pe.Prior.uniform([focus]).focus_at("any", x, y).tolist() == [3, 1, 1, 1, 1, 1]
 
 
 def test_densities_are_of_classes_that_the_prior_has():

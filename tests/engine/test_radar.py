@@ -16,7 +16,6 @@ from pe_tools.advice.mount_checks import SensorAtBody, odd_mounting
 from pe_tools.advice.vehicle_checks import Bodywork
 from pe_tools.verify.radar_oracle import expected_detections
 from tests.engine import shapes
-from tests.engine.kernels import every_voxel
 
 ARS = "Continental ARS408-21"
 MODE = {
@@ -235,25 +234,6 @@ def tomllib_of(table):
     for mode in table["mode"]:
         lines += ["[[mode]]", *(f"{k} = {v!r}".replace("'", '"') for k, v in mode.items())]
     return tomllib.loads("\n".join(lines))
-
-
-def test_traffic_hides():
-    some = pe.Objects(
-        [[20, 0, 1.5], [40, 0, 0.875]], [SIZES["truck"], SIZES["pedestrian"]], [0, 0], [0, 1],
-        ("truck", "pedestrian"), [0, 0],
-    )  # fmt: skip
-    sensor = radar(catalog.load(ARS), (0, 0, 0.6))
-    alone, together = (kinds.measure_objects(sensor, some, None, t) for t in (False, True))
-    assert alone[1] > 0.5 and together[1] == 0.0 and alone[0] == together[0] > 2.0
-
-
-def test_a_sensor_beside_the_body_has_rays_that_end_on_it():
-    space = pe.PerceptionSpace((-4, 36), (-20, 20), (0, 3), 0.5)
-    car = shapes.box_car()
-    sample = kinds.KINDS["radar"].on_sample(every_voxel(space), car, 1)
-    inside = radar(position=(1.0, 1.1, 0.6), rotation=(0, 0, -20))
-    occlusion = sample.occlusion(sample.measure(inside))
-    assert 0 < occlusion.occluded == sum(occlusion.by_part.values()) <= occlusion.rays
 
 
 def test_a_cover_takes_decibels_and_a_bumper_blocks():

@@ -1,30 +1,17 @@
 """Presets, requirements in files, and bad input."""
 
-import math
 import re
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.base.table_reader import dumps
-from pe_core.base.values import as_in_file
-from pe_core.scoring.requirements import (
-    BODIES,
-    Body,
-    Criterion,
-    Requirement,
-    Under,
-    Zone,
-    checkable,
-)
+from pe_core.scoring.requirements import BODIES, Criterion, Requirement, Under, checkable
 from pe_core.study import Node, read, write
 from pe_core.study.requirement_file import presets
 from pe_core.study.study_file import study_from_dict, study_to_dict
-from tests.engine import shapes
 from tests.engine.requirement_scene import AHEAD, check, rig, van
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -147,70 +134,6 @@ def test_derived_distances_are_on_the_side_of_the_larger_zone():
     assert sides.corners[:, 1].max() >= 1.0 + km_h(8, 4)
     x = presets()["ncap26_frontal_cyclist"].requirement().zone.placed(van(), None, "x").corners
     assert x[:, 0].min() <= 2.5 + km_h(10, 4) and x[:, 0].max() >= 2.5 + km_h(60, 4)
-
-
-def test_r151_leaves_out_what_is_above_two_metres():
-    """As R159: a spoiler that sticks out above 2.0 m moves no zone outwards."""
-    plain = van()
-    top = shapes.box((-2.5, -1.4, 2.2), (2.9, 1.4, 2.4))
-    wide = pe.Vehicle(np.concatenate([plain.triangles, top]), clearance=0.0)
-    axles = pe.Reference(-1.4, 0.3, 2.8)
-    for name, each in presets().items():
-        if name.startswith(("r151", "r159")):
-            zone = each.requirement().zone
-            spoiled, own = (zone.placed(v, axles, name).corners.tolist() for v in (wide, plain))
-            assert spoiled == own, name
-
-
-def test_a_preset_whose_keys_are_changed_is_said_to_be_changed():
-    """By a file, or in Python; not by a name, the driver's eyes, the kerb, or a word for it."""
-
-    def after(**keys):
-        table = {"name": "mine", "preset": "r158_camera", **keys}
-        return read(Requirement, Node(table, "file")).after
-
-    assert after() == after(zone={"eyes": 1.0, "near_side": "left"}) == "UN R158"
-    assert after(check="our rule", body="child") == "our rule"
-    assert after(preset="r158_detection", source="a letter of 2026") == "UN R158"
-    changes = (
-        {"zone": {"step": 0.5}},
-        {"zone": {"ring": [0.3, 1.0]}},
-        {"body": "child"},
-        {"headings": [45.0]},
-        {"criterion": {"share": 0.9}},
-        {"under": {"one_lost": True}},
-    )
-    assert {after(**keys) for keys in changes} == {"UN R158, changed"}
-    shipped = presets()["r158_camera"].requirement()
-    assert replace(shipped, under=Under(one_lost=True)).after == "UN R158, changed"
-    assert replace(shipped, name="own").after == "UN R158"
-    (verdict,) = check(replace(shipped, criterion=Criterion(share=0.9)))
-    assert verdict.summary.check == "UN R158, changed"
-    assert verdict.to_dict()["check"] == "UN R158, changed"
-
-
-def test_a_requirement_of_ones_own_comes_back_from_a_file_the_same():
-    own = Requirement(
-        "own",
-        Zone(
-            polygon=(("front", 0.0), ("front + 2", "left + 1"), (5.0, -1.0)), z=(0.0, 1.0), step=0.5
-        ),
-        (
-            BODIES["car"],
-            Body("bin", (0.4, 0.4, 1.1), is_round=True, low=0.1, headings=BODIES["car"].headings),
-        ),
-        Criterion(kinds=2, points=5, share=0.5, ap=None, zone_share=0.9),
-        under=Under(one_lost=True),
-    )
-    study = pe.Study(rig(), van(), requirements=(own, replace(own, name="two", zone=AHEAD)))
-    odd = replace(BODIES["child"], headings=(as_in_file(math.radians(33.3)), as_in_file(-1.234567)))
-    table = write(Requirement("odd", AHEAD, (odd,)))
-    assert read(Requirement, Node(table, "file")).bodies == (odd,)
-    data = study_to_dict(study)
-    assert [read(Requirement, Node(each, "f")) for each in data["requirement"]] == list(
-        study.requirements
-    )
-    assert dumps(data).count("[[requirement]]") == 2
 
 
 def test_bad_input_is_one_line_that_names_it(tmp_path):

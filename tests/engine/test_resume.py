@@ -179,19 +179,6 @@ def test_a_state_that_is_none_is_refused_in_one_line(out, changes, complaint, ca
     assert line.startswith(f"pe: {out / SEARCH}: {complaint}")
 
 
-def test_a_journal_that_is_longer_than_its_search_is_refused():
-    """A journal that was doubled by hand, or by a tool that merges files."""
-    study = a_study()
-    job = pt.OptimizeJob(study, 1)
-    outcome_of(job)
-    known = job.journal.entries
-    with pytest.raises(
-        pe.InputError, match=rf"evaluated\[{len(known)}\]: expected no more entries"
-    ):
-        outcome_of(pt.OptimizeJob(study, 1, journal=Journal(known * 2)))
-    assert outcome_of(pt.OptimizeJob(study, 1, journal=Journal(known))).evaluated == known
-
-
 def test_a_fingerprint_tells_studies_apart_by_what_they_are(tmp_path):
     """Not by the names of their files: a copy in another folder is the same study."""
     study = a_study()

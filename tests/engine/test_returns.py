@@ -127,19 +127,6 @@ def test_cells_of_bodies_have_the_points_of_their_class():
         assert found[k] == pytest.approx(beams[k] * share)
 
 
-def test_a_study_says_it_in_its_file_and_takes_it_back():
-    study = pe.Study(lidars("all", UPRIGHT), returns="road")
-    assert study.rig.sensors[0].model.returns == "road"
-    data = pe.study.study_to_dict(study)
-    assert data["measurement"] == {"returns": "road"}
-    assert data["sensor"][0]["model"] == PUCK.name
-    again = pe.study.study_from_dict(data)
-    assert again.returns == "road" and again.rig.sensors[0].model.returns == "road"
-    back = replace(again, returns="all")
-    assert back.rig.sensors[0].model.returns == "all"
-    assert "measurement" not in pe.study.study_to_dict(back)
-
-
 def test_weather_shortens_the_range_and_leaves_the_returns():
     study = pe.Study(lidars("all", UPRIGHT), returns="road")
     model = Weather("fog", fog_mor_m=50.0)(study.rig)[0].sensors[0].model

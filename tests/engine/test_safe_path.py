@@ -8,7 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from pe_tools.cli.verbs import VERBS as DECLARED
 from tests.limits import HANG_S
+from tests.thorough import THOROUGH
 
 PE = Path(sysconfig.get_path("scripts"), f"pe{'.exe' if sys.platform == 'win32' else ''}")
 LIBRARIES = "numpy ruamel trimesh pe_core pe_tools usercustomize sitecustomize"
@@ -39,7 +41,9 @@ VERBS = {
 }
 """What each verb is given: for `optimize` and `sweep` two worker processes."""
 BEGINNINGS = {"pe": [PE], "-P": [sys.executable, "-P", "-m", "pe_tools"]}
-CALLS = [*(("pe", verb) for verb in VERBS), ("-P", "sensors"), ("-P", "optimize")]
+FEW_CALLS = [("pe", "sweep"), ("pe", "serve"), ("-P", "optimize")]
+CALLS = [*(("pe", verb) for verb in VERBS), *FEW_CALLS[-1:]] if THOROUGH else FEW_CALLS
+"""By default those that start workers, and one that waits for lines."""
 STARTS_ENGINE = """
 import os, time
 from pe_tools.engine_process import EngineProcess
@@ -111,12 +115,7 @@ def sprung(folder):
 
 def test_every_verb_has_a_trap():
     """A verb that is new is tried, too."""
-    from pe_tools.cli.verbs import parser
-
-    (verbs,) = (
-        each.choices for each in parser()._actions if each.dest == "function" or each.choices
-    )
-    assert set(VERBS) == set(verbs)
+    assert set(VERBS) == {verb.name for verb in DECLARED}
 
 
 @pytest.mark.parametrize(("begin", "verb"), CALLS)

@@ -72,7 +72,7 @@ def served(folder, monkeypatch):
         ]
         stdin = SimpleNamespace(buffer=io.BytesIO(b"\n".join(lines)))
         monkeypatch.setattr(sys, "stdin", stdin)
-        answer = pe("serve")
+        answer = pe(["serve"])
         assert answer.returncode == 0 and answer.stderr == ""
         return [json.loads(line) for line in answer.stdout.splitlines()]
 
@@ -106,14 +106,14 @@ def test_bits_are_those_of_the_command(served):
     changed = [*typed, *(f"--set={key}={value}" for key, value in others.items())]
     before = first["answer"]["after"]
     for own, options in ((scored["answer"], typed), (last["answer"], changed)):
-        alone = json.loads(pe("score", "study.toml", *options, "--json").stdout)
+        alone = json.loads(pe(["score", "study.toml", *options, "--json"]).stdout)
         assert own["after"] == alone["after"] != before
         assert own["figures"] == alone["figures"]
         assert own["requirements"] == alone["requirements"]
         assert without_run(own).keys() == without_run(alone).keys()
         before = own["after"]
     place = json.loads(
-        pe("explain", "study.toml", *typed, "--at", "8", "-0.00001", "--json").stdout
+        pe(["explain", "study.toml", *typed, "--at", "8", "-0.00001", "--json"]).stdout
     )
     assert asked["answer"] == place
 
@@ -139,7 +139,7 @@ def test_a_session_begins_without_a_study(served):
 
 def test_replies_are_as_their_schema_says(served):
     jsonschema = pytest.importorskip("jsonschema", reason="of the extra test")
-    schema = json.loads(pe("serve", "--help", "--json").stdout)["answers"]
+    schema = json.loads(pe(["serve", "--help", "--json"]).stdout)["answers"]
     for reply in served({"do": "load", "study": "study.toml"}, {"do": "fly"}):
         jsonschema.validate({"serve": reply}, schema)
 

@@ -100,17 +100,6 @@ def test_a_camera_s_shadow_before_a_bonnet():
     assert blind.nearest["rear"].point == pytest.approx((-2.0, 0.0), abs=0.06)
 
 
-def test_the_nearest_place_is_before_the_middle_of_the_body():
-    aside = pe.Vehicle(shapes.box((1.0, 0.2, 0.0), (3.0, 1.2, 1.0)))
-    up = pe.Lidar("up", np.radians([80.0, 85.0]), 36, 60.0)
-    rig = pe.Rig([pe.Sensor("up", up, pe.Pose((2.0, 0.7, 1.9)))])
-    blind = Sight(SPACE, pe.Prior.road(), aside).blind(rig)
-    points = {side: spot.point for side, spot in blind.nearest.items()}
-    assert points["front"] == pytest.approx((3.0, 0.7), abs=0.06)
-    assert points["left"] == pytest.approx((2.0, 1.2), abs=0.06)
-    assert set(blind.seen_from.values()) == set(blind.zone.values()) == {None}
-
-
 @pytest.mark.parametrize(("rows", "zone"), [(1, 0.0), (2, 0.1), (3, 0.15)])
 def test_a_speck_along_the_body_is_no_blind_ground_to_a_side(rows, zone):
     """Rows of 5 cm before the bonnet: narrower than 10 cm is none, and the rest is as it is."""
@@ -122,28 +111,6 @@ def test_a_speck_along_the_body_is_no_blind_ground_to_a_side(rows, zone):
     assert (found.nearest["front"] is None) == (zone == 0.0)
 
 
-def test_of_two_nearest_places_the_one_nearer_to_the_middle_is_told():
-    """Four columns before a body that is 4 m wide: 0.5 m beside its middle, not 1.5 m."""
-    cells = GroundCells.of(pe.PerceptionSpace((-4, 4), (-4, 4), (0, 1), 1.0), 1.0)
-    blind = np.zeros((8, 8), bool)
-    blind[5, [2, 4]] = True  # centres at y = -1.5 and 0.5
-    found = blind_ground(cells, blind, ((-1.0, 1.0), (-2.0, 2.0)), height=0.5, within=15.0)
-    assert found.nearest["front"].point == (1.0, 0.5)
-
-
-def test_the_vehicle_s_own_footprint_is_not_blind():
-    """A ring of LiDARs round the box sees everything up to its skin."""
-    places = ((2.3, 0.0), (-2.3, 0.0), (0.0, 0.8), (0.0, -0.8), (2.3, 0.8), (-2.3, -0.8))
-    lidars = [cone_lidar(-89.0, 0.5, place) for place in (*places, (-2.3, 0.8), (2.3, -0.8))]
-    rig = pe.Rig(
-        [pe.Sensor(f"lidar {n}", lidar.model, lidar.pose) for n, lidar in enumerate(lidars)]
-    )
-    blind = Sight(SPACE, pe.Prior.road(), BOX).blind(rig, within=1.0)
-    assert blind.area == 0.0 and blind.outlines == ()
-    assert set(blind.nearest.values()) == {None}
-    assert set(blind.seen_from.values()) == set(blind.zone.values()) == {0.0}
-
-
 @pytest.mark.parametrize("side", [0.1, 0.25, 1.0])
 def test_all_ground_within_is_searched_with_voxels_of_any_size(side):
     """A camera that looks up sees none of it; at most a column of voxels more is searched."""
@@ -153,16 +120,6 @@ def test_all_ground_within_is_searched_with_voxels_of_any_size(side):
     area = Sight(space, pe.Prior.road(), BOX).blind(rig, 0.5, within=3.37).area
     exact, most = ((4.0 + 2.0 * far) * (1.0 + 2.0 * far) for far in (3.37, 3.37 + side))
     assert exact - 4.0 <= area <= most - 4.0, "without what is below the box"
-
-
-@pytest.mark.parametrize(("lowest", "room"), [(1.2, False), (1.9, True)])
-def test_what_stands_below_an_open_tailgate_may_be_blind(lowest, room):
-    gate = shapes.box((-3.0, -0.5, lowest), (-2.0, 0.5, lowest + 0.1))
-    parted = pe.Vehicle(np.concatenate([BOX.triangles, gate]))
-    ahead = pe.Rig([shapes.camera(100.0, (2.1, 0.0, 0.9), name="ahead")])
-    areas = [Sight(SPACE, pe.Prior.road(), v).blind(ahead, 0.5, 1.0).area for v in (BOX, parted)]
-    beyond = 3.0 - 1.0  # a metre of ground behind the gate, 3 m wide, more than behind the box
-    assert areas[1] - areas[0] == pytest.approx(beyond + room, abs=0.1)
 
 
 @pytest.mark.parametrize(("gap", "is_blind"), [(0.14, False), (0.31, True), (0.6, True)])
@@ -177,20 +134,6 @@ def test_a_gap_between_rings_is_none_until_a_body_fits_in(gap, is_blind):
     assert (blind.seen_from["front"] > 1.5) == is_blind
     assert (blind.area >= math.pi * ((3.0 + gap) ** 2 - 9.0) + 0.5) == is_blind
     assert blind.zone["front"] < 0.5  # the gap is beyond what is blind at the body
-
-
-@pytest.mark.parametrize("shift", [0.0, 0.013, 0.031, 0.049])
-def test_nothing_blind_is_reported_as_nothing_wherever_the_body_ends(shift):
-    """Channels steep enough to see up to the body, whose ends lie anywhere on the squares."""
-    body = pe.Vehicle(shapes.box((-2.0 - shift, -0.5, 0.0), (2.0 + shift, 0.5 + shift, 1.0)))
-    places = [(x, y) for x in (-2.3, 0.0, 2.3) for y in (-0.8, 0.85) if x or y]
-    lidars = [cone_lidar(-89.0, 1.3, place) for place in (*places, (-2.4, 0.1), (2.4, 0.1))]
-    rig = pe.Rig([pe.Sensor(f"l{n}", each.model, each.pose) for n, each in enumerate(lidars)])
-    blind = Sight(SPACE, pe.Prior.road(), body).blind(rig, 0.5, within=1.0)
-    assert set(blind.zone.values()) == set(blind.seen_from.values()) == {0.0}
-    assert set(blind.nearest.values()) == {None}
-    ahead = Sight(SPACE, pe.Prior.road(), body).blind(pe.Rig([rig.sensors[0]]), 0.5, within=1.0)
-    assert ahead.nearest["front"].distance == 0.0
 
 
 def test_a_lens_that_bends_and_a_definition_alone_see_the_same_ground():

@@ -7,25 +7,13 @@ import pe_core as pe
 from pe_core import sensors as kinds
 from pe_core.metric.entropy import entropy_of, precision_of
 from pe_core.metric.fusion import late_fusion
-from pe_core.scene.vehicle import VisibleMesh
 from pe_core.scoring.sight import Sight
 from pe_core.scoring.sight.ground_cells import gauss
 from pe_core.scoring.sight.visibility import SPREAD_M
 from tests.engine import shapes
-from tests.engine.refusals import wrongly_refused
 
 SPACE = shapes.small_space(0.5)
 CAR = shapes.box_car()
-NO_VIEWS = [
-    ("height", {"height": [1.0]}),
-    ("height", {"height": 5.0}),
-    ("height", {"height": -0.1}),
-    ("height", {"height": "low"}),
-    ("step", {"step": 0.0}),
-    ("step", {"step": -1.0}),
-    ("step", {"step": 1e-3}),
-    ("within", {"within": 0.0}),
-]
 
 
 def lidar(position=(-0.43, 0.11, 1.83), rotation=(0.0, 0.0, 0.0), name="roof", **options):
@@ -128,22 +116,6 @@ def test_where_objects_are_met_places_without_any_do_not_count():
     assert ground.coverage[at] == pytest.approx(layer.coverage[at], abs=1e-6)
 
 
-def test_beams_are_cast_once_for_all_that_is_looked_at(monkeypatch):
-    """Map, blind ground and reach measure voxels of their own, of beams that end where they end."""
-    cast = []
-    plain = VisibleMesh.first_hit
-    monkeypatch.setattr(VisibleMesh, "first_hit", lambda s, d: cast.append(d) or plain(s, d))
-    own = sight(shapes.box_car(2))
-    rig = pe.Rig([lidar((0.3, 0.2, 1.6))])
-    for ask in (own.ground, own.blind, lambda r: own.reach(r, "car"), own.expected_ap):
-        ask(rig)
-    beams = np.concatenate(cast)
-    assert len(beams) == len(np.unique(beams, axis=0)) > 0
-    cast.clear()
-    moved = pe.Rig([lidar((0.3, 0.2, 1.7))])
-    assert own.blind(moved).area == sight(shapes.box_car(2)).blind(moved).area and cast
-
-
 def test_within_looks_at_a_square_alone():
     own = sight()
     rig = pe.Rig([lidar()])
@@ -154,9 +126,3 @@ def test_within_looks_at_a_square_alone():
     wide = own.ground(rig, 0.5, step=0.5, within=500.0)
     assert np.array_equal(wide.x, whole.x) and np.array_equal(wide.y, whole.y)
     assert np.array_equal(wide.entropy, whole.entropy, equal_nan=True)
-
-
-def test_what_cannot_be_looked_at_is_refused():
-    own = sight()
-    rig = pe.Rig([lidar()])
-    assert wrongly_refused(lambda asked: own.ground(rig, **asked), NO_VIEWS, "sight") == []

@@ -11,18 +11,10 @@ from pe_core.metric.entropy import ap_of_entropy, average_precision, entropy_of,
 from pe_core.scoring import sight
 from tests.engine import shapes
 from tests.engine.kernels import on_sample
-from tests.engine.refusals import wrongly_refused
 from tests.thorough import tries
 
 SPACE = pe.PerceptionSpace((-60, 60), (-20, 20), (1, 2), 0.5)
 UNIFORM = pe.Prior.uniform()
-NO_QUESTIONS = [
-    ("class_name", ("tram", {})),
-    ("class_name", (None, {})),
-    ("ap", ("car", {"ap": 0.0})),
-    ("ap", ("car", {"ap": 1.5})),
-    ("bearings", ("car", {"bearings": 3})),
-]
 
 
 def dense_lidar(max_range, azimuths, position=(0.03, 0.01, 1.52)):
@@ -37,15 +29,6 @@ def test_a_lidar_reaches_as_far_as_its_beams():
     assert reach.distance == pytest.approx(np.full(36, 15.0), abs=1.0)
     assert np.array_equal(reach.per_sensor["dense"], reach.distance)
     assert reach.bearings[:2] == pytest.approx([0.0, math.radians(10.0)])
-
-
-def test_where_the_space_ends_a_reach_is_at_least():
-    own = sight.Sight(SPACE, UNIFORM)
-    rig = pe.Rig([dense_lidar(200.0, 720)])
-    reach = own.reach(rig, "any", bearings=4)
-    assert own.reach_ahead(rig, "any") == (60.0, True)
-    assert reach.limit == pytest.approx([60.0, 20.0, 60.0, 20.0])
-    assert np.array_equal(reach.distance, reach.limit)
 
 
 def test_a_camera_reaches_as_far_as_the_definition_has_it():
@@ -64,29 +47,6 @@ def test_a_camera_reaches_as_far_as_the_definition_has_it():
         assert reach.distance[0] == pytest.approx(farthest, abs=1.0)
         assert 5.0 < farthest < 55.0
         assert reach.distance[180] == 0.0  # behind it
-
-
-def test_bearings_far_apart_are_each_their_own():
-    """Beams within 21 degrees: 15 degrees aside is as good as ahead, and 30 sees nothing."""
-    fov = (-np.radians(21.0), np.radians(21.0))
-    channels = np.radians(np.linspace(-35, 35, 71))
-    model = pe.Lidar("ahead", channels, 480, 10.0, horizontal_fov=fov)
-    rig = pe.Rig([pe.Sensor("ahead", model, pe.Pose((0.03, 0.01, 1.52)))])
-    reach = sight.Sight(SPACE, UNIFORM).reach(rig, "any", ap=0.8, bearings=24)
-    assert reach.distance[[0, 1, 23]] == pytest.approx([9.0] * 3, abs=1.0)
-    assert (reach.distance[2:23] == 0.0).all()
-
-
-def test_inside_a_vehicle_nothing_is_found():
-    hall = pe.Vehicle(shapes.box((-90.0, -90.0, -1.0), (90.0, 90.0, 9.0)))
-    reach = sight.Sight(SPACE, pe.Prior.uniform()).reach(pe.Rig([dense_lidar(9.0, 60)]), "any")
-    assert reach.distance.max() > 0.0
-    with pytest.raises(pe.InputError, match="prior: weights: expected some weight outside"):
-        pe.Evaluator(SPACE, UNIFORM, hall)
-    inside = sight.Sight(SPACE, UNIFORM, hall)
-    rig = pe.Rig([dense_lidar(9.0, 60)])
-    assert not inside.reach(rig, "any").distance.any()
-    assert inside.reach_ahead(rig, "any") == (0.0, False)
 
 
 def test_a_reach_is_that_of_every_voxel_in_the_sector():
@@ -128,12 +88,6 @@ def test_the_blind_zone_near_by_does_not_end_a_reach():
     own = sight.Sight(SPACE, UNIFORM)
     assert own.ground(rig, 1.5, step=0.5, within=3.0).coverage.max() == 0.0
     assert own.reach(rig, "any", bearings=4).distance[0] == pytest.approx(30.0, abs=1.0)
-
-
-def test_what_cannot_be_asked_is_refused():
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
-    own = sight.Sight(shapes.small_space(), pe.Prior.road())
-    assert wrongly_refused(lambda v: own.reach(rig, v[0], **v[1]), NO_QUESTIONS, "sight") == []
 
 
 def test_ap_of_an_entropy_undoes_the_equations():

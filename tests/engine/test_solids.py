@@ -11,7 +11,7 @@ from pe_core.sensors.lidar.field_of_view import beam_patch
 from pe_tools.outputs import scene_files, solids
 from pe_tools.outputs.solid import free_solid, mounted_view
 
-from .shapes import box, box_car, camera, lidar_on_roof, small_lidar
+from .shapes import box, box_car, camera, small_lidar
 from .surfaces import is_watertight
 
 RANGE = 20.0
@@ -74,22 +74,6 @@ def test_a_wall_takes_what_lies_behind_it():
     free = free_solid("free", view)
     assert solids.volume(free) == pytest.approx(10.0 * 10.0 * 1080 / 1920 * 5.0 / 3.0, rel=1e-3)
     assert solids.hidden_solid("hidden", view).points[:, 0].min() == pytest.approx(5.0, abs=1e-6)
-
-
-def test_cubes_that_touch_along_an_edge_are_joined_by_a_third():
-    cubes = np.random.default_rng(7).random((9, 8, 7)) < 0.3
-    filled = solids.joined(cubes)
-    solid = solids.voxel_solid("cubes", filled, np.array([-1.0, 2.0, 0.0]), 0.5)
-    assert is_watertight(corners(solid)) and (filled >= cubes).all()
-    assert solids.volume(solid) == pytest.approx(filled.sum() * 0.125)
-    assert solids.voxel_solid("none", np.zeros((2, 2, 2), bool), np.zeros(3), 0.5) is None
-
-
-def test_where_nothing_is_seen_all_is_blind_but_the_vehicle():
-    """10 m round a block of 4 by 2 by 1 m, and 2.5 m high: 24 * 22 * 2.5 - 8 m3."""
-    block = pe.Vehicle(box((-2.0, -1.0, 0.0), (2.0, 1.0, 1.0)))
-    away = pe.Rig([lidar_on_roof(small_lidar(max_range=1.0), (500.0, 0.0, 2.0))])
-    assert solids.volume(solids.blind_volume("blind", away, block)) == pytest.approx(1312.0)
 
 
 def test_osi_has_the_nominal_field_of_view_in_the_sensors_frame():

@@ -11,15 +11,7 @@ import pe_core as pe
 from pe_core.scoring.sampling import CENTERED
 from pe_core.scoring.sight.blind_ground import body_rectangle
 from pe_core.search import Tolerance
-from pe_core.study import (
-    Conditions,
-    Node,
-    condition_table,
-    read,
-    study_from_dict,
-    study_to_dict,
-    write,
-)
+from pe_core.study import Conditions, condition_table, study_to_dict
 from pe_core.study.condition_table import study_objective
 from pe_core.study.conditions import worst_verdict
 from pe_tools.jobs import design_study
@@ -100,22 +92,6 @@ def test_a_body_heaves_pitches_and_leans_on_its_wheels():
     assert left > right  # it leans to the right
 
 
-def test_states_and_weathers_stay_the_same_in_a_study_file():
-    weathers = [pe.Weather("sun", 0.9), pe.Weather("fog", 0.1, fog_mor_m=80.0, reflectivity=0.5)]
-    body = pe.State("b", heave=0.02, roll_rad=math.radians(1.5), about=(0.1, 0, 0.3), frame=20)
-    conditions = Conditions([OPEN, body, pe.State("driving")], weathers)
-    study = pe.Study(rig(), car(), conditions=conditions)
-    data = study_to_dict(study)
-    states = [read(pe.State, Node(each, "study")) for each in data["state"]]
-    again = [read(pe.Weather, Node(each, "study")) for each in data["weather"]]
-    assert Conditions(states, again) == conditions
-    assert data["state"][0]["move"][0]["rotation"] == [0.0, 0.0, 70.0]
-    with pytest.raises(pe.InputError, match=r"state\[0\]\.move\[0\]\.rotation"):
-        state = {"name": "a", "move": [{"parts": ["x"], "rotation": [1]}]}
-        study_from_dict({**data, "vehicle": {}, "state": [state]})
-    assert write(OPEN)["move"][0]["about"] == list(HINGE)
-
-
 def test_the_table_has_the_figures_of_each_condition_scored_alone():
     weathers = [pe.Weather("sun", 0.75), pe.Weather("fog", 0.25, fog_mor_m=40.0)]
     conditions = Conditions([pe.State("driving", weight=3.0), OPEN], weathers)
@@ -182,17 +158,6 @@ def test_a_requirement_is_met_under_each_state_and_weather_that_it_names():
     assert checker.shortfalls(study.rig)[0] > 0.0 == parked().checker().shortfalls(study.rig)[0]
     with pytest.raises(pe.InputError, match="open"):
         parked(states=["opne"]).verdicts()
-
-
-def test_a_lost_sensor_is_told_of_under_each_state():
-    study = parked(states=["*"])
-    back = study.rig["back"]
-    pair = pe.Rig([back, replace(back, name="spare")])
-    turn = {"rotation": (0.0, 0.0, math.pi), "about": back.pose.position}
-    states = [pe.State(f"{s.name} turned", [pe.Motion([], sensors=[s.name], **turn)]) for s in pair]
-    (verdict,) = replace(study, rig=pair, conditions=Conditions(states)).verdicts()
-    assert verdict.met and verdict.breaks_without == ("back", "spare")
-    assert verdict.sensors == (1, 2)  # fewest when one is turned, most as drawn
 
 
 def test_what_blind_ground_leaves_to_spare_is_the_least_of_all_conditions():

@@ -4,10 +4,7 @@ import csv
 import json
 import os
 import signal
-import socket
-import subprocess
 import sys
-import threading
 import time
 from concurrent.futures import BrokenExecutor, Executor, Future
 from dataclasses import replace
@@ -29,14 +26,6 @@ from tests.limits import HANG_S
 pytestmark = pytest.mark.usefixtures("few_errors")
 
 SEEDS = f"optimize.seed={','.join(map(str, range(10_001)))}"
-GREETINGS = {
-    "silent": None,
-    "web server": b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n",
-    "noise": b"\xff" * 4096,
-    "zeros": bytes(64),
-    "closed": b"",
-}
-"""What a peer that is no scheduler sends; nothing, and it closes the connection."""
 OWN_EXECUTORS = """
 from concurrent.futures import Executor
 
@@ -161,35 +150,6 @@ def test_sweeps_that_cannot_be_are_one_line(study, out, more, complaint, capsys,
     assert main(["sweep", str(study), "-o", str(out), *more]) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"pe: {complaint}"), line
-
-
-@pytest.mark.thorough
-@pytest.mark.parametrize("protocol", ["tcp", "tls"])
-@pytest.mark.parametrize("greeting", GREETINGS.values(), ids=GREETINGS)
-def test_a_peer_that_is_no_scheduler_is_one_line(
-    study, out, greeting, protocol, capsys, monkeypatch
-):
-    """Also TLS without certificates."""
-    monkeypatch.setattr("pe_tools.cli.executors.CONNECT_S", 0.5)
-    with socket.socket() as peer:
-        peer.bind(("127.0.0.1", 0))
-        peer.listen()
-        taken = []
-
-        def greet():
-            taken.append(peer.accept()[0])
-            if greeting:
-                taken[0].sendall(greeting)
-            if greeting == b"":
-                taken[0].close()
-
-        threading.Thread(target=greet, daemon=True).start()
-        address = f"{protocol}://127.0.0.1:{peer.getsockname()[1]}"
-        assert main(["sweep", str(study), "-o", str(out), "--executor", address]) == 1
-        (line,) = capsys.readouterr().err.splitlines()
-        assert line.startswith(f"pe: {address}: scheduler: expected a scheduler that answers")
-        for each in taken:
-            each.close()
 
 
 @pytest.mark.parametrize(
@@ -340,7 +300,7 @@ def searched(study):
 def test_a_sweep_that_is_ended_keeps_what_is_under_way(study, out, ending, capsys, noted):
     argv = ["sweep", str(study), "--optimize", "--set", "optimize.seed=3,4", "--workers", "1"]
     first = out / "car,optimize.seed=3"
-    with Command(*argv, "-o", out, hang_in_score=2) as command:
+    with Command([*argv, "-o", out], hang_in_score=2) as command:
         deadline = time.monotonic() + HANG_S
         while not (first / SEARCH).exists():
             assert time.monotonic() < deadline
@@ -368,30 +328,6 @@ def test_a_sweep_that_is_ended_keeps_what_is_under_way(study, out, ending, capsy
 
 def replace_seed(study, seed):
     return replace(study, search=replace(study.search, seed=seed))
-
-
-@pytest.mark.skipif(sys.platform != "linux" or os.geteuid() != 0, reason="only root may mount")
-@pytest.mark.parametrize(("size", "done"), [("size=64k", 2), ("nr_inodes=4", 0)])
-def test_a_small_disk_that_fills(study, out, tmp_path, capfd, size, done):
-    """No run is said to be done without its results."""
-    out.mkdir()
-    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", size, "none", str(out)], check=False)
-    if mounted.returncode:
-        pytest.skip("no file system may be mounted here")
-    try:
-        argv = ["sweep", study, "--set", "optimize.seed=1,2,3,4,5,6", "--samples", 1024]
-        with Command(*argv, "-o", out / "sweep", "--workers", 1, "--json") as command:
-            data = json.loads(command.process.stdout.read())
-            assert command.end() == 1
-        assert any("no space left on device" in line for line in command.complaints)
-        for run in data["runs"]:
-            if run["status"] != "done":
-                continue
-            result = json.loads((out / "sweep" / run["run"] / "result.json").read_text())
-            assert result["entropy"] == run["entropy"]
-        assert sum(run["status"] == "done" for run in data["runs"]) == done
-    finally:
-        subprocess.run(["umount", str(out)], check=True)
 
 
 class Dying(Executor):
@@ -463,7 +399,7 @@ def test_parts_in_processes_of_their_own_and_the_same_command_after_them_merge(s
     """A part writes no table and leaves the other runs alone; what a part did not do is done."""
     argv = ["sweep", str(study), "--set", "optimize.seed=0:5", "-o", str(out), "--workers", "1"]
     for part in ("1/3", "3/3"):
-        with Command(*argv, "--part", part) as command:
+        with Command([*argv, "--part", part]) as command:
             assert command.process.wait(HANG_S) == 0
     assert not list(out.glob("sweep.*")) and len(list(out.iterdir())) == 3
     assert main(argv) == 0

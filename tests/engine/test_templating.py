@@ -4,11 +4,8 @@ import jinja2
 import pytest
 
 import pe_core as pe
-from pe_tools.page import markup
 from pe_tools.templating import Markup, Templates, escape
 from pe_tools.templating.expressions import TemplateError
-from tests.engine.processes import pe as run_pe
-from tests.engine.test_docs_examples import files_of_a_reader
 
 ROWS = [{"name": "a<b", "n": 3}, {"name": "c", "n": -1}, {"name": "a<b", "n": None}]
 VALUES = {
@@ -111,38 +108,3 @@ def test_markup_is_not_escaped_again_and_other_text_is():
     assert Markup("<b>") + "<" == "<b>&lt;" and "<" + Markup("<b>") == "&lt;<b>"
     assert isinstance("x" + Markup("<b>"), Markup)
     assert Markup("<br>").join(["<", Markup("<i>")]) == "&lt;<br><i>"
-
-
-def test_whole_pages_are_as_jinja_renders_them(tmp_path, monkeypatch):
-    """Each template of the review page, of a comparison and of a search, with its values."""
-    files_of_a_reader(tmp_path, "")
-    monkeypatch.chdir(tmp_path)
-    made = []
-    own = Templates.render
-
-    def render(self, name, **values):
-        text = own(self, name, **values)
-        made.append((name, values, text))
-        return text
-
-    monkeypatch.setattr(Templates, "render", render)
-    second = (tmp_path / "car.toml").read_text("utf-8").replace("0.0, 0.0, 1.8", "0.3, 0.0, 1.8")
-    (tmp_path / "car.toml").write_text(second, "utf-8")
-    assert run_pe("review", "study.toml", "-o", "one").returncode == 0
-    assert run_pe("review", "study.toml", "car.toml", "-o", "two").returncode == 0
-    theirs = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(markup.TEMPLATES),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined,
-        finalize=lambda value: value if hasattr(value, "__html__") else markup.printable(value),
-    )
-    theirs.policies["json.dumps_kwargs"] = {"separators": (",", ":"), "allow_nan": False}
-    ours = markup._templates()
-    theirs.filters |= {
-        name: each for name, each in ours._filters.items() if name not in theirs.filters
-    }
-    assert len({name for name, _, _ in made}) > 12
-    for name, values, text in made:
-        assert text == theirs.get_template(name).render(values), name

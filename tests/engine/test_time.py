@@ -4,7 +4,6 @@ import itertools
 import json
 import math
 from dataclasses import replace
-from statistics import NormalDist
 
 import numpy as np
 import pytest
@@ -19,13 +18,11 @@ from pe_core.motion import Actor, Confirmation, Story, drive_by, stories
 from pe_core.motion.clock import FrameClock
 from pe_core.motion.detector_rank import rank_chain
 from pe_core.motion.scan import factor_of, scan_factor
-from pe_core.motion.tracks import first_frame
 from pe_core.prior import ROAD_CLASSES
 from pe_core.scene.objects import Objects
 from pe_core.scoring.requirements.bodies import BODIES, Body
 from pe_core.scoring.targets.object_metric import FusedObjects
 from pe_core.sensors import ObjectMeasurementCache
-from pe_core.study import study_from_dict, study_to_dict
 from pe_tools.cli.verbs import main
 from tests.engine import shapes
 
@@ -167,36 +164,6 @@ def test_two_and_three_frames_are_those_of_a_gaussian_process():
     assert apart == pytest.approx(0.25 + arcs[7] / (2.0 * math.pi), abs=1e-3)
 
 
-@pytest.mark.parametrize("ap", [0.05, 0.5, 0.9])
-def test_tracks_are_those_of_a_simulated_process(ap):
-    time_s = 2.5
-    many = 40_000
-    rng = np.random.default_rng(11)
-    kept = math.exp(-TENTH / time_s)
-    z = rng.standard_normal(many)
-    limit = NormalDist().inv_cdf(ap)
-    hits = []
-    done = np.zeros(many, bool)
-    simulated = []
-    for _ in range(60):
-        hits.append(z < limit)
-        done |= np.sum(hits[-5:], axis=0) >= 3
-        simulated.append(done.mean())
-        z = kept * z + math.sqrt(1.0 - kept * kept) * rng.standard_normal(many)
-    expected = Confirmation(3).confirmed([ap] * 60, TENTH, 5, time_s)
-    assert np.abs(expected - simulated).max() < 5.0 * 0.5 / math.sqrt(many)
-
-
-def test_real_memory_confirms_later_than_one_frame_does():
-    # A chain that remembers one frame, r = 0.8, has 90 % of AP 0.5 after 2.4 s and 99 % after 5.2 s
-    moments = [
-        first_frame(Confirmation(3).confirmed([0.5] * 150, TENTH, 5, time_s), chance)
-        for time_s in (2.0, 2.5)
-        for chance in (0.9, 0.99)
-    ]
-    assert moments[:2] == [48, 115] and moments[2] > 48 and moments[3] > 115
-
-
 def test_the_correlation_of_ranks_is_the_same_over_one_long_step_or_several():
     chain = rank_chain()
     assert np.abs(chain.step(0.3) - chain.step(0.1) @ chain.step(0.2)).max() < 1e-12
@@ -297,14 +264,6 @@ def test_no_verdict_gets_better_with_a_larger_body_that_hides(name):
         before = now
 
 
-def test_a_story_of_very_many_bodies_is_refused():
-    crowd = tuple(
-        Actor(f"car {k}", BODIES["car"], ((-1.0, 5.0 + 0.1 * k, 0.0),)) for k in range(300)
-    )
-    with pytest.raises(pe.InputError, match="300 bodies, 11 frames"):
-        drive_by(replace(STANDING, actors=crowd), rig(), None)
-
-
 def near_body(start_s=-3.0, **changed):
     """A story of a large body that stands near: each frame finds it with 0.999."""
     large = Body("large", (3.0, 5.0, 4.0), class_name="car")
@@ -326,19 +285,6 @@ def test_a_slow_sensor_confirms_late():
     assert confirmed_at({"lidar": 0.5}) is None  # two frames
     assert confirmed_at({"lidar": 3.0}) == -2.3  # at -3, -2.6 and -2.3 s
     assert confirmed_at({"camera": 1.0}) == -2.8
-
-
-def test_no_further_sensor_and_no_higher_rate_confirms_later():
-    roof, front = rig().sensors
-    both = pe.Rig([roof, front])
-    slow = {"lidar": 1.0}
-    lidar, camera = (
-        drive_by(near_body(), pe.Rig([s]), None, rates=slow).bodies[0] for s in (roof, front)
-    )
-    together = drive_by(near_body(), both, None, rates=slow).bodies[0]
-    assert (together.confirmed >= np.maximum(lidar.confirmed, camera.confirmed) - 1e-12).all()
-    moments = [confirmed_at({"lidar": hz, "camera": hz}, both) for hz in (1.0, 2.0, 5.0, 10.0)]
-    assert moments == sorted(moments, reverse=True) and moments[0] > moments[-1]
 
 
 def test_ap_is_that_of_the_last_frame():
@@ -393,22 +339,6 @@ def test_bodies_move_as_the_vehicle_drives_on():
     assert turned[1][0] == pytest.approx(math.pi / 2)
     assert moving.brake_s == pytest.approx(-(0.5 + 10.0 / 12.0))
     assert moving.stop_m == pytest.approx(10.0 * 0.5 + 10.0**2 / 12.0)
-
-
-def test_a_study_keeps_its_frames_tracks_and_stories(tmp_path):
-    own = replace(STANDING, name="own", title="a title")
-    changed = replace(stories()["cut_in"], speed_kmh=50.0)
-    noted = study(
-        rig(),
-        frames=Frames(5, 2.0, noises={"car": 1.5}, rates={"camera": 30.0}),
-        confirmation=Confirmation(2),
-        stories=(own, changed, stories()["roundabout"]),
-    )
-    data = study_to_dict(replace(noted, vehicle=None))
-    read = study_from_dict(data)
-    for name in ("frames", "confirmation", "stories"):
-        assert getattr(read, name) == getattr(noted, name)
-    assert data["story"][1:] == [{"preset": "cut_in", "speed_kmh": 50.0}, {"preset": "roundabout"}]
 
 
 @pytest.fixture

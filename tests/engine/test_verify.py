@@ -167,23 +167,3 @@ def test_a_result_that_a_mended_defect_touches_says_so(
         assert ("a made-up defect" in capsys.readouterr().err) is told
     finally:
         known_defects.known_defects.cache_clear()
-
-
-@pytest.mark.parametrize("text", ["", "[1, 2]", '{"run": 3}', '{"run": {"versions": []}}', "\x00"])
-def test_another_programs_result_says_nothing(text, tmp_path, capsys):
-    from pe_tools.cli.study_source import tell_mended_defects
-
-    (tmp_path / "result.json").write_text(text)
-    tell_mended_defects(tmp_path)
-    assert capsys.readouterr().err == ""
-
-
-def test_each_defect_leads_to_a_page():
-    assert all((DOCS / each.link).is_file() for each in known_defects.known_defects())
-
-
-def test_versions_are_compared_by_their_numbers():
-    row = known_defects.Defect("a", "0.9.0", ["entropy"], "", "", mended="0.10.0")
-    versions = {"0.8.5": False, "0.9.0": True, "0.9.12": True, "0.10.0": False, "1.0": False}
-    assert {each: row.is_in(each) for each in versions} == versions
-    assert known_defects.Defect("b", "0.9.0", [], "", "").is_in("7.0.0")

@@ -7,7 +7,6 @@ import pytest
 import pe_core as pe
 import pe_tools as pt
 from pe_core.catalog import load
-from pe_core.motion import stories
 from pe_core.search import FIGURES
 from pe_tools.page import ReportContext, keyed_contexts
 from pe_tools.page.markup import render
@@ -78,22 +77,3 @@ def test_the_comparison_marks_the_engine_s_winner(scored, other, comparison):
     assert first.classes == ["wins", f"whose-{'ab'[winner]}-ink"]
     assert first.text.startswith(f"{better.after.entropy:.3f}")
     assert comparison_section(keyed_contexts([scored, other]))["overall"] == rows[0]
-
-
-def test_the_margins_of_stories_are_in_the_comparison(scored, other):
-    """As `pe compare` has them; a score alone does not."""
-    child = stories()["crossing_child"]
-    with_story = [dataclasses.replace(c.study, stories=(child,)) for c in (scored, other)]
-    each = keyed_contexts(
-        [
-            dataclasses.replace(c, outcome=dataclasses.replace(c.outcome, study=study))
-            for c, study in zip((scored, other), with_story, strict=True)
-        ]
-    )
-    told = {c.key: c.study.key_figures(c.outcome.figures_after) for c in each}
-    (row,) = (r for r in pt.advice.compare_figures(told) if r.measure == "story_margin")
-    assert row in comparison_section(each)["rows"]
-    assert ["Crossing child", row.text(0), row.text(1)] in [
-        [text.partition(" (")[0].replace("−", "-").removesuffix(" best") for text in line]
-        for line in cells(html_of(comparison_section, *each), "Margin of stories")
-    ]

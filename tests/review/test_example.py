@@ -43,7 +43,8 @@ def test_it_holds_all_it_needs(text, shown):
 def test_its_sensors_are_the_example_s_and_the_search_is_reported(text, shown):
     view = json.loads(shown.one("script", id="data-view-a").text)
     names = [sensor["name"] for sensor in view["sensors"]]
-    assert names == ["camera_left", "camera_right", "lidar_left", "lidar_right"]
+    sides = ("left", "right")
+    assert names == [f"{name}_{side}" for name in ("camera", "front", "rear") for side in sides]
     assert "pe optimize blend_assets/examples/four_corners/study.toml" in text
 
 

@@ -1,24 +1,20 @@
 """Rendered pictures: positions of objects in them, shadows, and reproducible bytes."""
 
-from xml.etree import ElementTree
-
 import numpy as np
 import pytest
 
 import pe_core as pe
 import pe_tools as pt
 from pe_core.catalog import load
-from pe_tools.page import ReportContext, picture_file
+from pe_tools.page import ReportContext
 from pe_tools.page.pictures import vehicle_picture as picture_module
-from pe_tools.page.pictures.painted_mesh import PaintedMesh, painted_vehicle
-from pe_tools.page.pictures.ray_scene import GROUND, SKY, RayCamera, RayScene, Viewpoint
+from pe_tools.page.pictures.painted_mesh import painted_vehicle
+from pe_tools.page.pictures.ray_scene import RayCamera, RayScene, Viewpoint
 from pe_tools.page.pictures.vehicle_picture import vehicle_picture
 from tests.engine.test_masks import decoded
 from tests.review.conftest import box
 
 SIZE = (96, 54)
-RED = (0.6, 0.0, 0.0)
-BLUE = (0.0, 0.0, 0.6)
 
 
 @pytest.fixture(scope="module")
@@ -45,23 +41,6 @@ def test_a_view_projects_where_it_looks():
     np.testing.assert_allclose(found, (right, down), atol=1e-9)
     (x,), (y,) = view.project(np.array([[5.0, 2.0, 3.0]]), *SIZE)
     assert x < SIZE[0] / 2 and y < SIZE[1] / 2  # what is left and higher
-
-
-def rays_of(camera):
-    down, right = np.mgrid[: camera.height, : camera.width] + 0.5
-    return camera.rays_through(right.ravel(), down.ravel())
-
-
-def test_what_stands_left_is_drawn_left():
-    boxes = [box((4.0, y - 0.5, 0.0), (5.0, y + 0.5, 1.5)) for y in (2.0, -2.0)]
-    pair = [PaintedMesh(pe.Vehicle(b), (p,)) for b, p in zip(boxes, (RED, BLUE), strict=True)]
-    solids = RayScene(pair, has_vehicle=False)
-    camera = Viewpoint((-8.0, 0.0, 2.0), (4.0, 0.0, 0.8), 40.0).camera(*SIZE)
-    hits = solids.first_hits(camera, rays_of(camera))
-    surface = hits.surface.reshape(SIZE[1], SIZE[0])
-    columns = [np.nonzero(surface == number)[1] for number in (1, 2)]
-    assert columns[0].max() < SIZE[0] / 2 < columns[1].min()
-    assert (surface[0] == SKY).all() and (surface[-1] == GROUND).all()
 
 
 def test_a_still_shows_the_vehicle_and_is_the_same_each_time(car):
@@ -104,21 +83,3 @@ def test_a_sensor_behind_the_body_is_reported_apart(car):
     drawing, key = picture_module.labelled_picture(shown, "alt")
     assert drawing.count('stroke-dasharray="4 4"') == 1 and drawing.count("<circle") == 3
     assert [row[:2] for row in key] == [(1, "right"), (2, "a <b>")]
-
-
-def test_the_picture_s_file_has_figures_above_and_a_key_below(car):
-    """The same bytes each time; a line of the key in the sensor's colour."""
-    study = pe.Study(car[1], car[0], samples=1024)
-    plain = picture_file(study)
-    assert plain == picture_file(study)
-    root = ElementTree.fromstring(plain)
-    texts = [each.text for each in root.iter("{http://www.w3.org/2000/svg}text")]
-    assert texts[-len(car[1]) :] == [
-        f"{k}  {s.name} ({s.model.name})" for k, s in enumerate(car[1], 1)
-    ]
-    for color in picture_module.graphics.sensor_colors_on_paper(car[1]).values():
-        assert plain.count(picture_module.graphics.color_text(color).encode()) >= 2
-    job = pt.ScoreJob(study)
-    list(job)
-    told = picture_file(study, job.outcome).decode()
-    assert f"Perception entropy {job.outcome.after.entropy:.3f} nats" in told

@@ -68,15 +68,6 @@ def test_each_pixel_looks_where_the_lens_says(monkeypatch):
     np.testing.assert_allclose(found, rays @ turned.T, atol=1e-12)
 
 
-def test_the_own_body_is_in_the_picture_where_it_stops_rays():
-    """A wall on the left half of the view."""
-    wall = pe.Vehicle(box((1.0, 0.0, 0.0), (1.2, 3.0, 3.0)))
-    free = decoded(camera_picture(mounted(SMALL), None).png).astype(int)
-    with_wall = decoded(camera_picture(mounted(SMALL), wall).png).astype(int)
-    changed = np.abs(with_wall - free).max(axis=2) > 20
-    assert changed[:, :60].mean() > 0.9 and changed[:20, 70:].mean() < 0.05
-
-
 def test_a_lidar_s_picture_has_left_on_the_left():
     """A wall on the left is orange in the left half; marks of people are left of the cars'."""
     model = load("Velodyne VLP-16 Puck")

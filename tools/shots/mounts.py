@@ -22,8 +22,8 @@ def searched(camera: Camera) -> None:
         for name in ("ground", "beams", "reach", "blind"):
             setattr(settings.view, f"show_{name}", False)
         for obj in objects:
-            obj.select_set(obj.name == "lidar_left")
-        objects.active = objects["lidar_left"]
+            obj.select_set(obj.name == "front_left")
+        objects.active = objects["front_left"]
     """)
     stage.rest()
     stage.do("""

@@ -72,6 +72,9 @@ body at that point has an unmarked square under it."""
 SECTOR_RADIUS_M = 20.0  # Distance from the origin at which blind sectors are measured
 SECTOR_HEIGHTS_M = (0.5, 1.0, 1.5)
 """A post or a small child, an older child, an adult who bends."""
+SECTOR_RING_M = MIN_AREA_M2 / STEP_M + 1.0
+"""How far from that circle a sector depends on what is marked: a piece of squares that reaches
+farther is large enough, and a body is narrower than the rest."""
 ARC_STEP_M = 0.01  # Distance of the points of the circle at which squares are looked up
 SQUARES_PER_VOXEL = 16
 """Memory in the cache: a voxel takes some 100 bytes, a square a few."""
@@ -301,11 +304,13 @@ class BlindSearch:
         height: float,
         vehicle: Vehicle | None,
         kernel_cache: dict[str, Any],
+        ring: tuple[float, float] | None = None,
     ) -> "BlindSearch":
-        """Prepare the search of cells for bodies of a height [m]."""
+        """Prepare the search of cells for bodies of a height [m]; with a ring, inner and outer
+        radius [m], the result is that of a search of all cells on its middle circle alone."""
         margin = math.ceil(BODY_M / cells.step) + 2
         inner = GroundGrid((float(cells.x0[0]), float(cells.y0[0])), cells.shape, cells.step)
-        view = GroundView(inner.widened(margin), height, vehicle)
+        view = GroundView(inner.widened(margin), height, vehicle, ring)
         own = _under(vehicle, view.grid, max(height, STANDING_M))
         return cls(cells, VisibleGroundCache(view, kernel_cache), margin, own)
 

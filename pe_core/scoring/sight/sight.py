@@ -28,6 +28,8 @@ from ..targets import OBJECTS, ObjectEvaluator, TargetRule, sample_objects
 from ..targets.object_metric import LoneObjects
 from .blind_ground import (
     SECTOR_HEIGHTS_M,
+    SECTOR_RADIUS_M,
+    SECTOR_RING_M,
     STEP_M,
     WITHIN_M,
     BlindGround,
@@ -204,7 +206,8 @@ class Sight:
         The body and the safe side are those of `blind`; the space may be smaller than the circle.
         """
         cells = sector_cells()
-        found = ((h, self._blind_of(cells, rig, h)) for h in SECTOR_HEIGHTS_M)
+        ring = SECTOR_RADIUS_M - SECTOR_RING_M, SECTOR_RADIUS_M + SECTOR_RING_M
+        found = ((h, self._blind_of(cells, rig, h, ring)) for h in SECTOR_HEIGHTS_M)
         return tuple(widest_sector(blind, height) for height, blind in found)
 
     def in_traffic(self, rig: Rig) -> TrafficAp | None:
@@ -282,16 +285,19 @@ class Sight:
         layer_at(self.space, height)  # raises InputError for a height that is not in the space
         return cells
 
-    def _blind_of(self, cells: GroundCells, rig: Rig, height: float) -> NDArray[np.bool_]:
+    def _blind_of(
+        self, cells: GroundCells, rig: Rig, height: float, ring: tuple[float, float] | None = None
+    ) -> NDArray[np.bool_]:
         with self._lock:
-            return self._blind_search(cells, height).blind(rig)
+            return self._blind_search(cells, height, ring).blind(rig)
 
-    def _blind_search(self, cells: GroundCells, height: float) -> BlindSearch:
+    def _blind_search(
+        self, cells: GroundCells, height: float, ring: tuple[float, float] | None = None
+    ) -> BlindSearch:
+        kernels = self._voxel_sets.kernel_cache
         return self._voxel_sets.cached(
-            ("blind", float(height), cells.key),
-            lambda: BlindSearch.of(
-                cells, max(float(height), 0.0), self.vehicle, self._voxel_sets.kernel_cache
-            ),
+            ("blind", float(height), cells.key, ring),
+            lambda: BlindSearch.of(cells, max(float(height), 0.0), self.vehicle, kernels, ring),
         )
 
     def reach(

@@ -9,10 +9,11 @@ a straight segment, which ends earlier where the vehicle or the range ends the b
 that hold points of the segment are marked: both of its ends, and points between.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +51,7 @@ SPACING_M = 0.05
 MAX_SPACING_M = 0.15
 """Distance between the points of a segment; larger if there were more than MAX_POINTS points."""
 MAX_POINTS = 2_000_000
+POINT_BLOCK = 1 << 14  # Points that are computed together: they stay in the cache
 DIRECTION_BINS = 1e11
 """Segments whose directions agree to one part in this many lie on one ray."""
 MIN_LENGTH = 1e-9  # Replaces the horizontal length 0 of a vertical beam
@@ -230,8 +232,12 @@ class LidarGround(GroundKernel):
         flat = marked.reshape(-1)
         finest = SPACING_M / grid.step
         spacing = np.clip(segments.length / MAX_POINTS, finest, MAX_SPACING_M / grid.step)
-        flat[segments.subdivided(float(spacing)).squares(0.0, grid.shape)] = True
-        flat[segments.squares(1.0, grid.shape)] = True
+        pieces = segments.divided(float(spacing))
+        if self._view.ring is not None:
+            pieces = pieces.within(grid, self._view.ring)
+        for squares in pieces.squares(grid.shape):
+            flat[squares] = True
+        flat[segments.ends(grid.shape)] = True
         return VisibleGround(sensor, marked)
 
     def _low_parts(self, sensor: Sensor, components: list[Floats]) -> tuple[Floats, Floats]:
@@ -307,20 +313,69 @@ class GroundSegments:
         """Sum of the segments' lengths, in squares."""
         return float(np.sqrt(self.dx * self.dx + self.dy * self.dy).sum())
 
-    def subdivided(self, spacing: float) -> "GroundSegments":
+    def divided(self, spacing: float) -> "GroundPieces":
         """Divide each segment into equal pieces, at most `spacing` squares long."""
-        pieces = np.ceil(np.sqrt(self.dx * self.dx + self.dy * self.dy) / spacing).astype(np.int64)
-        pieces = np.maximum(pieces, 1)
-        dx, dy = (np.repeat(w / pieces, pieces) for w in (self.dx, self.dy))
-        number = count_up(pieces)
-        return GroundSegments(
-            np.repeat(self.x, pieces) + number * dx, np.repeat(self.y, pieces) + number * dy, dx, dy
-        )
+        count = np.ceil(np.sqrt(self.dx * self.dx + self.dy * self.dy) / spacing).astype(np.int64)
+        count = np.maximum(count, 1)
+        pieces = GroundSegments(self.x, self.y, self.dx / count, self.dy / count)
+        return GroundPieces(pieces, np.zeros_like(count), count)
 
-    def squares(self, fraction: float, shape: tuple[int, int]) -> Ints:
-        """Return the flat index (L,) of the square at a fraction of each segment."""
-        i, j = (
-            np.minimum((w + fraction * dw).astype(np.int32), n - 1)
-            for w, dw, n in ((self.x, self.dx, shape[0]), (self.y, self.dy, shape[1]))
-        )
-        return np.asarray(i * shape[1] + j)
+    def ends(self, shape: tuple[int, int]) -> Ints:
+        """Return the flat index (L,) of the square that each segment ends in."""
+        return flat_squares(self.x + self.dx, self.y + self.dy, shape)
+
+
+@dataclass(frozen=True, slots=True)
+class GroundPieces:
+    """Equal pieces of segments: the `first` piece of each (L,), and those from `begin` to before
+    `end` (L,), numbered from the segment's start."""
+
+    first: GroundSegments
+    begin: Ints
+    end: Ints
+
+    def within(self, grid: GroundGrid, ring: tuple[float, float]) -> "GroundPieces":
+        """Return the pieces that may begin in a ring about the origin: inner and outer radius [m].
+        Of a segment that crosses the ring's hole, those over the hole are among them."""
+        inner, outer = (radius / grid.step for radius in ring)
+        x = self.first.x + grid.origin[0] / grid.step
+        y = self.first.y + grid.origin[1] / grid.step
+        dx = self.first.dx
+        dy = self.first.dy
+        length2 = np.maximum(dx * dx + dy * dy, MIN_LENGTH)
+        middle = -(x * dx + y * dy) / length2  # the piece nearest to the origin
+        away2 = (x * dy - y * dx) ** 2 / length2
+        begin = self.begin
+        end = self.end
+        to_rim = np.sqrt(np.maximum(outer * outer - away2, 0.0) / length2)
+        begin = np.maximum(begin, np.floor(middle - to_rim).astype(np.int64) - 1)
+        end = np.minimum(end, np.ceil(middle + to_rim).astype(np.int64) + 2)
+        to_hole = np.sqrt(np.maximum(inner * inner - away2, 0.0) / length2)
+        in_hole = (np.ceil(middle - to_hole) + 1.0, np.floor(middle + to_hole) - 1.0)
+        starts_in = (in_hole[0] <= begin) & (in_hole[1] > begin)
+        begin = np.where(starts_in, in_hole[1], begin).astype(np.int64)
+        ends_in = (in_hole[1] >= end - 1) & (in_hole[0] < end)
+        end = np.where(ends_in, in_hole[0], end).astype(np.int64)
+        return GroundPieces(self.first, begin, np.maximum(end, begin))
+
+    def squares(self, shape: tuple[int, int]) -> Iterator[Ints]:
+        """Yield the flat indices of the squares that pieces begin in, in blocks."""
+        counts = self.end - self.begin
+        total = np.cumsum(counts)
+        starts = np.searchsorted(total, np.arange(0, total[-1] if len(total) else 0, POINT_BLOCK))
+        for low, high in pairwise([*np.unique(starts).tolist(), len(counts)]):
+            block = slice(low, high)
+            each = counts[block]
+            number = count_up(each) + np.repeat(self.begin[block], each)
+            x, dx, y, dy = (
+                np.repeat(w[block], each)
+                for w in (self.first.x, self.first.dx, self.first.y, self.first.dy)
+            )
+            yield flat_squares(x + number * dx, y + number * dy, shape)
+
+
+def flat_squares(x: Floats, y: Floats, shape: tuple[int, int]) -> Ints:
+    """Return the flat index (N,) of the squares at points (N,), in squares from a grid's corner."""
+    i = np.minimum(x.astype(np.int32), shape[0] - 1)
+    j = np.minimum(y.astype(np.int32), shape[1] - 1)
+    return np.asarray(i * shape[1] + j)

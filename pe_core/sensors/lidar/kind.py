@@ -182,6 +182,7 @@ LIDAR = Kind(
     in_weather=in_weather,
     stand_off_m=0.15,
     outward=lambda model: not sees_all_around(model),
+    lowest_ray=lambda model: -float(model.elevations.min()),
     data_sheet=figures,
     summary=summary,
     plot=plot,

@@ -22,6 +22,8 @@ FINEST_M = 0.02
 CORNERS = 20_000
 """Longest edge of the divided surface [m], unless it would have more triangles than that."""
 POOL = 4000  # Corners among which the next places are chosen
+SENSES = {"yaw": ("left", "right"), "pitch": ("nose down", "nose up"), "roll": ("right", "left")}
+"""Words for the positive and the negative sense of a turn, in the frame of an upright mount."""
 NEIGHBOURS = 3
 """A corner is forbidden where one of so many nearest places is."""
 RULE_PART = 3  # One in so many new places is where a rule begins to forbid
@@ -177,7 +179,7 @@ def ways_of_turn(
     """Return the ways of turning about an axis, both ways: up to `farthest`, or to the first angle
     that is `barred`, with its rule. Angles are in degrees, as points of the model."""
     ways = []
-    for name, sign in (("+", 1.0), ("-", -1.0)):
+    for name, sign in zip(SENSES[axis], (1.0, -1.0), strict=True):
         own = {abs(angle): why for angle, why in barred.items() if angle * sign > 0.0}
         first = min(own, default=farthest)
         last = farthest if not own else max(first - FINE_DEG, 0.0)

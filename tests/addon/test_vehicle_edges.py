@@ -134,12 +134,12 @@ def test_the_command_tells_and_takes_distances_of_a_blend_file(roof, tmp_path):
     blend = tmp_path / "car.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
     words = ("explain", "--sensor", "roof", "--from", "cabin front", "ground", "--json")
-    found = run_here(blend, *words)
+    found = run_here(blend, words)
     assert found.returncode == 0
     distances = json.loads(found.stdout)["distances"]
     assert distances == ["1.13 m behind cabin front", "1.8 m above ground"]
     typed = 'sensor.roof.position=["0.5 m behind cabin front", 0, "0.3 m above cabin top"]'
-    found = run_here(blend, "score", "--json", "--set", typed)
+    found = run_here(blend, ["score", "--json", "--set", typed])
     assert found.returncode == 0
     placed = json.loads(found.stdout)["placements"]["after"]["roof"]
     assert placed["position"] == pytest.approx([0.2, 0.0, 1.8])

@@ -153,26 +153,3 @@ def test_all_panels_are_drawn_before_there_is_a_score(car):
     car.perception_entropy.panels = "ALL"
     for cls in panels(car):
         layouts.drawn(cls, **vars(window(car)))
-
-
-def test_a_good_score_is_told_by_the_known_rigs_on_this_body(car):
-    """As many are worse as by a score of each in its turn; another body is asked about again."""
-    bpy.ops.pe.score()
-    study = scenes.study()
-    settings = car.perception_entropy
-    assert not [text for text in shown(car).texts("label") if "known rigs" in text]
-    known_rigs.request(car, study, "of this body")
-    kept = json.loads(settings.known_rigs_json)
-    evaluator = study.evaluator(samples=engine_calls.HELD_SAMPLES)
-    worse = 0
-    for key, value in kept["entropies"].items():
-        rig = pe.catalog.rig_on(pe.catalog.known_rig(key), study.vehicle)
-        assert value == evaluator.entropy(rig)
-        worse += value > settings.result.entropy
-    told = f"Better than {worse} of {len(kept['entropies'])} known rigs"
-    assert told in shown(car).texts("label")
-    settings.known_rigs_json = json.dumps({**kept, "entropies": {}})
-    known_rigs.request(car, study, "of this body")
-    assert not json.loads(settings.known_rigs_json)["entropies"], "asked once"
-    known_rigs.request(car, study, "of another")
-    assert json.loads(settings.known_rigs_json) == {**kept, "of": "of another"}

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..base.arrays import Floats
+from ..base.arrays import Floats, read_only
 from ..base.errors import InputError, require_kind, require_name, shown
 from ..base.notebook import ShortRepr
+from ..base.recent_cache import RecentCache
 from ..base.setting import NAMES, Pair, Panel, check_settings, required_setting, setting
 from ..base.values import WEIGHT, Number, choice, listed
 from ..geometry.grids import PerceptionSpace
@@ -112,6 +113,10 @@ class ClassDensity:
     name: str
     ground: Floats
     profile: Floats
+
+
+_densities: RecentCache[list[ClassDensity]] = RecentCache()
+"""Those that were made last: what scores a rig and what looks at the ground have the same."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -276,6 +281,9 @@ class Prior(ShortRepr):
         `InputError` when the focus weights leave no mass, no box is in the space, or the classes
         and columns do not fit in memory.
         """
+        return _densities.made((self, space), lambda: self._new_densities(space))
+
+    def _new_densities(self, space: PerceptionSpace) -> list[ClassDensity]:
         names = self.class_names
         shapes = self._shapes(space)
         grounds = [
@@ -287,7 +295,7 @@ class Prior(ShortRepr):
             found = "infinitely much" if total else "none"
             raise InputError("prior", "focus", "some weight left in the space", found)
         return [
-            ClassDensity(name, ground / total, profile)
+            ClassDensity(name, read_only(ground / total), read_only(profile))
             for name, ground, (_, profile) in zip(names, grounds, shapes, strict=True)
         ]
 

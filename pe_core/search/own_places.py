@@ -13,7 +13,7 @@ import numpy as np
 
 from ..base.arrays import Floats
 from ..base.errors import InputError, require_name, shown
-from ..geometry.poses import cross, dot
+from ..geometry.poses import Pose, cross, dot
 from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from .domains import (
@@ -274,6 +274,26 @@ class OwnPlaces:
         return PathPoint(distance, (x, y, z), (nx, ny, nz))
 
 
+def _body_below(
+    pose: Pose, vehicle: Vehicle, name: str, surfaces: dict[SurfaceMount, MountSurface]
+) -> SurfaceMount:
+    """Return the whole body as a mount, without parts whose nearest face looks away from a pose:
+    faces of such a part are turned inside out, or hidden below others."""
+    parts = list(vehicle.part_names)
+    position = np.array(pose.position)
+    while True:
+        mount = SurfaceMount(parts, 0.0, max_slope=math.pi)
+        surface = surface_of(name, mount, vehicle, surfaces)
+        foot, face = surface.closest(position)
+        if len(parts) == 1 or float(dot(position - foot, surface.outward(face))) >= 0.0:
+            return mount
+        faces = np.flatnonzero(
+            (vehicle.triangles == surface.triangles[face]).all(axis=(1, 2))
+            & np.isin(vehicle.parts, [vehicle.part_names.index(part) for part in parts])
+        )
+        parts.remove(vehicle.part_names[int(vehicle.parts[faces[0]])])
+
+
 def _refuse_follower(name: str, mounting: Mounting) -> None:
     links = [*mounting.pairs, *mounting.groups]
     leader = next((link[0] for link in links if name in link[1:]), None)
@@ -301,7 +321,7 @@ def _at_distance_now(
     own = mounting.on.get(name, "")
     if mount is None:
         own = f"{BODY_MOUNT} of {name}" if BODY_MOUNT in mounting.mounts else BODY_MOUNT
-        mount = SurfaceMount(vehicle.part_names, 0.0, max_slope=math.pi)
+        mount = _body_below(rig[name].pose, vehicle, own, surfaces)
     surface = surface_of(own, mount, vehicle, surfaces)
     housing = housings_of(rig).get(name)
     domain = SurfaceDomain(

@@ -23,6 +23,7 @@ EDGE = "the edge of the mount"
 BY_LOSS = "the loss"
 PATCH_DECIMALS = 5
 ON_PATCH_M = 1e-3
+LEAST_M2 = 0.005  # A smaller area is told as none
 METRE_UNIT = "m"
 DEGREE_UNIT = "deg"
 USUAL_LOSSES = 4.0
@@ -111,6 +112,7 @@ class FreeRegion:
     `sample`: On what was evaluated, as text: "32,768 voxels"; empty where figures are exact.
     `not_held`: What the rig breaks as it is: it forbids nothing.
     `with_others`: Whether the other sensors were searched again at each place.
+    `area_before`: The area while the others stay [m2], where they were searched again.
     `foot`: The point of the mount below the sensor as it is [m]; None in a slot.
     """
 
@@ -132,6 +134,7 @@ class FreeRegion:
     not_held: tuple[str, ...] = ()
     is_coarse: bool = False
     with_others: bool = False
+    area_before: float | None = None
     foot: tuple[float, float, float] | None = None
 
     @property
@@ -145,13 +148,15 @@ class FreeRegion:
 
     def with_gain(self, gain: Floats, error: Floats) -> "FreeRegion":
         """Return the region where the loss falls by a gain (V,) with an error (V,) at each corner,
-        as the other sensors are searched again. The ways along it are not told: they are of the
-        others as they are."""
+        as the other sensors are searched again: nowhere does the region become smaller. The ways
+        along it are not told: they are of the others as they are."""
         both = np.sqrt(self.error**2 + error**2)
         turns = tuple(way for way in self.ways if way.unit == DEGREE_UNIT)
-        loss = np.where(self.upper <= self.allowed, self.loss, self.loss - gain)
-        error = np.where(self.upper <= self.allowed, self.error, both)
-        return replace(self, loss=loss, error=error, ways=turns, with_others=True)
+        gains = self.loss - gain + SURE * both < self.upper
+        loss = np.where(gains, self.loss - gain, self.loss)
+        error = np.where(gains, both, self.error)
+        others = replace(self, loss=loss, error=error, ways=turns, with_others=True)
+        return replace(others, area_before=self.area)
 
     @property
     def upper(self) -> Floats:
@@ -291,8 +296,12 @@ def region_lines(found: FreeRegion) -> list[str]:
             lines.append(f"  ({at}): {told}")
         return lines
     area = f"{found.area:.2f} of {found.mount_area:.2f} m2"
-    others = ", the other sensors searched again" if found.with_others else ""
-    lines = [f"{head}: {area} lose at most {lost}{unit} of {row.name}{others}"]
+    lines = [f"{head}: {area} lose at most {lost}{unit} of {row.name}"]
+    if found.area_before is not None:
+        more = found.area - found.area_before
+        told = f"{more:.2f} m2 of it" if more >= LEAST_M2 else "none of it"
+        lines.append(f"  {told} because the other sensors are searched again there")
+        lines.append("  how far in each direction is told while they stay: without --others")
     lines += [f"  {part}" for part in found.extent.split("; ")] if found.ways else []
     if (least := found.tightest) is not None:
         ended = f", ended by {least.why}" if least.why else ""

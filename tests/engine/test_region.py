@@ -10,6 +10,7 @@ import pe_core as pe
 import pe_tools as pt
 from pe_core import search
 from pe_core.geometry.surfaces import area_of, cut_below, divided
+from pe_core.scene.vehicle import closest_points
 from pe_core.study import load_study
 from pe_tools import advice
 from pe_tools.cli.verbs import main
@@ -98,6 +99,37 @@ def test_points_of_the_region_lose_at_most_what_is_allowed(study, found):
     assert np.mean(inside <= found.allowed) >= 0.95
 
 
+def test_a_sensor_over_a_part_that_is_inside_out_moves_over_the_body_below():
+    """The roof's pod of a shipped shuttle looks down: no place was on it, nor a start."""
+    car = shapes.box_car(times=3)
+    pod = shapes.box((-0.8, -0.4, 1.3), (0.2, 0.4, 1.5))[:, ::-1]
+    first = 5  # between the faces whose side is probed
+    triangles = np.insert(car.triangles, first, pod, axis=0)
+    parts = np.insert(car.parts, first, np.full(len(pod), 2))
+    turned = pe.Vehicle(triangles, parts, (*car.part_names, "pod"))
+    lidar = pe.Sensor("roof", shapes.small_lidar(8, 90), pe.Pose((-0.3, 0.0, 1.9)))
+    places = search.OwnPlaces(
+        pe.Rig([lidar]), "roof", turned, search.Mounting(), limits=pe.Limits()
+    )
+    assert places.at(places.foot.point)["roof"].pose.position == lidar.pose.position
+    assert places.foot.normal == (0.0, 0.0, 1.0)
+
+
+def test_the_closest_point_of_a_surface_is_that_of_all_its_faces(study):
+    """On it, a little beside it, and metres away."""
+    car = shapes.box_car(times=2)
+    surface = search.MountSurface("test", search.SurfaceMount(car.part_names, max_slope=np.pi), car)
+    rng = np.random.default_rng(3)
+    for reach in (0.0, 0.005, 0.019, 0.021, 0.3, 4.0):
+        for corner in car.triangles[rng.integers(len(car.triangles), size=12), 0]:
+            point = corner + rng.uniform(-reach, reach, 3)
+            foot, face = surface.closest(point)
+            feet = closest_points(point, surface.triangles)
+            square = ((feet - point) ** 2).sum(axis=1)
+            assert ((foot - point) ** 2).sum() == pytest.approx(square.min(), abs=1e-15)
+            assert (feet[face] == foot).all()
+
+
 def test_the_sensor_is_in_its_own_region(study, found):
     place = search.OwnPlaces(
         study.rig, ROOF, study.vehicle, study.search.mounting, limits=study.limits
@@ -170,5 +202,6 @@ def test_with_the_others_searched_again_nothing_is_lost(study, monkeypatch):
     alone, both = regions[-2:]
     assert both is job.result and both.with_others and not alone.with_others
     assert (both.loss <= alone.loss + 1e-12).all()
-    assert both.area >= alone.area
+    assert (both.upper <= alone.upper + 1e-12).all()
+    assert both.area >= alone.area == both.area_before
     assert {way.unit for way in both.ways} <= {"deg"}  # ways along it are of the others now

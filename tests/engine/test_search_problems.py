@@ -80,8 +80,10 @@ def test_the_page_says_where_another_method_wins_and_ranks_whole_cells_alone():
     assert "*two free*, small budget: CMA-ES 2.200; portfolio 2.300" in page
     assert "On the voxels that were searched: CMA-ES 1.700, portfolio 1.800." in page
     assert "*traffic*, small" not in page
-    assert "| two free | 250 | 2,048 | 2.300 (2.400) | **2.200** (2.900) |" in page
-    assert "1.350 (1.400, 2 of 3)" in page
+    assert (
+        "| two free | 250 | 2,048 | 2.300 (2.400, 3 seeds) | **2.200** (2.900, 3 seeds) |" in page
+    )
+    assert "1.350 (1.400, 2 seeds)" in page
     assert "| mean rank | | | 2.0 of 1 | 1.0 of 1 |" in page
     assert "one after the other): none" in page
     runs[1]["path"] = runs[0]["path"]

@@ -16,17 +16,20 @@ def found(camera: Camera) -> None:
     """The patch on the roof, and in the sidebar how far the sensor may go."""
     stage = camera.stage
     stage.do("bpy.context.preferences.view.ui_scale = 1.15")
-    stage.do(LOOK.format(center=(-0.1, 0.0, 1.15), distance=5.2, rotation=(0.85, 0.0, 2.35)))
+    stage.do(LOOK.format(center=(-0.35, 0.1, 1.35), distance=3.1, rotation=(0.95, 0.0, 2.35)))
     stage.do("""
         settings, objects = window.scene.perception_entropy, bpy.context.view_layer.objects
         settings.score_samples = settings.search_samples = 16384
         settings.view.region_loss = 0.1
+        area.spaces.active.overlay.show_cursor = False
+        area.spaces.active.overlay.show_axis_x = area.spaces.active.overlay.show_axis_y = False
         for name in ("ground", "beams", "reach", "blind", "requirements"):
             setattr(settings.view, f"show_{name}", False)
         for obj in objects:
             obj.select_set(obj.name == "roof_lidar")
         objects.active = objects["roof_lidar"]
     """)
+    stage.do("bpy.ops.pe.score()")
     stage.rest()
     stage.do("""
         region = next(each for each in area.regions if each.type == "WINDOW")

@@ -207,13 +207,19 @@ def counts_in_bands(hits: BoxHits, parts: BodyParts, min_range: float) -> Floats
 
 def first_of_scene(hits: BoxHits, scenes: Ints) -> BoxHits:
     """Return the nearest hit of each beam in each scene; of equal hits that of the lowest box."""
-    scene = scenes[hits.box]
-    order = np.lexsort((hits.box, hits.enter, hits.beam, scene))
-    beam = hits.beam[order]
-    scene = scene[order]
-    first = np.ones(len(order), bool)
-    first[1:] = (beam[1:] != beam[:-1]) | (scene[1:] != scene[:-1])
-    kept = order[first]
+    if not len(hits.box):
+        return hits
+    key = scenes[hits.box].astype(np.int64) * (int(hits.beam.max()) + 1) + hits.beam
+    order = np.argsort(key, kind="stable")
+    first = np.flatnonzero(np.diff(key[order], prepend=-1))
+    group = np.repeat(np.arange(len(first)), np.diff(first, append=len(order)))
+    enter = hits.enter[order]
+    nearest = np.flatnonzero(enter == np.minimum.reduceat(enter, first)[group])
+    group = group[nearest]
+    box = hits.box[order[nearest]]
+    one = np.lexsort((box, group)) if len(box) > len(first) else slice(None)
+    kept = order[nearest[one]]
+    kept = kept[np.diff(group[one], prepend=-1) > 0]
     return BoxHits(hits.box[kept], hits.beam[kept], hits.enter[kept])
 
 

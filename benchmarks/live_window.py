@@ -151,7 +151,8 @@ def install(suite: str, checkout: Path, folder: Path) -> Installed:
     compiled = {"PYTHONDONTWRITEBYTECODE": ""}  # as for who uses it: not anew at each start
     blender = Blender(said_by(finder), compiled).with_resources(folder / "user")
     built = said_by([sys.executable, checkout / "tools" / "build_extension.py"])
-    blender.run("--command", "extension", "install-file", "-r", "user_default", "--enable", built)
+    command = ["extension", "install-file", "-r", "user_default", "--enable", built]
+    blender.run(["--command", *command])
     return Installed(blender)
 
 

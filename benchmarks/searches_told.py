@@ -45,7 +45,8 @@ search_problems.py says what each problem is.
 Constraints: a placement that breaks a rule is not evaluated and counts nothing. CMA-ES draws it
 anew; the others are told a penalty, the worst entropy so far plus the number of broken rules.
 
-A cell has five seeds, or says how many. With fewer than three nothing is best and nothing is ranked.
+A cell has five seeds, or says how many. With fewer than three nothing is best and nothing is
+ranked.
 
 ## The plan of these runs, written before them
 

@@ -138,7 +138,8 @@ def design() -> None:
     tilt = (-5.0, 45.0)
     add_pair("front", LIDAR, (2.2, 0.7, 2.6), ROOF, yaw=(45.0, 0.0, 90.0), pitch=tilt)
     add_pair("rear", LIDAR, (-2.2, 0.7, 2.6), ROOF, yaw=(135.0, 90.0, 180.0), pitch=tilt)
-    add_pair("camera", CAMERA, (-3.0, 0.7, 0.42), BUMPER, yaw=(0.0, -40.0, 40.0), pitch=(-20.0, 30.0))
+    aside = (0.0, -40.0, 40.0)
+    add_pair("camera", CAMERA, (-3.0, 0.7, 0.42), BUMPER, yaw=aside, pitch=(-20.0, 30.0))
     add_requirements()
     settings = bpy.context.scene.perception_entropy
     settings.limit_distance = 0.3

@@ -81,7 +81,8 @@ def install(folder: Path, suite: str) -> Installed:
     folder.mkdir()
     blender = Blender(answer_of("real_blender.py", "--suite", suite)).with_resources(folder)
     archive = answer_of("build_extension.py")
-    blender.run("--command", "extension", "install-file", "-r", "user_default", "--enable", archive)
+    command = ["extension", "install-file", "-r", "user_default", "--enable", archive]
+    blender.run(["--command", *command])
     return Installed(blender)
 
 

@@ -99,6 +99,19 @@ def test_points_of_the_region_lose_at_most_what_is_allowed(study, found):
     assert np.mean(inside <= found.allowed) >= 0.95
 
 
+def test_a_cover_has_places_that_are_free_where_bounds_forbid_most(study):
+    """Of a robotaxi's body 23 of 24 places were forbidden by the LiDAR's bounds."""
+    given = study.rig, ROOF, study.vehicle, study.search.mounting
+    all_over = search.OwnPlaces(*given, limits=study.limits).covered(24)
+    bounds = {"x": (0.2, 1.0), "y": (-0.4, 0.4)}
+    bounded = search.OwnPlaces(*given, limits=study.limits, bounds=bounds).covered(24)
+    free = [each for each in bounded if not each.place.reason]
+    assert len(all_over) <= 24 and 12 <= len(free) <= 24 < len(bounded)
+    for each in free:
+        x, y, _ = each.rig[ROOF].pose.position
+        assert 0.2 <= x <= 1.0 and -0.4 <= y <= 0.4
+
+
 def test_a_sensor_over_a_part_that_is_inside_out_moves_over_the_body_below():
     """The roof's pod of a shipped shuttle looks down: no place was on it, nor a start."""
     car = shapes.box_car(times=3)

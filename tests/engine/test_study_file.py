@@ -41,6 +41,8 @@ IN_ANOTHER_FORM = {"prior.boxes", "prior.grid", "prior.origin", "prior.space"}
 """Keys of a prior that others exclude."""
 PINHOLE = {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 90.0}
 PARTNERS = {
+    "area": ["parts"],
+    "preset": ["shape"],
     "aspect_deg": ["dbsm"],
     "bandwidth_mhz": ["range_resolution_m"],
     "class": ["classes"],

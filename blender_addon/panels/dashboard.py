@@ -179,7 +179,7 @@ class RowWidths(NamedTuple):
         gap = LABEL_PX * scale
         wanted = wanted if has_room else min(least, max(room - value - gap, gap))
         name = max(text_px(each.name, size) for each in rows) + gap
-        has_locks = name <= room - value - wanted
+        has_locks = name <= room - value - least  # also while figures change: rows stay in place
         room = room if has_locks else whole
         name = min(name, max(room - value - wanted, gap))
         return cls(

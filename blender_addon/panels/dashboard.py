@@ -188,7 +188,7 @@ class RowWidths(NamedTuple):
             wanted=wanted,
             has_room=has_room,
             has_locks=has_locks,
-            text_room=max(name - gap, 0.0),
+            text_room=name if has_locks else max(name - gap, 0.0),
         )
 
 

@@ -31,7 +31,7 @@ from .layout import columns, draw_sentence, room_px, shortened_to, text_px
 MET_ICONS = {True: "COLORSET_03_VEC", False: "ERROR"}
 """Blender's own green, and its orange triangle."""
 NAME_SHARE = 0.39
-BESIDE_ROW_PX = 62
+BESIDE_ROW_PX = 48
 LOCK_PX = 20
 WANTED_PX = 58
 BUTTON_PX = 26

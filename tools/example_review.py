@@ -21,6 +21,8 @@ if str(ROOT) not in sys.path:  # run as a script
 
 from tests.review.browser import opened, started  # noqa: E402
 
+FEW_COLORS = ("-colors", "128", "-define", "png:compression-level=9")
+"""Options of ImageMagick: beams of all shades do not compress."""
 EXAMPLE = Path("blend_assets/examples/four_corners")
 PAGE = ROOT / "docs" / "reviews" / "four_corners.html"
 PICTURE = ROOT / "docs" / "images" / "four_corners_review.png"
@@ -39,6 +41,7 @@ def photograph() -> None:
     """Write a screenshot of the page's 3-D view in Chromium."""
     with started() as browser, opened(browser, PAGE, (1280, 900)) as (page, _):
         page.locator(".v3-stage").screenshot(path=PICTURE)
+    subprocess.run(["convert", PICTURE, *FEW_COLORS, f"PNG8:{PICTURE}"], check=True)
 
 
 def main(arguments: list[str]) -> int:

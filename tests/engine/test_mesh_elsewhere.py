@@ -2,6 +2,7 @@
 
 import re
 import sys
+from importlib import metadata
 from importlib.metadata import EntryPoint
 
 import numpy as np
@@ -51,9 +52,9 @@ def install(monkeypatch, value):
     points = [EntryPoint("mesh.dae", value, plugins.GROUP)]
     monkeypatch.delitem(plugins.SHIPPED, "mesh.dae")
     monkeypatch.setattr(
-        plugins,
+        metadata,
         "entry_points",
-        lambda group, name: points if (group, name) == (plugins.GROUP, "mesh.dae") else [],
+        lambda group, name="": points if (group, name) == (plugins.GROUP, "mesh.dae") else [],
     )
 
 

@@ -117,7 +117,7 @@ def test_a_plugin_s_verbs_that_fail_leave_the_others(monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, __name__, sys.modules[box.__module__])
     values = ("no_such_library_at_all:add", f"{__name__}:finds_nothing", "os:no_such_name")
     points = [EntryPoint("verb.odd", value, plugins.GROUP) for value in values]
-    monkeypatch.setattr(plugins, "entry_points", lambda group: points)
+    monkeypatch.setattr(metadata, "entry_points", lambda group: points)
     assert verbs.main(["sensors", "Pandar64"]) == 0
     out, err = capsys.readouterr()
     assert out.startswith("Pandar64")

@@ -2,6 +2,7 @@
 
 import re
 import sys
+from contextlib import suppress
 from importlib import metadata
 from importlib.metadata import EntryPoint
 
@@ -117,10 +118,11 @@ def test_a_plugin_s_verbs_that_fail_leave_the_others(monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, __name__, sys.modules[box.__module__])
     values = ("no_such_library_at_all:add", f"{__name__}:finds_nothing", "os:no_such_name")
     points = [EntryPoint("verb.odd", value, plugins.GROUP) for value in values]
-    monkeypatch.setattr(metadata, "entry_points", lambda group: points)
-    assert verbs.main(["sensors", "Pandar64"]) == 0
+    monkeypatch.setattr(metadata, "entry_points", lambda group, name="": [] if name else points)
+    with suppress(SystemExit):
+        verbs.main(["--help"])
     out, err = capsys.readouterr()
-    assert out.startswith("Pandar64")
+    assert "sensors" in out
     lines = err.splitlines()
     assert len(lines) == 3 and all(line.startswith("pe: plugin 'odd' of ") for line in lines)
     assert all(line.endswith("its verbs are missing") for line in lines)

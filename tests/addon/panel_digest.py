@@ -1,10 +1,11 @@
 """A digest of what the panels show: pictures of another one are older than the panel.
 
-``python -m tests.addon.panel_digest`` writes it beside the pictures.
+``python -m tests.addon.panel_digest`` writes it beside the pictures; with ``--print`` it says it.
 """
 
 import hashlib
 import os
+import sys
 from pathlib import Path
 
 import bpy
@@ -41,12 +42,16 @@ def scene_of_digest():
 
 
 def main() -> None:
-    """Write the digest of this checkout's panels."""
+    """Write or print the digest of this checkout's panels: in a Blender that has done nothing."""
     import blender_addon
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
     blender_addon.register()
-    KEPT.write_text(f"{digest(scene_of_digest())}\n")
+    found = digest(scene_of_digest())
+    if "--print" in sys.argv:
+        print(found, flush=True)
+    else:
+        KEPT.write_text(f"{found}\n")
     os._exit(0)  # at its own exit, bpy may wait for a thread for ever
 
 

@@ -1,6 +1,7 @@
 """Faces of packages whose names are loaded when one is first asked for: a command starts with what
 it needs. Python 3.15 has ``lazy from`` for the same (PEP 810)."""
 
+import _imp
 import builtins
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -67,7 +68,6 @@ def lazy_face(package: str) -> Iterator[None]:
     """
     face = sys.modules[package]
     variables = vars(face)
-    load = builtins.__import__
 
     def note(
         name: str,
@@ -80,11 +80,14 @@ def lazy_face(package: str) -> Iterator[None]:
             return _Noted("." * level + name)
         return load(name, importer, scope, names, level)  # of another thread
 
+    _imp.acquire_lock()  # one thread at a time: two would put back each other's `note`
+    load = builtins.__import__
     builtins.__import__ = note  # type: ignore[assignment]
     try:
         yield
     finally:
         builtins.__import__ = load
+        _imp.release_lock()
     origins = {name: value for name, value in variables.items() if isinstance(value, _FaceName)}
     for name in origins:
         del variables[name]

@@ -91,17 +91,9 @@ from .version import __version__
 
 __all__ = ["METHODS", "ApCurve", "BeamField", "BlindGround", "BoxReport", "Boxes", "BrownConrady"]
 __all__ += ["Camera", "Choice", "Conditions", "Constraints", "DataSheet", "Edge", "Evaluator"]
-__all__ += [
-    "FTheta",
-    "Focus",
-    "Front",
-    "Goals",
-    "GroundMap",
-    "GroundSight",
-    "Housing",
-    "InputError",
-]
-__all__ += ["KannalaBrandt", "Lidar", "Limit", "Limits", "Mesh", "MeshAxes", "Method", "Motion"]
+__all__ += ["FTheta", "Focus", "Front", "Goals", "GroundMap", "GroundSight", "Housing"]
+__all__ += ["InputError", "KannalaBrandt", "Lidar", "Limit", "Limits", "Mesh", "MeshAxes"]
+__all__ += ["Method", "Motion"]
 __all__ += ["MountArea", "Mounting", "MountingGrid", "NoGo", "ObjectClass", "ObjectEvaluator"]
 __all__ += ["ObjectScore", "Objective", "Objects", "Option", "PartScore", "PerceptionModel"]
 __all__ += ["PerceptionSpace"]

@@ -5,7 +5,7 @@ What is imported here is what other modules of the add-on take from it.
 
 from .apply_variant import apply_records, shown_collection
 from .conditions import as_drawn, conditions_of, read_states, shown_motions, shown_state, with_drawn
-from .edges import EDGE_DECIMALS, add_edge, edge_objects, edges_of
+from .edges import add_edge, edge_objects, edges_of
 from .fingerprint import Fingerprint, fingerprint
 from .limits import NONE, keep_property, limit_of, limit_property, limits_of, put_limit
 from .loading import load_into, write_mount

@@ -54,19 +54,19 @@ def apply_records(scene: Scene, records: Sequence[SensorRecord]) -> dict[str, st
     return {name: obj.name for name, obj in objects.items()}
 
 
-def sensors_collection(scene: Scene) -> Collection:
-    """Return the scene's collection of sensors; create it if it does not exist."""
+def own_collection(scene: Scene, name: str) -> Collection:
+    """Return the scene's collection of a name; create it if it does not exist."""
     for child in scene.collection.children_recursive:
-        if child.name.partition(".")[0] == SENSORS:  # of a second scene: "Sensors.001"
+        if child.name.partition(".")[0] == name:  # of a second scene: "Sensors.001"
             return child
-    made = bpy.data.collections.new(SENSORS)
+    made = bpy.data.collections.new(name)
     scene.collection.children.link(made)
     return made
 
 
 def shown_collection(scene: Scene) -> Collection:
     """Return the collection of sensors, or the scene's root collection if it is excluded."""
-    wanted = sensors_collection(scene)
+    wanted = own_collection(scene, SENSORS)
     waiting = [view_layer_of(scene).layer_collection]
     while waiting:
         layer = waiting.pop()

@@ -4,14 +4,13 @@ from collections.abc import Iterator, Sequence
 
 import bpy
 import numpy as np
-from bpy.types import Collection, Depsgraph, Object, Scene
+from bpy.types import Depsgraph, Object, Scene
 
-from ..engine import pe
+from ..engine import pe, search
+from .apply_variant import own_collection
 from .vehicle import placed_points
 
 NAMED_EDGES = "Named Edges"
-EDGE_DECIMALS = 5
-"""A mesh in single precision holds a point exactly to 0.01 mm."""
 
 
 def edge_objects(scene: Scene) -> list[Object]:
@@ -32,20 +31,18 @@ def edges_of(scene: Scene, depsgraph: Depsgraph) -> tuple[pe.Edge, ...]:
         raise error.within("scene") from None
 
 
-def add_edge(scene: Scene, name: str, points: Sequence[Sequence[float]]) -> Object:
-    """Add an edge of points in the ground frame [m] to a scene: a line that is drawn in front of
-    the vehicle and not rendered."""
-    along = int(np.argmax(np.ptp(np.array(points), axis=0)))
-    ordered = sorted(map(tuple, points), key=lambda point: point[along])
-    mesh = bpy.data.meshes.new(name)
+def add_edge(scene: Scene, edge: pe.Edge) -> Object:
+    """Add an edge to a scene: a line that is drawn in front of the vehicle and not rendered."""
+    ordered = sorted(edge.points, key=lambda point: point[edge.along])
+    mesh = bpy.data.meshes.new(edge.name)
     mesh.from_pydata(ordered, [(k, k + 1) for k in range(len(ordered) - 1)], [])
-    obj = bpy.data.objects.new(name, mesh)
+    obj = bpy.data.objects.new(edge.name, mesh)
     obj.display_type = "WIRE"
     obj.show_in_front = True
     obj.show_name = True
     obj.hide_render = True
-    obj.perception_entropy.edge_name = name
-    _collection(scene).objects.link(obj)
+    obj.perception_entropy.edge_name = edge.name
+    own_collection(scene, NAMED_EDGES).objects.link(obj)
     return obj
 
 
@@ -59,7 +56,7 @@ def write_edges(scene: Scene, edges: Sequence[pe.Edge]) -> None:
         else:
             obj.perception_entropy.edge_name = ""
     for edge in edges:
-        add_edge(scene, edge.name, edge.points)
+        add_edge(scene, edge)
 
 
 def _edge(obj: Object, depsgraph: Depsgraph) -> pe.Edge:
@@ -78,14 +75,4 @@ def _points(obj: Object, depsgraph: Depsgraph) -> Iterator[np.ndarray]:
         matrix = np.array(evaluated.matrix_world, dtype=float)
         placed = placed_points(local.reshape(-1, 3).astype(float), matrix)
         evaluated.to_mesh_clear()
-        yield np.round(placed, EDGE_DECIMALS) + 0.0
-
-
-def _collection(scene: Scene) -> Collection:
-    """Return the collection of edges; create it if it does not exist."""
-    for child in scene.collection.children:
-        if child.name.partition(".")[0] == NAMED_EDGES:
-            return child
-    made = bpy.data.collections.new(NAMED_EDGES)
-    scene.collection.children.link(made)
-    return made
+        yield np.round(placed, search.POSITION_DECIMALS) + 0.0

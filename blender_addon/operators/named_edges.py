@@ -5,7 +5,7 @@ import numpy as np
 from bpy.props import StringProperty
 
 from .. import bridge, signals
-from ..engine import pe
+from ..engine import pe, search
 from .declared import Refused, operator
 
 POINTS = 2
@@ -37,8 +37,8 @@ def name_edge(context: bpy.types.Context, name: str) -> str:
     points = _selected_points(context)
     if len(points) < POINTS:
         raise Refused(f"Select {POINTS} vertices or more first")
-    edge = pe.Edge(name, np.round(points, bridge.EDGE_DECIMALS).tolist())
-    bridge.add_edge(scene, edge.name, edge.points)
+    edge = pe.Edge(name, np.round(points, search.POSITION_DECIMALS).tolist())
+    bridge.add_edge(scene, edge)
     return f"Edge {name!r} of {len(edge.points)} vertices"
 
 

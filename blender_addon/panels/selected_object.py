@@ -4,6 +4,7 @@ from bpy.types import Context, Object, PropertyGroup, UILayout
 
 from .. import where_map
 from ..bridge import holder_of, in_surroundings
+from ..engine import search
 from ..operators import shown_way
 from ..panel_text import draw_label, is_simple, worded
 from ..properties import AXIS_LABELS, measured_distances
@@ -93,7 +94,7 @@ def draw_distances(layout: UILayout, obj: Object) -> None:
     settings = obj.perception_entropy
     known = measured_distances(settings)
     column = layout.column(align=True)
-    for index, axis in enumerate("xyz"):
+    for index, axis in enumerate(search.POSITION_AXES):
         row = column.split(factor=EDGE_SHARE, align=True)
         row.prop(settings, f"edge_{axis}", text=POSITION_LABELS[index], translate=False)
         cell = row.row(align=True)

@@ -27,9 +27,6 @@ BOUNDS = ("bounds",)
 COLOR = ("color",)
 EDGES = ("measured_from",)
 EDGE_ABOUT = "Edge of the vehicle from which this coordinate is told; empty: the ground frame"
-POSITION_DECIMALS = 5
-HALF_STEP_M = 5e-6
-"""Of positions, which are in steps of 0.01 mm."""
 CURVE = ("ap",)
 REACH_M = 0.5
 REACH_DEG = 10.0
@@ -122,8 +119,8 @@ def _set_distances(settings: PropertyGroup, values: Sequence[float]) -> None:
     for index, axis in enumerate(search.POSITION_AXES):
         if (own := known.get(axis)) is None:
             continue
-        typed = round(values[index], POSITION_DECIMALS)
-        is_changed = abs(typed - abs(own.offset)) > HALF_STEP_M
+        typed = round(values[index], search.POSITION_DECIMALS)
+        is_changed = abs(typed - abs(own.offset)) > search.ROUNDING_M
         offset = math.copysign(1.0, own.offset) * typed if is_changed else own.offset
         wanted[index] = replace(own, offset=offset)
     position = edge_cache.edges(bpy.context.scene).position(wanted)

@@ -34,17 +34,8 @@ from .templates import templates as templates
 
 __all__ = ["OTHER_LABELS", "OWN", "Entry", "KnownRig", "KnownSensor", "RigTemplate", "add"]
 __all__ += ["add_file", "added", "data_sheet", "entries", "entry_of", "from_table", "housing"]
-__all__ += [
-    "known_rig",
-    "known_rigs",
-    "load",
-    "matching",
-    "names",
-    "remove",
-    "replace_added",
-    "rig_named",
-]
-__all__ += ["rig_on", "scan_above_base", "sensors_on", "templates", "to_table"]
+__all__ += ["known_rig", "known_rigs", "load", "matching", "names", "remove", "replace_added"]
+__all__ += ["rig_named", "rig_on", "scan_above_base", "sensors_on", "templates", "to_table"]
 
 PAPER_FILE = "paper.toml"  # File with the paper's sensors, which come first in lists
 OWN = "own"  # Replaces the file name for presets that a program has added

@@ -29,7 +29,7 @@ SHAPES = ("cylinder", "box")
 SEAT_M = 0.003
 """An overlap with the body up to this depth is a seat: a gasket, or a roof that is not flat."""
 NEAR = Number(-10.0, 10.0, unit="m")
-POSITION_AXES = "xyz"
+POSITION_AXES = ("x", "y", "z")
 
 
 class SensorModel(ShortRepr):

@@ -9,6 +9,8 @@ with lazy_face(__name__):
     from .domains import (
         AXES,
         POSITION_AXES,
+        POSITION_DECIMALS,
+        ROUNDING_M,
         MountSurface,
         pose_from_values,
         pose_values,

@@ -15,13 +15,13 @@ from ..base.arrays import Flags, Floats, Ints
 from ..base.errors import InputError, one_of, shown
 from ..geometry.poses import Pose, cross, dot, rotate, rotation_matrix, rpy_from_matrix
 from ..geometry.ray_traversal import TriangleTree
+from ..scene.rig import POSITION_AXES as POSITION_AXES
 from ..scene.rig import Housing, Sensor
 from ..scene.vehicle import Vehicle, closest_points, open_shares
 from .mounts import UPRIGHT, AnyMount, SlotMount, SurfaceMount
 
-AXES = ("x", "y", "z", "roll", "pitch", "yaw")
-POSITION_AXES = AXES[:3]
-TURNS = AXES[3:]
+TURNS = ("roll", "pitch", "yaw")
+AXES = (*POSITION_AXES, *TURNS)
 POSITION_DECIMALS = 5
 ANGLE_DECIMALS_DEG = 4
 """Placements are rounded to 0.01 mm and 0.0001 deg, so that a file, or Blender's single precision,

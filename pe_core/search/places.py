@@ -153,18 +153,17 @@ class MountingPlaces:
 
     def _angles(self, x: float, y: float, z: float) -> tuple[float, float]:
         """Return pitch and yaw of a sensor at a place [m], in whole degrees [rad]."""
-        looks = self._turned or (self._tilted and self._look_at is not None)
-        if not looks:
-            return 0.0, 0.0
-        if self._look_at is None:
-            return 0.0, outward_yaw(x - self._middle[0], y - self._middle[1])
+        if self._look_at is None or not (self._turned or self._tilted):
+            outward = outward_yaw(x - self._middle[0], y - self._middle[1])
+            return 0.0, outward if self._turned else 0.0
         away = self._look_at[0] - x, self._look_at[1] - y
         down = math.degrees(math.atan2(z - self._look_at[2], math.hypot(*away)))
         if self._turned:
             return math.radians(round(down)), outward_yaw(*away)
-        tilt = min(down - math.degrees(self._lowest_ray) + SPARE_DEG, MAX_TILT_DEG)
-        if tilt <= SPARE_DEG:
+        unseen = down - math.degrees(self._lowest_ray)
+        if unseen <= 0.0:
             return 0.0, 0.0
+        tilt = min(unseen + SPARE_DEG, MAX_TILT_DEG)
         return math.radians(math.ceil(tilt)), outward_yaw(*away)
 
     def with_sensor(self, pose: Pose) -> Rig:

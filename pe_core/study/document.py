@@ -19,7 +19,7 @@ from ..metric.frames import Frames
 from ..motion import Confirmation, Story
 from ..prior.prior import Prior
 from ..scene.mesh import MeshAxes, require_vehicle_size
-from ..scene.rig import Rig, Sensor
+from ..scene.rig import POSITION_AXES, Rig, Sensor
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_description import Reference
 from ..scene.vehicle_state import State
@@ -32,7 +32,6 @@ from .conditions import Conditions
 from .file_names import MESH
 from .scoring_file import FusionTable, ModelFile
 from .study import Search, Study
-from .vehicle_edges import AXES as POSITION_AXES
 from .vehicle_edges import POSITION, Distance, Edge, MetresOrDistance, VehicleEdges, checked_edges
 
 Range = tuple[float, float]

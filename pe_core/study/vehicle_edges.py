@@ -2,7 +2,7 @@
 
 A designer writes ``"0.35 m behind windshield top"`` in place of x. Distances run along the axes of
 the ground frame, as dimensions in a drawing do: that to an edge across the vehicle is measured at
-the sensor's own y. Beyond the ends of an edge its end counts.
+the sensor's own y. Beyond the ends of an edge its end counts. All are rounded as placements are.
 
 Three kinds of edges: the vehicle's outer planes, its axles, its centre line and the ground; the
 outline of each part of its mesh, ``PART SIDE``; and edges that a study states by points.
@@ -25,12 +25,12 @@ from ..base.setting import Named
 from ..base.values import A_NAME, listed, vector
 from ..geometry.poses import METRES
 from ..geometry.surfaces import section
+from ..scene.rig import POSITION_AXES
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_description import Reference
 from ..scoring.requirements import VehiclePlanes
+from ..search import POSITION_DECIMALS
 
-AXES = "xyz"
-DECIMALS = 5  # Edges, distances and positions from them are in steps of 0.01 mm, as placements are
 RECENT = 64  # Sections of parts that are kept: a sensor that is dragged asks for three a move
 ROUNDS = 100  # How often the coordinates of a position that depend on each other are computed
 WAYS = {"x": ("ahead of", "behind"), "y": ("left of", "right of"), "z": ("above", "below")}
@@ -142,7 +142,7 @@ class Distance:
     @property
     def text(self) -> str:
         """The distance as it is written: "0.35 m behind windshield top"."""
-        number = f"{abs(self.offset):.{DECIMALS}f}".rstrip("0").rstrip(".")
+        number = f"{abs(self.offset):.{POSITION_DECIMALS}f}".rstrip("0").rstrip(".")
         return f"{number} m {self.way} {self.edge}"
 
     @classmethod
@@ -153,7 +153,7 @@ class Distance:
         if match is None or match[3] not in ways:
             expected = f"metres, or a distance from an edge ({EXAMPLE}): {' or '.join(ways)}"
             raise InputError(source, field, expected, shown(text))
-        length = round(float(match[1]) * UNITS[match[2] or "m"], DECIMALS)
+        length = round(float(match[1]) * UNITS[match[2] or "m"], POSITION_DECIMALS)
         METRES.checked(source, field, length)
         return cls(axis, -length if match[3] == ways[1] else length, match[4].strip())
 
@@ -168,11 +168,11 @@ class PositionRule:
 
     def checked(self, source: str, field: str, value: Any) -> tuple[MetresOrDistance, ...]:
         """Return the coordinates, or raise `InputError`."""
-        items = listed(value, len(AXES))
-        if items is None or len(items) != len(AXES):
+        items = listed(value, len(POSITION_AXES))
+        if items is None or len(items) != len(POSITION_AXES):
             raise InputError(source, field, "three coordinates", shown(value))
         found: list[MetresOrDistance] = []
-        for number, (axis, each) in enumerate(zip(AXES, items, strict=True)):
+        for number, (axis, each) in enumerate(zip(POSITION_AXES, items, strict=True)):
             path = f"{field}[{number}]"
             if isinstance(each, str):
                 found.append(Distance.parsed(axis, each, source, path))
@@ -186,7 +186,7 @@ class PositionRule:
         about = f"A distance from an edge of the vehicle: {EXAMPLE}"
         text = {"type": "string", "description": about}
         item = {"anyOf": [of_rule(METRES), text]}
-        count = len(AXES)
+        count = len(POSITION_AXES)
         return {"type": "array", "items": item, "minItems": count, "maxItems": count}
 
 
@@ -216,7 +216,7 @@ class VehicleEdges:
 
     def names(self, axis: str) -> tuple[str, ...]:
         """Return the names of the edges from which an axis, "x", "y" or "z", is measured."""
-        own = (e.name for e in self._own.values() if AXES[e.along] != axis)
+        own = (e.name for e in self._own.values() if POSITION_AXES[e.along] != axis)
         parts = () if self._vehicle is None else self._vehicle.part_names
         of_parts = (f"{part} {side}" for part in parts for side in SIDES_OF[axis])
         others = (name for name in of_parts if name not in self._own)
@@ -238,23 +238,23 @@ class VehicleEdges:
         """
         if name not in self.names(axis):
             raise InputError("edges", axis, one_of(self.names(axis), name), shown(name))
-        number = AXES.index(axis)
+        number = POSITION_AXES.index(axis)
         if name in (CENTER_LINE, GROUND):
             return 0.0
         if name in self._own:
-            return round(self._own[name].at(number, position), DECIMALS) + 0.0
+            return round(self._own[name].at(number, position), POSITION_DECIMALS) + 0.0
         if self._vehicle is None:
             raise InputError("edges", axis, "a vehicle, for its edges", "none")
         if name == TOP:
-            return round(float(self._vehicle.bounds[1][2]), DECIMALS)
+            return round(float(self._vehicle.bounds[1][2]), POSITION_DECIMALS)
         if name in PLANES[axis]:
             return self._plane(axis, PLANES[axis][name])
         return self._side(name, number, position)
 
     def distance(self, name: str, axis: str, position: Sequence[float]) -> Distance:
         """Return how far a position (3,) is from an edge along an axis; `InputError` as of `at`."""
-        offset = position[AXES.index(axis)] - self.at(name, axis, position)
-        return Distance(axis, round(offset, DECIMALS) + 0.0, name)
+        offset = position[POSITION_AXES.index(axis)] - self.at(name, axis, position)
+        return Distance(axis, round(offset, POSITION_DECIMALS) + 0.0, name)
 
     def position(self, coordinates: Sequence[MetresOrDistance]) -> tuple[float, float, float]:
         """Return the position [m] of three coordinates.
@@ -268,7 +268,7 @@ class VehicleEdges:
             for number, each in enumerate(coordinates):
                 if isinstance(each, Distance):
                     at = self.at(each.edge, each.axis, position) + each.offset
-                    position[number] = round(at, DECIMALS) + 0.0
+                    position[number] = round(at, POSITION_DECIMALS) + 0.0
             if position == before:
                 x, y, z = position
                 return x, y, z
@@ -284,7 +284,7 @@ class VehicleEdges:
         for axes in KEPT:
             names = {axis: name for axis, name in measured_from.items() if axis in axes}
             found = {each.axis: each for each in self.distances(plain, names)}
-            pairs = zip(AXES, plain, strict=True)
+            pairs = zip(POSITION_AXES, plain, strict=True)
             written = tuple(found.get(axis, metres) for axis, metres in pairs)
             with suppress(InputError):
                 if self.position(written) == plain:
@@ -311,7 +311,7 @@ class VehicleEdges:
         known = self._planes.along if axis == "x" else self._planes.across
         if plane not in known:
             raise InputError("edges", axis, self._planes.missing[plane], "none")
-        return round(known[plane], DECIMALS) + 0.0
+        return round(known[plane], POSITION_DECIMALS) + 0.0
 
     def _side(self, name: str, axis: int, position: Sequence[float]) -> float:
         """Return a coordinate of the outermost point of a part on one side, in the section through
@@ -322,9 +322,9 @@ class VehicleEdges:
         at = position[across]
 
         def outermost() -> float:
-            points = section(self._triangles(part, AXES[axis]), across, at)
+            points = section(self._triangles(part, POSITION_AXES[axis]), across, at)
             point = points[int(np.argmax(sign * points[:, of_side]))]
-            return round(float(point[axis]), DECIMALS) + 0.0
+            return round(float(point[axis]), POSITION_DECIMALS) + 0.0
 
         return self._sides.made((name, axis, at), outermost)
 

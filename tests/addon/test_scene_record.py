@@ -146,7 +146,7 @@ def rich(car):
     scenes.add_mount(car, "slots", kind="SLOTS", slots=rack)
     roof = bpy.data.objects["roof"]
     roof.location.y = 0.4
-    bridge.add_edge(car, "seam", [(0.7, -0.8, 1.5), (0.7, 0.8, 1.5)])
+    bridge.add_edge(car, pe.Edge("seam", [(0.7, -0.8, 1.5), (0.7, 0.8, 1.5)]))
     roof.perception_entropy.edge_x = "seam"
     bpy.context.view_layer.update()
     assert bpy.ops.pe.mount_sensor(name="roof", mount="painted") == {"FINISHED"}

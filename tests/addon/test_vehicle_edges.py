@@ -98,7 +98,7 @@ def test_nothing_that_is_no_edge_is_named(car):
 
 
 def test_a_scene_and_its_study_file_tell_the_same_edges_and_bits(roof, car, tmp_path):
-    bridge.add_edge(car, "seam", [(0.1, -1.0, 1.2), (0.3, 1.0, 1.2)])
+    bridge.add_edge(car, pe.Edge("seam", [(0.1, -1.0, 1.2), (0.3, 1.0, 1.2)]))
     bpy.context.view_layer.update()
     roof.edge_x = "seam"
     roof.edge_distances = (0.45, 0.07, 0.0)

@@ -11,7 +11,7 @@ from ..properties import AXIS_LABELS, measured_distances
 from ..sensor_kinds import has_view
 from .layout import draw_declared, draw_sentence, panel, section
 
-EDGE_SHARE = 0.55  # Room for an edge's name beside the distance from it
+EDGE_SHARE = 0.5  # Room for an edge's name beside the distance from it
 POSITION_LABELS = ("X", "Y", "Height")
 """Height is z of the optical centre over the ground."""
 
@@ -96,7 +96,7 @@ def draw_distances(layout: UILayout, obj: Object) -> None:
     column = layout.column(align=True)
     for index, axis in enumerate(search.POSITION_AXES):
         row = column.split(factor=EDGE_SHARE, align=True)
-        row.prop(settings, f"edge_{axis}", text=POSITION_LABELS[index], translate=False)
+        row.prop(settings, f"edge_{axis}", text="")
         cell = row.row(align=True)
         if axis in known:
             cell.enabled = not (holder_of(obj) or any(obj.lock_location))
@@ -104,6 +104,8 @@ def draw_distances(layout: UILayout, obj: Object) -> None:
             cell.prop(settings, "edge_distances", index=index, text=text, translate=False)
         elif getattr(settings, f"edge_{axis}"):
             draw_label(cell, "No such edge", "ERROR")
+        else:
+            draw_label(cell, POSITION_LABELS[index])
 
 
 def draw_region(layout: UILayout, context: Context, obj: Object) -> None:

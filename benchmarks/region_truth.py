@@ -16,8 +16,8 @@ import numpy as np
 from pe_core.scoring import paired_error
 from pe_core.search import OwnPlaces
 from pe_core.study import Study, load_study
-from pe_tools.advice import FreeRegion, places_of
-from pe_tools.jobs import RegionJob
+from pe_tools.advice import FreeRegion
+from pe_tools.jobs import RegionJob, region_places
 
 OTHER_SHIFT = (0.21, 0.83, 0.47)
 """Of voxels that neither a search nor a region was made of."""
@@ -116,7 +116,7 @@ def main() -> None:
     study = load_study(args.study)
     found = region_of(study, args.sensor, args.loss, args.places)
     print(f"{found.area:.3f} of {found.mount_area:.3f} m2; {found.extent}")
-    places = places_of(study, args.sensor)
+    places = region_places(study, args.sensor)
     rng = np.random.default_rng(0)
     for name, points in (
         ("inside", inside(found, args.points, rng)),

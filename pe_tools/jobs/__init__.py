@@ -12,7 +12,7 @@ with lazy_face(__name__):
     from .front_job import FrontJob, FrontJournals, has_front
     from .job import HistoryRow, Job, Outcome, Progress, StartEnd, StudyEvaluators, best_so_far
     from .optimize_job import OptimizeJob
-    from .region_job import RegionJob, region_mount, study_on_region
+    from .region_job import RegionJob, region_mount, region_places, study_on_region
     from .result_record import FrontRecord, OpenTable, PlacedSensors, ResultRecord, placements
     from .results import SearchState, add_to_result, condition_lines
     from .results import result_dict, result_names, run_record, score_facts, stored_result

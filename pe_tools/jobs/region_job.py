@@ -83,6 +83,19 @@ BY_LIMIT = "a requirement or a limit"
 LOSS = Number(0.0, above=True)
 
 
+def region_places(study: Study, sensor: str) -> OwnPlaces:
+    """Return the places of which a free region is a part: on the mount of a sensor, else over the
+    body."""
+    return OwnPlaces(
+        study.rig,
+        sensor,
+        study.vehicle,
+        study.search.mounting,
+        limits=study.limits,
+        bounds=study.search.limits.get(sensor),
+    )
+
+
 class RegionJob(Job):
     """Finds the free region of a sensor (`FreeRegion`). `InputError` when there is no such figure
     or sensor; once it runs, as `OwnPlaces`.
@@ -141,14 +154,7 @@ class RegionJob(Job):
         yield self._waiting
         study = self.study
         held, not_held = held_now(study)
-        self._places = OwnPlaces(
-            study.rig,
-            self.sensor,
-            study.vehicle,
-            study.search.mounting,
-            limits=held.limits,
-            bounds=study.search.limits.get(self.sensor),
-        )
+        self._places = region_places(held, self.sensor)
         self._not_held = (*not_held, *self._places.broken)
         self._mount = MountCorners.of(self._places)
         constraints = constraints_of(held)

@@ -13,14 +13,14 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 import blender_addon  # noqa: E402
-from blender_addon import bridge  # noqa: E402
+from blender_addon import document  # noqa: E402
 from pe_tools.formats import Mesh, write_mesh  # noqa: E402
 
 
 def mesh_of_scene() -> Mesh:
     """The vehicle of the open file; the add-on must be registered."""
     collection = bpy.context.scene.perception_entropy.vehicle
-    vehicle = bridge.vehicle_from_collection(collection, bpy.context.evaluated_depsgraph_get())
+    vehicle = document.vehicle_from_collection(collection, bpy.context.evaluated_depsgraph_get())
     return Mesh(vehicle.triangles, vehicle.parts, tuple(vehicle.part_names))
 
 

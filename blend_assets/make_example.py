@@ -21,7 +21,7 @@ from blend_file import save  # noqa: E402
 from export_mesh import mesh_of_scene  # noqa: E402
 
 import blender_addon  # noqa: E402
-from blender_addon import bridge  # noqa: E402
+from blender_addon import document  # noqa: E402
 from blender_addon.engine import formats, pe  # noqa: E402
 
 FOLDER = HERE.parent / "examples"
@@ -48,7 +48,7 @@ def open_vehicle(name: str) -> None:
         bpy.context.view_layer.update()  # else the wheels are still at the origin
         return
     bpy.ops.wm.open_mainfile(filepath=str(HERE / source))
-    for obj in bridge.sensor_objects(bpy.context.scene):
+    for obj in document.sensor_objects(bpy.context.scene):
         bpy.data.objects.remove(obj)
 
 
@@ -61,7 +61,7 @@ def write_vehicle(name: str) -> None:
 def write_blend(name: str) -> None:
     """Write the scene of what was decided: the same problem as its study."""
     study = pe.load_study(FOLDER / name / DECIDED)
-    lost = bridge.load_into(bpy.context.scene, study)
+    lost = document.load_into(bpy.context.scene, study)
     if lost:
         raise SystemExit(f"{name}: the scene cannot hold {', '.join(lost)}")
     save(FOLDER / name / f"{name}.blend")

@@ -23,7 +23,7 @@ sys.path[:0] = [str(HERE.parent), str(HERE)]
 from blend_file import save  # noqa: E402
 
 import blender_addon  # noqa: E402
-from blender_addon import bridge  # noqa: E402
+from blender_addon import document  # noqa: E402
 from blender_addon.engine import formats, pe  # noqa: E402
 
 FOLDER = HERE / "examples" / "four_corners"
@@ -129,7 +129,7 @@ def add_requirements() -> None:
 
 def design() -> None:
     """Have the bus's scene hold this example."""
-    for obj in bridge.sensor_objects(bpy.context.scene):
+    for obj in document.sensor_objects(bpy.context.scene):
         bpy.data.objects.remove(obj)
     paint("roof", ROOF, at_corner)
     paint("bumper_rear", BUMPER, on_upright_part)
@@ -154,7 +154,7 @@ def design() -> None:
 def write_study() -> None:
     """Write the scene as a study beside the others, its areas in a file of their own."""
     scene = bpy.context.scene
-    study = bridge.study_from_scene(scene, bpy.context.evaluated_depsgraph_get())
+    study = document.study_from_scene(scene, bpy.context.evaluated_depsgraph_get())
     mounts = study.search.mounting.mounts
     areas = [mount.area.triangles for mount in mounts.values()]
     parts = np.repeat(np.arange(len(areas), dtype=np.int32), [len(area) for area in areas])

@@ -8,7 +8,7 @@ import contextlib
 import bpy
 from mathutils import Vector
 
-from . import analysis_calls, bridge, engine_process, sensor_cache, vehicle_cache, viewport
+from . import analysis_calls, document, engine_process, sensor_cache, vehicle_cache, viewport
 from .choices import NO_BODY
 from .engine import advice, graphics, pe, requirements
 
@@ -29,7 +29,7 @@ def standing(scene: bpy.types.Scene) -> dict[str, advice.StandingBody]:
     for obj in scene.objects:
         kind = obj.perception_entropy.body
         if kind in requirements.BODIES and obj.visible_get():
-            x, y, heading = bridge.body_place(obj)
+            x, y, heading = document.body_place(obj)
             place = round(x, PLACE_DIGITS), round(y, PLACE_DIGITS)
             with contextlib.suppress(pe.InputError):  # out of this world
                 heading = round(heading, HEADING_DIGITS)
@@ -41,7 +41,7 @@ def query(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """Ask what the sensors see of the bodies; the answer is delivered when it is there."""
     name = scene.name
     bodies = standing(scene)
-    sensors = bridge.possible_sensors(sensor_cache.sensors(scene), depsgraph) if bodies else []
+    sensors = document.possible_sensors(sensor_cache.sensors(scene), depsgraph) if bodies else []
     if not sensors:
         engine_process.drop(TOPIC)
         _seen.pop(name, None)
@@ -56,7 +56,7 @@ def query(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
         _seen.pop(name, None)
 
     with contextlib.suppress(pe.InputError):
-        model = bridge.document_of(scene.perception_entropy, *bridge.SCORED_PARTS).perception
+        model = document.document_of(scene.perception_entropy, *document.SCORED_PARTS).perception
         given = pe.Rig(sensors), vehicle, tuple(bodies.values()), model
         engine_process.ask(
             TOPIC,
@@ -83,7 +83,7 @@ def labels(scene: bpy.types.Scene, active: bpy.types.Object | None) -> list[grap
             continue
         lines = [f"{each.name}: {each.text}" for each in body.seeing] if obj == active else []
         text = "\n".join([f"{name}: {body.summary}", *lines])
-        x, y, _ = bridge.body_place(obj)
+        x, y, _ = document.body_place(obj)
         top = max((obj.matrix_world @ corner).z for corner in map(Vector, obj.bound_box))
         color = SEEN if body.seeing else UNSEEN
         found.append(graphics.Tag(text, (x, y, top), color, strong=obj == active))

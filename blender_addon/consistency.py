@@ -8,14 +8,14 @@ written.
 
 import bpy
 
-from . import bridge, sensor_cache
+from . import document, sensor_cache
 
 TOLD_S = 8.0  # How long the status bar says so
 
 
 def after_load(*_: object) -> None:
     """After a file was opened: repair it."""
-    bridge.clear_mirrors()
+    document.clear_mirrors()
     repair_scenes()
 
 
@@ -26,15 +26,15 @@ def before_save(*_: object) -> None:
 
 def repair_scenes() -> None:
     """Repair the sensors of all scenes."""
-    bridge.sync_own_sensors()  # undo may have brought others back
+    document.sync_own_sensors()  # undo may have brought others back
     for scene in bpy.data.scenes:
         sensors = sensor_cache.sensors(scene)
-        bridge.assign_colors(scene, sensors)
-        bridge.update_view_cameras(scene, sensors)
+        document.assign_colors(scene, sensors)
+        document.update_view_cameras(scene, sensors)
     if bpy.context.view_layer is not None:  # other scenes are not evaluated
         scene = bpy.context.scene
         depsgraph = bpy.context.evaluated_depsgraph_get()
-        released = bridge.follow_mirrors(scene, depsgraph, sensor_cache.sensors(scene))
+        released = document.follow_mirrors(scene, depsgraph, sensor_cache.sensors(scene))
         if released and not bpy.app.background:
             tell = bpy.data.workspaces[0].status_text_set  # any one: it is shown in all
             tell(f"In the middle of the vehicle, so no longer linked: {', '.join(released)}")
@@ -43,5 +43,5 @@ def repair_scenes() -> None:
 
 def unregister() -> None:
     """Take own sensors out of the catalogue, and drop what is known of mirror images."""
-    bridge.remove_own_sensors()
-    bridge.clear_mirrors()
+    document.remove_own_sensors()
+    document.clear_mirrors()

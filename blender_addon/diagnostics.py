@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import bpy
 
-from . import analysis_calls, bridge, engine_process, sensor_cache, signals, vehicle_cache
+from . import analysis_calls, document, engine_process, sensor_cache, signals, vehicle_cache
 from .engine import advice, geometry, jobs, pe
 
 IDLE_DELAY_S = 1.0  # How long the scene has to be idle until the checks run
@@ -68,15 +68,15 @@ def postpone_checks() -> None:
 def run_checks() -> None:
     """Check the open scene in the background; store the warnings in its settings."""
     scene = bpy.context.scene
-    if not bridge.sensor_objects(scene) and scene.perception_entropy.vehicle is None:
+    if not document.sensor_objects(scene) and scene.perception_entropy.vehicle is None:
         return
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    own = bridge.scene_advice(scene)
+    own = document.scene_advice(scene)
     name = scene.name
     vehicle = vehicle_cache.shared.read(scene, depsgraph).vehicle
-    sensors = bridge.possible_sensors(sensor_cache.sensors(scene), depsgraph)
+    sensors = document.possible_sensors(sensor_cache.sensors(scene), depsgraph)
     try:
-        space = bridge.document_of(scene.perception_entropy, "space").space
+        space = document.document_of(scene.perception_entropy, "space").space
     except pe.InputError:  # a score reports it
         space = pe.PerceptionSpace()
 
@@ -85,7 +85,7 @@ def run_checks() -> None:
             settings = bpy.data.scenes[name].perception_entropy
             found_now = (*own, *warnings)
             kept = warnings_of_result(settings, found_now)
-            bridge.store_warnings(settings, (*found_now, *kept))
+            document.store_warnings(settings, (*found_now, *kept))
             signals.view_changed.emit()
 
     _describe_vehicle(name, vehicle)
@@ -131,14 +131,14 @@ def _explain_stored(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> N
     """Explain the result of a file that was opened, or that undo brought back."""
     settings = scene.perception_entropy
     known = settings.result is None or explanation(scene) is not None
-    if known or settings.result_stale or bridge.shown_state(scene):
+    if known or settings.result_stale or document.shown_state(scene):
         return
     try:
         vehicle = vehicle_cache.shared.read(scene, depsgraph).vehicle
-        study = bridge.study_from_scene(scene, depsgraph, vehicle)
+        study = document.study_from_scene(scene, depsgraph, vehicle)
     except pe.InputError:  # a score reports it
         return
-    outcome = bridge.stored_outcome(scene, study, json.loads(settings.result_json)["after"])
+    outcome = document.stored_outcome(scene, study, json.loads(settings.result_json)["after"])
     if outcome is not None:
         explain_score(scene, outcome, settings.result_signature)
 

@@ -16,7 +16,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from . import bridge
+from . import document
 from .engine import Floats, graphics, motion, pe, text
 
 WEBM = ".webm"
@@ -136,7 +136,7 @@ def film_scene(scene: bpy.types.Scene, study: pe.Study, story: motion.Story) -> 
     film = bpy.data.scenes.new(f"Drive-by {story.name}")
     for obj in scene.objects:
         shown = obj.type in SHOWN or obj.instance_type == "COLLECTION"
-        shown = shown and not bridge.in_surroundings(obj)
+        shown = shown and not document.in_surroundings(obj)
         if shown and not obj.hide_render and obj.visible_get(view_layer=scene.view_layers[0]):
             film.collection.objects.link(obj)
     stage = _Stage(film, scene.frame_start, len(moving.times))

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import bpy
 
-from . import bridge, engine_process, sensor_cache, signals, vehicle_cache
+from . import document, engine_process, sensor_cache, signals, vehicle_cache
 from .engine import advice, pe
 
 TOPIC = "place"
@@ -31,13 +31,13 @@ def query(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, point: Queried
     """Query which sensors see a point; the answer is delivered when it is there."""
     name = scene.name
     vehicle = vehicle_cache.shared.read(scene, depsgraph).vehicle
-    sensors = bridge.possible_sensors(sensor_cache.sensors(scene), depsgraph)
+    sensors = document.possible_sensors(sensor_cache.sensors(scene), depsgraph)
     settings = scene.perception_entropy
     try:
-        document = bridge.document_of(settings, *bridge.SCORED_PARTS)
-        space = document.space
-        model = document.perception
-        prior = bridge.prior_from_scene(scene)
+        scored = document.document_of(settings, *document.SCORED_PARTS)
+        space = scored.space
+        model = scored.perception
+        prior = document.prior_from_scene(scene)
         rig = pe.Rig(sensors)
     except pe.InputError as error:
         store_answer(name, LocationAnswer(point, (str(error),)))

@@ -11,14 +11,14 @@ from typing import NamedTuple
 
 import bpy
 
-from . import bridge, sensor_cache, signals, vehicle_cache
+from . import document, sensor_cache, signals, vehicle_cache
 
 
 class LastDrawn(NamedTuple):
     """What a scene was when it was last shown as drawn; None: not since its file was opened.
     `states` are the fingerprints, by frame, of the states that were shown since."""
 
-    fingerprint: bridge.Fingerprint | None
+    fingerprint: document.Fingerprint | None
     states: dict[int, str]
 
 
@@ -34,7 +34,7 @@ def fingerprint(
     scene: bpy.types.Scene,
     depsgraph: bpy.types.Depsgraph | None = None,
     sensors: Sequence[bpy.types.Object] | None = None,
-) -> bridge.Fingerprint:
+) -> document.Fingerprint:
     """Return the fingerprint of what a score of the scene, as it is now, depends on."""
     shown = _fingerprint_shown(scene, depsgraph, sensors)
     return _as_drawn(scene, shown) or shown
@@ -44,17 +44,17 @@ def _fingerprint_shown(
     scene: bpy.types.Scene,
     depsgraph: bpy.types.Depsgraph | None = None,
     sensors: Sequence[bpy.types.Object] | None = None,
-) -> bridge.Fingerprint:
-    depsgraph = depsgraph or bridge.view_layer_of(scene).depsgraph
+) -> document.Fingerprint:
+    depsgraph = depsgraph or document.view_layer_of(scene).depsgraph
     # A scene that was not shown yet is not evaluated: its vehicle cannot be read.
     shape = "" if depsgraph is None else vehicle_cache.shared.digest(scene, depsgraph)
     found = sensor_cache.sensors(scene) if sensors is None else sensors
-    return bridge.fingerprint(scene, shape, found)
+    return document.fingerprint(scene, shape, found)
 
 
-def _as_drawn(scene: bpy.types.Scene, shown: bridge.Fingerprint) -> bridge.Fingerprint | None:
+def _as_drawn(scene: bpy.types.Scene, shown: document.Fingerprint) -> document.Fingerprint | None:
     """Return the fingerprint of a scene as drawn, from what it is as shown; None: unknown."""
-    if not bridge.shown_state(scene):
+    if not document.shown_state(scene):
         _last_drawn[scene.name] = LastDrawn(shown, {})
         return shown
     last = _last_drawn.setdefault(scene.name, LastDrawn(None, {}))
@@ -70,13 +70,13 @@ def update_result() -> None:
     for scene in bpy.data.scenes:
         settings = scene.perception_entropy
         driven = any(row.result for row in settings.stories)
-        if not (settings.has_result or driven) or bridge.view_layer_of(scene).depsgraph is None:
+        if not (settings.has_result or driven) or document.view_layer_of(scene).depsgraph is None:
             continue
         now = _as_drawn(scene, _fingerprint_shown(scene))
         if now is None:  # a file that was saved with another state shown: its mark holds
             continue
         stale = settings.has_result and now.text != settings.result_signature
-        changed = driven and bridge.clear_stale_stories(settings, now.text)
+        changed = driven and document.clear_stale_stories(settings, now.text)
         if stale != settings.result_stale:
             settings.result_stale = stale
             changed = True
@@ -87,10 +87,10 @@ def update_result() -> None:
 def update_variants() -> None:
     """Update the marks of stale variants and of unsaved changes in every scene."""
     for scene in bpy.data.scenes:
-        if not scene.perception_entropy.variants or bridge.view_layer_of(scene).depsgraph is None:
+        if not scene.perception_entropy.variants or document.view_layer_of(scene).depsgraph is None:
             continue
         shown = _fingerprint_shown(scene)
         now = _as_drawn(scene, shown)
         # In another state sensors stand elsewhere than in the variant: nothing is to be marked.
         if now is not None and now.text == shown.text:
-            bridge.check_variants(scene, now)
+            document.check_variants(scene, now)

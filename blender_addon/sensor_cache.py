@@ -2,12 +2,12 @@
 
 Panels and 3D views are drawn at every turn of the view, and a lookup takes as long as the scene is
 large. A script may call an operator before Blender has noted what the script did: operators look up
-sensors themselves (`bridge.sensor_objects`).
+sensors themselves (`document.sensor_objects`).
 """
 
 import bpy
 
-from . import bridge
+from . import document
 
 _cache: dict[str, list[bpy.types.Object]] = {}
 """Sensors by the scene's name. Objects are held until the next change only; a lookup by name would
@@ -17,7 +17,7 @@ take nearly as long as a search of the scene."""
 def sensors(scene: bpy.types.Scene) -> list[bpy.types.Object]:
     """Return all sensors of a scene by name, hidden ones included."""
     if scene.name not in _cache or not all(map(_is_sensor, _cache[scene.name])):
-        _cache[scene.name] = bridge.sensor_objects(scene)
+        _cache[scene.name] = document.sensor_objects(scene)
     return list(_cache[scene.name])
 
 

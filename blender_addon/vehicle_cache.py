@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import bpy
 
-from . import bridge
+from . import document
 from .engine import pe
 
 
@@ -53,8 +53,8 @@ class VehicleCache:
         collection = scene.perception_entropy.vehicle
         members = () if collection is None else counted_members(collection, depsgraph)
         of = "" if collection is None else collection.name_full
-        clearance = bridge.as_typed(scene.perception_entropy.clearance)
-        motions = bridge.shown_motions(scene)
+        clearance = document.as_typed(scene.perception_entropy.clearance)
+        motions = document.shown_motions(scene)
         key = (scene.name, of, self._version, members, clearance, motions)
         cached = self._vehicles.get(scene.name, NO_VEHICLE)
         if key != cached.key:
@@ -62,8 +62,8 @@ class VehicleCache:
             if members:
                 # A score reports what is wrong with a vehicle; here it is as if there were none.
                 with contextlib.suppress(pe.InputError):
-                    shown = bridge.vehicle_from_collection(collection, depsgraph, clearance)
-                    vehicle = bridge.with_drawn(scene, shown)
+                    shown = document.vehicle_from_collection(collection, depsgraph, clearance)
+                    vehicle = document.with_drawn(scene, shown)
             self._vehicles = {
                 name: b for name, b in self._vehicles.items() if name in bpy.data.scenes
             }
@@ -103,10 +103,10 @@ def counted_members(
     collection: bpy.types.Collection, depsgraph: bpy.types.Depsgraph
 ) -> tuple[tuple[str, bool, float], ...]:
     """Return the names of the vehicle's counted objects, if cameras see through, covers' losses."""
-    visible = bridge.visible_members(collection, depsgraph.view_layer)
-    counted = {each for each in visible if not bridge.mounted_on_sensor(each)}
-    for collection in bridge.instanced_collections(counted):
-        counted |= bridge.instanced_members(collection)
+    visible = document.visible_members(collection, depsgraph.view_layer)
+    counted = {each for each in visible if not document.mounted_on_sensor(each)}
+    for collection in document.instanced_collections(counted):
+        counted |= document.instanced_members(collection)
     own = ((each.name_full, each.perception_entropy) for each in counted)
     return tuple(sorted((name, each.see_through, each.cover_loss_db) for name, each in own))
 
@@ -122,7 +122,7 @@ def vehicle_updated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> b
     collection = scene.perception_entropy.vehicle
     if collection is None or not changed:
         return False
-    parts = {each for each in changed if not bridge.mounted_on_sensor(each)}
+    parts = {each for each in changed if not document.mounted_on_sensor(each)}
     return not parts.isdisjoint(_objects_with_instances(collection))
 
 

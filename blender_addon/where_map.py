@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import bpy
 
-from . import bridge, signals
+from . import document, signals
 from .engine import advice, jobs, studies
 
 
@@ -63,7 +63,7 @@ def discard_outdated() -> None:
     if own is None or not own.found:
         return
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    now = bridge.possible_sensors(bridge.sensor_objects(scene), depsgraph)
+    now = document.possible_sensors(document.sensor_objects(scene), depsgraph)
     if {(s.name, s.pose) for s in now} != {(s.name, s.pose) for s in own.found[0].start}:
         store_offers(scene.name, None)
 

@@ -13,10 +13,10 @@ from bpy.app.handlers import persistent
 
 from . import (
     body_query,
-    bridge,
     change_events,
     consistency,
     diagnostics,
+    document,
     engine_process,
     housing,
     location_query,
@@ -91,7 +91,7 @@ LISTENERS: tuple[tuple[signals.Signal, tuple[signals.Listener, ...]], ...] = (
         signals.study_changed,
         (
             sensor_cache.invalidate,
-            bridge.sync_own_sensors,
+            document.sync_own_sensors,
             change_events.note_change,
             body_query.schedule,
             scheduler.schedule,

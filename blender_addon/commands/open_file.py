@@ -11,7 +11,7 @@ from typing import TextIO
 
 import bpy
 
-from .. import bridge, result_staleness
+from .. import document, result_staleness
 from ..engine import app, jobs, pe, studies, text
 
 OPTIMIZED = studies.OPTIMIZED
@@ -26,10 +26,10 @@ def opened_study(variant: str | None = None) -> pe.Study:
     scene = opened_scene()
     with from_file():
         if variant is not None:
-            bridge.activate_variant(scene, bridge.variant_named(scene, variant))
+            document.activate_variant(scene, document.variant_named(scene, variant))
         if scene.perception_entropy.states:
             scene.frame_set(scene.perception_entropy.drawn_frame)
-        return bridge.study_as_drawn(scene)
+        return document.study_as_drawn(scene)
 
 
 @contextlib.contextmanager
@@ -51,7 +51,7 @@ def opened_scene() -> bpy.types.Scene:
         raise pe.InputError("blender", "file", expected, "none opened")
     for file in (path, *bpy.utils.blend_paths(absolute=True)):  # linked files, pictures
         text.note_input(file)
-    if scene.perception_entropy.vehicle is None and not bridge.sensor_objects(scene):
+    if scene.perception_entropy.vehicle is None and not document.sensor_objects(scene):
         expected = "a vehicle collection and sensors, set in the tab Perception"
         raise pe.InputError(path, f"scene {scene.name!r}", expected, "neither")
     return scene
@@ -60,17 +60,17 @@ def opened_scene() -> bpy.types.Scene:
 def write_optimized(outcome: jobs.Outcome, data: dict, folder: Path) -> None:
     """Write the optimized scene beside the results of a search."""
     scene = bpy.context.scene
-    bridge.place_rig(scene, outcome.study.rig)
+    document.place_rig(scene, outcome.study.rig)
     taken = result_staleness.fingerprint(scene)
-    bridge.store_outcome(scene, outcome, taken.text)
-    bridge.mark_active(scene, bridge.store_search(scene, outcome, taken.surroundings))
+    document.store_outcome(scene, outcome, taken.text)
+    document.mark_active(scene, document.store_search(scene, outcome, taken.surroundings))
     jobs.add_to_result(data, folder, {OPTIMIZED: save_copy})
 
 
 def write_front(found: jobs.TradeOff, folder: Path) -> None:
     """Write the scene with the designs of a front as variants."""
     scene = bpy.context.scene
-    bridge.store_front(scene, found, result_staleness.fingerprint(scene).surroundings)
+    document.store_front(scene, found, result_staleness.fingerprint(scene).surroundings)
     with jobs.FileSet(folder) as files:
         files.add(OPTIMIZED, save_copy)
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 
-from .. import bridge
+from .. import document
 from ..engine import app, jobs, pe
 from .open_file import (
     OPTIMIZED,
@@ -27,7 +27,7 @@ class SceneStudies(app.StudyFiles):
     @property
     def versions(self) -> dict[str, str]:
         """Versions of Blender, for the results."""
-        return bridge.blender_version()
+        return document.blender_version()
 
     def add_arguments(self, verb: argparse.ArgumentParser, takes: str) -> None:
         """Add what names variants to the parser of a verb."""
@@ -73,17 +73,17 @@ class SceneStudies(app.StudyFiles):
         if not searches:
             return ()
         with from_file():
-            check = bridge.check_choosable if jobs.has_front(study) else bridge.check_placeable
+            check = document.check_choosable if jobs.has_front(study) else document.check_placeable
             check(bpy.context.scene, study)
         return [app.More([OPTIMIZED], leave_scene)]
 
     def stored_result(self, study: pe.Study, _: argparse.Namespace) -> Mapping[str, Any] | None:
         """Return the last result of the scene; None where it is not of the study."""
-        return bridge.stored_result(opened_scene(), study)
+        return document.stored_result(opened_scene(), study)
 
     def notes(self) -> tuple:
         """Return warnings about data that the scene misses."""
-        return bridge.missing_data(bpy.context.scene)
+        return document.missing_data(bpy.context.scene)
 
 
 def leave_scene(found: jobs.Outcome | jobs.TradeOff, data: dict, folder: Path) -> None:
@@ -99,5 +99,5 @@ def studies_of(scene: bpy.types.Scene, names: Sequence[str]) -> dict[str, pe.Stu
     """Return the studies of variants where they are kept, by name."""
     depsgraph = bpy.context.evaluated_depsgraph_get()
     with from_file():
-        rows = {name: bridge.variant_named(scene, name) for name in names}
-        return {n: bridge.study_of_variant(scene, row, depsgraph) for n, row in rows.items()}
+        rows = {name: document.variant_named(scene, name) for name in names}
+        return {n: document.study_of_variant(scene, row, depsgraph) for n, row in rows.items()}

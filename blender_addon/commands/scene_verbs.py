@@ -5,7 +5,7 @@ from pathlib import Path
 
 import bpy
 
-from .. import bridge, film, result_staleness
+from .. import document, film, result_staleness
 from ..engine import app, pe, text
 from .open_file import from_file, opened_scene, quiet_blender
 from .scene_source import SceneStudies
@@ -36,15 +36,15 @@ def where_in_scene(source: SceneStudies, args: argparse.Namespace) -> app.Answer
     study = source.study(args)
     depsgraph = bpy.context.evaluated_depsgraph_get()
     with from_file():
-        study = bridge.with_mount(study, bpy.context.scene, depsgraph, args.mount)
+        study = document.with_mount(study, bpy.context.scene, depsgraph, args.mount)
     return app.where_study(study, args)
 
 
 def list_variants(_: SceneStudies, args: argparse.Namespace) -> app.Answer:
     """List the variants with the scores that are kept with them."""
     scene = opened_scene()
-    bridge.check_variants(scene, result_staleness.fingerprint(scene))
-    data = [bridge.variant_dict(scene, row) for row in scene.perception_entropy.variants]
+    document.check_variants(scene, result_staleness.fingerprint(scene))
+    data = [document.variant_dict(scene, row) for row in scene.perception_entropy.variants]
     return app.answered(args, data, map(_listed, data) if data else ["no variants"]), app.DONE
 
 

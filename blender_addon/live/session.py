@@ -10,8 +10,8 @@ from functools import partial
 import bpy
 
 from .. import (
-    bridge,
     change_events,
+    document,
     engine_calls,
     engine_process,
     sensor_cache,
@@ -70,7 +70,7 @@ def on_idle() -> None:
         if not is_held:
             state.operator = 0  # what moves next is another move
     for scene in shown_scenes():
-        depsgraph = bridge.view_layer_of(scene).depsgraph
+        depsgraph = document.view_layer_of(scene).depsgraph
         if depsgraph is not None:
             request_score(scene, depsgraph, moving=False)
 
@@ -111,22 +111,22 @@ def request_score(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, mov
 def read_request(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> ScoreRequest:
     """Read what the score needs of a scene; the vehicle only if it has changed. `InputError` when
     something in the scene is wrong: one line."""
-    bridge.check_scene(scene)
-    rig = bridge.rig_from_objects(sensor_cache.sensors(scene), depsgraph)
+    document.check_scene(scene)
+    rig = document.rig_from_objects(sensor_cache.sensors(scene), depsgraph)
     state = live_state(scene.name)
-    prior_key = bridge.prior_key(scene)
+    prior_key = document.prior_key(scene)
     if state.prior is None or state.prior[0] != prior_key:
-        state.prior = prior_key, bridge.prior_from_scene(scene)
+        state.prior = prior_key, document.prior_from_scene(scene)
     prior = state.prior[1]
     vehicle, vehicle_key = vehicle_cache.shared.read(scene, depsgraph)
     if vehicle is None:
         collection = scene.perception_entropy.vehicle
-        vehicle = bridge.vehicle_from_collection(collection, depsgraph)  # raises the reason
+        vehicle = document.vehicle_from_collection(collection, depsgraph)  # raises the reason
     settings = scene.perception_entropy
-    document = bridge.document_of(settings, *bridge.SCORED_PARTS)
-    space = document.space
-    model = document.perception
-    targets = document.metric
+    scored = document.document_of(settings, *document.SCORED_PARTS)
+    space = scored.space
+    model = scored.perception
+    targets = scored.metric
     problem_key = prior_key, vehicle_key, space, model, targets
     problem = Problem(problem_key, prior, vehicle, space, model=model, targets=targets)
     return ScoreRequest(problem, rig, (prior_key, space, model, targets))
@@ -255,7 +255,7 @@ def _chosen_rig(scene: bpy.types.Scene, choice: int) -> tuple[pe.Rig, str] | Non
         if row.key == choice:
             try:
                 returns = scene.perception_entropy.returns
-                return bridge.rig_of(bridge.records_of(row), returns=returns), row.name
+                return document.rig_of(document.records_of(row), returns=returns), row.name
             except pe.InputError:  # no sensor of it counts, or a model is not known here
                 return None
     return None

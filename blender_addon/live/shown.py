@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import bpy
 
-from .. import bridge, viewport
+from .. import document, viewport
 from ..choices import BEFORE_MOVE
 from ..engine import advice, pe
 from . import background_figures
@@ -105,7 +105,7 @@ def shown_score(scene: bpy.types.Scene) -> ShownScore | None:
     state = live_state(scene.name)
     live = state.score if settings.live.on else None
     # While something moves it is not known yet whether a result is stale.
-    is_current = not (settings.result_stale or bridge.shown_state(scene))
+    is_current = not (settings.result_stale or document.shown_state(scene))
     if settings.has_result and (live is None or (is_current and not state.moving)):
         return _stored(scene, state)
     if live is None:
@@ -113,7 +113,7 @@ def shown_score(scene: bpy.types.Scene) -> ShownScore | None:
     phase = AT_REST if state.is_current(live) else MOVING if state.moving else PENDING
     pair = None if live.before is None else (live.before, live.summary)
     figures = tuple(background_figures.figures_of(scene))
-    other = bridge.shown_state(scene)
+    other = document.shown_state(scene)
     return ShownScore(live.summary, phase, other, live.baseline, pair=pair, figures=figures)
 
 
@@ -159,7 +159,7 @@ def _stored(scene: bpy.types.Scene, state: LiveState) -> ShownScore:
 
 
 @lru_cache(maxsize=4)
-def _read(result: bridge.Result) -> tuple[pe.Score, pe.Score, Mapping[str, advice.KeyFigures]]:
+def _read(result: document.Result) -> tuple[pe.Score, pe.Score, Mapping[str, advice.KeyFigures]]:
     """Return the scores of a result, before and after a search, of a score twice the same; and its
     key figures, by "before" and "after"."""
     figures: dict[str, advice.KeyFigures] = {
@@ -167,5 +167,5 @@ def _read(result: bridge.Result) -> tuple[pe.Score, pe.Score, Mapping[str, advic
         for which in ("before", "after")
         if which in result.figures
     }
-    before, after = (bridge.score_from_dict(data) for data in (result.before, result.after))
+    before, after = (document.score_from_dict(data) for data in (result.before, result.after))
     return before, after, figures

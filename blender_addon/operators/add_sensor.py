@@ -9,7 +9,7 @@ import numpy as np
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from mathutils import Vector
 
-from .. import bridge
+from .. import document
 from ..engine import catalog, kinds, pe
 from ..housing import measured_housing
 from ..properties import DEFAULT_MODEL, model_suggestions
@@ -46,7 +46,7 @@ def default_location(context: bpy.types.Context, mount: Mount) -> Vector:
     if collection is None:
         return Vector((0.0, 0.0, mount.height_m))
     depsgraph = context.evaluated_depsgraph_get()
-    return Vector(roof_location(bridge.vehicle_from_collection(collection, depsgraph), mount))
+    return Vector(roof_location(document.vehicle_from_collection(collection, depsgraph), mount))
 
 
 def roof_location(vehicle: pe.Vehicle, mount: Mount) -> tuple[float, float, float]:
@@ -140,7 +140,7 @@ def new_sensor(
     if body is None:
         obj.empty_display_type = mount.display
         obj.empty_display_size = mount.size_m
-    bridge.shown_collection(context.scene).objects.link(obj)
+    document.shown_collection(context.scene).objects.link(obj)
     obj.perception_entropy.model = model
     obj.perception_entropy.is_sensor = True
     return obj

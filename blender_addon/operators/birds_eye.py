@@ -12,7 +12,7 @@ import numpy as np
 from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix
 
-from .. import bridge, viewport
+from .. import document, viewport
 from ..engine import pe
 from ..overlay import scheduler
 from ..overlay.batches import Batches
@@ -142,7 +142,7 @@ def looks_of(scene: bpy.types.Scene, shape: BirdsEye) -> dict[str, Exposure]:
     eyes = {FROM_ABOVE: pe.Pose(middle)}
     for name in shape.painted:
         if name != FROM_ABOVE and (obj := scene.objects.get(name)) is not None:
-            eyes[name] = bridge.pose_of_matrix(np.array(obj.matrix_world, dtype=float))
+            eyes[name] = document.pose_of_matrix(np.array(obj.matrix_world, dtype=float))
     return {
         name: look_down(eye, shape)
         for name, eye in eyes.items()

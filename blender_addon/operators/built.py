@@ -6,7 +6,7 @@ import bpy
 from bpy.props import EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from .. import bridge, where_map
+from .. import document, where_map
 from ..engine import advice, jobs, pe
 from .declared import OperatorResult, Told, chosen_file, operator
 from .imports import BY_NAME, FORMAT_OR_NAME, rig_of_file
@@ -28,7 +28,7 @@ def compare_built(context: bpy.types.Context, operator: Any) -> OperatorResult:
     return begin(BUILT, rig=found.rig, lines=found.lines_without_models)
 
 
-def _task(_scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> Task:
+def _task(_scene: bpy.types.Scene, study: pe.Study, _taken: document.Fingerprint) -> Task:
     job = jobs.BuiltJob(study, BUILT.asked["rig"], BUILT.asked["lines"])
 
     def finish(scene: bpy.types.Scene, found: advice.AsBuilt) -> Told:

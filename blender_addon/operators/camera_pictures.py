@@ -14,7 +14,7 @@ import bpy
 import gpu
 from mathutils import Matrix
 
-from .. import bridge, viewport
+from .. import document, viewport
 from ..engine import pe
 from ..overlay import surroundings
 from . import sensor_pictures
@@ -102,7 +102,7 @@ def keep_only(region: int, plate: str, names: Collection[str]) -> None:
 
 def projection(model: pe.Camera) -> Matrix:
     """Return the matrix (4, 4), clip space from camera, of the pinhole for a model's view."""
-    across = NEAR_M * math.tan(bridge.shown_fov(model) / 2.0)
+    across = NEAR_M * math.tan(document.shown_fov(model) / 2.0)
     up = across * model.height / model.width
     return frustum(-across, across, -up, up, near=NEAR_M, far=FAR_M)
 
@@ -128,7 +128,7 @@ def look_of(pose: pe.Pose, model: pe.Camera) -> Exposure:
     """Return the look of a camera at a pose."""
     turned = Matrix(pose.ground_from_sensor.tolist())
     ground_from_sensor = Matrix.LocRotScale(pose.position, turned, None)
-    camera_from_ground = (ground_from_sensor @ bridge.CAMERA_FROM_SENSOR).inverted()
+    camera_from_ground = (ground_from_sensor @ document.CAMERA_FROM_SENSOR).inverted()
     return Exposure(pose, camera_from_ground, projection(model))
 
 

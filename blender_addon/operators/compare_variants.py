@@ -7,7 +7,7 @@ from typing import Any
 import bpy
 from bpy.props import EnumProperty
 
-from .. import bridge, result_staleness, variant_pictures
+from .. import document, result_staleness, variant_pictures
 from ..engine import advice, pe, search
 from ..live import SENSE_ICONS
 from ..own_jobs import ComparedVariant, CompareJob, PendingVariant
@@ -38,14 +38,14 @@ PARTS = (
 def compare_task(context: bpy.types.Context) -> Task | None:
     """Read the variants without a valid score or figures; None where all are valid."""
     scene = context.scene
-    with bridge.as_drawn(scene):
-        bridge.read_states(scene)
+    with document.as_drawn(scene):
+        document.read_states(scene)
         depsgraph = context.evaluated_depsgraph_get()
         pending: dict[int, PendingVariant] = {}
         refused: list[pe.InputError] = []
         for row in pending_variants(scene):
             try:
-                study = bridge.study_of_variant(scene, row, depsgraph)
+                study = document.study_of_variant(scene, row, depsgraph)
                 pending[row.key] = PendingVariant(row.name, study, not row.has_result or row.stale)
             except pe.InputError as error:
                 refused.append(error)
@@ -54,15 +54,15 @@ def compare_task(context: bpy.types.Context) -> Task | None:
         if not pending:
             return None
         taken = result_staleness.fingerprint(scene, depsgraph)
-        figures_of = bridge.figures_signature(scene, taken)
+        figures_of = document.figures_signature(scene, taken)
 
     def finish(scene: bpy.types.Scene, found: dict[int, ComparedVariant]) -> Told:
         for row in scene.perception_entropy.variants:  # those that still exist
             if row.key in found:
                 score, figures, picture = found[row.key]
                 if score is not None:
-                    bridge.store_variant_score(row, score, taken.surroundings)
-                bridge.write_figures(row, figures, picture, figures_of)
+                    document.store_variant_score(row, score, taken.surroundings)
+                document.write_figures(row, figures, picture, figures_of)
         scored = sum(variant.score is not None for variant in found.values())
         return Told(f"{scored} scored, {len(found)} compared", tuple(map(str, refused)))
 
@@ -83,14 +83,14 @@ COMPARE = JobRow(
 def _open(self: Any, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
     """Compute the table, and open it in a window that stays until it is closed."""
     self.names, self.rows = comparison_of(context.scene)
-    self.pictures = [bridge.picture_of(row) for row in compared_variants(context.scene)]
+    self.pictures = [document.picture_of(row) for row in compared_variants(context.scene)]
     width = max(LABEL_PX + COLUMN_PX * len(self.names), MIN_WIDTH_PX)
     letters = width // LETTER_PX
     self.said = sentences(self.names, self.rows, letters)
-    worth = bridge.worth_of_differences(context.scene, compared_variants(context.scene))
+    worth = document.worth_of_differences(context.scene, compared_variants(context.scene))
     for line in advice.worth_lines(self.names, self.rows, worth):
         self.said += wrap(line, letters)
-    self.said += wrap(bridge.hardware_note(compared_variants(context.scene)), letters)
+    self.said += wrap(document.hardware_note(compared_variants(context.scene)), letters)
     return context.window_manager.invoke_props_dialog(
         self, width=width, title=self.bl_label, confirm_text="Close", translate=False
     )
@@ -211,19 +211,19 @@ def cell_of(row: advice.ComparedRow, k: int) -> tuple[str, bool, str, int]:
 def pending_variants(scene: bpy.types.Scene) -> list[bpy.types.PropertyGroup]:
     """Return variants without a valid score, or without figures of the present settings."""
     fingerprint = result_staleness.fingerprint(scene)
-    bridge.check_variants(scene, fingerprint)
-    of = bridge.figures_signature(scene, fingerprint)
+    document.check_variants(scene, fingerprint)
+    of = document.figures_signature(scene, fingerprint)
     rows = scene.perception_entropy.variants
-    return [r for r in rows if not r.has_result or r.stale or bridge.figures_of(r, of) is None]
+    return [r for r in rows if not r.has_result or r.stale or document.figures_of(r, of) is None]
 
 
 def comparison_of(scene: bpy.types.Scene) -> tuple[list[str], tuple[advice.ComparedRow, ...]]:
     """Return the names of the scored variants, the active one first, and the table's rows. Of key
     figures there are rows if every variant has figures of the present settings."""
     rows = compared_variants(scene)
-    scores = {row.name: bridge.score_of(row) for row in rows}
-    of = bridge.figures_signature(scene, result_staleness.fingerprint(scene))
-    figures = {row.name: bridge.figures_of(row, of) for row in rows}
+    scores = {row.name: document.score_of(row) for row in rows}
+    of = document.figures_signature(scene, result_staleness.fingerprint(scene))
+    figures = {row.name: document.figures_of(row, of) for row in rows}
     known = {name: each for name, each in figures.items() if each is not None}
     more = advice.compare_figures(known) if len(known) == len(figures) else ()
     return list(scores), (*advice.compare(scores), *more)

@@ -3,7 +3,7 @@
 import bpy
 from bpy.props import IntProperty
 
-from .. import bridge, film, signals
+from .. import document, film, signals
 from ..engine import motion, pe
 from .declared import chosen_file, operator
 from .exports import dialog
@@ -32,7 +32,7 @@ def add_state(context: bpy.types.Context, _kind: str) -> str:
     name = row.name
     row.frame = frame
     try:
-        bridge.read_states(scene)
+        document.read_states(scene)
     except pe.InputError:
         settings.states.remove(len(settings.states) - 1)
         settings.state_index = before
@@ -43,7 +43,7 @@ def add_state(context: bpy.types.Context, _kind: str) -> str:
 @operator("Read States Again")
 def read_states(context: bpy.types.Context) -> str:
     """Read what moves in all states again: the animation has changed"""
-    changed = bridge.read_states(context.scene)
+    changed = document.read_states(context.scene)
     return f"States changed: {', '.join(changed)}" if changed else "No state has changed"
 
 
@@ -75,7 +75,7 @@ def add_story(context: bpy.types.Context, story: str) -> None:
     """Add a story of what moves: when is it confirmed, and does the vehicle stop in time?"""
     row = new_row(context.scene, "stories", story)
     name = row.name
-    bridge.write_story(row, motion.stories()[story])
+    document.write_story(row, motion.stories()[story])
     row.name = name
 
 
@@ -92,8 +92,8 @@ def play_story(context: bpy.types.Context) -> None:
     row = settings.stories[settings.story_index]
     playing = context.screen is not None and context.screen.is_animation_playing
     if not playing:
-        story = bridge.story_of(row)
-        frames = round(-story.start_s * bridge.frame_rate(scene))
+        story = document.story_of(row)
+        frames = round(-story.start_s * document.frame_rate(scene))
         scene.frame_end = scene.frame_start + frames
         scene.frame_set(scene.frame_start)
         settings.view.show_story = settings.show_overlay = True
@@ -113,8 +113,8 @@ def film_story(context: bpy.types.Context, filepath: str, asked_in_window: bool)
     """Render the selected story as a film (.webm, .mp4), with what the 3D view shows over it"""
     settings = context.scene.perception_entropy
     path = chosen_file(filepath)
-    story = bridge.story_of(settings.stories[settings.story_index])
-    study = bridge.study_as_drawn(context.scene)
+    story = document.story_of(settings.stories[settings.story_index])
+    study = document.study_as_drawn(context.scene)
     if bpy.app.background or not asked_in_window:
         film.write_film(context.scene, study, story, path)
         return f"Wrote {path}"

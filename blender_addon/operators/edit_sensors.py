@@ -4,7 +4,7 @@ import bpy
 from bpy.props import BoolProperty, StringProperty
 from mathutils import Matrix
 
-from .. import bridge, signals, vehicle_cache
+from .. import document, signals, vehicle_cache
 from ..engine import advice, pe
 from .add_sensor import select_only
 from .declared import INTERNAL, Refused, Told, chosen_sensor, operator
@@ -61,8 +61,8 @@ def mirror_sensor(context: bpy.types.Context, name: str, linked: bool) -> None:
     obj = chosen_sensor(context, name)
     made = mirrored_copy(context, obj)
     if linked:
-        bridge.unlink_mirror(obj)
-        bridge.link_mirror(obj, made)
+        document.unlink_mirror(obj)
+        document.link_mirror(obj, made)
     select_only(context, made)
 
 
@@ -72,28 +72,28 @@ def unlink_mirror(context: bpy.types.Context, name: str) -> None:
     obj = context.scene.objects.get(name) if name else context.active_object
     if obj is None or not obj.perception_entropy.mirror_of:
         raise Refused("This sensor is not linked")
-    bridge.unlink_mirror(obj)
+    document.unlink_mirror(obj)
 
 
 def mirrored_copy(context: bpy.types.Context, obj: bpy.types.Object) -> bpy.types.Object:
     """Return a copy of a sensor on the other side. `InputError` when it is its own mirror image, or
     when its image is not on the vehicle."""
     depsgraph = context.evaluated_depsgraph_get()
-    sensor = bridge.sensor_from_object(obj, depsgraph)
+    sensor = document.sensor_from_object(obj, depsgraph)
     pose = sensor.pose
-    image = bridge.mirrored_pose(sensor.pose)
-    if bridge.in_the_middle(pose):
+    image = document.mirrored_pose(sensor.pose)
+    if document.in_the_middle(pose):
         expected = "a sensor beside the vehicle's middle plane"
         raise pe.InputError("scene", f"sensor {obj.name!r}", expected, "its own mirror image")
     vehicle = vehicle_cache.shared.read(context.scene, depsgraph).vehicle
     if vehicle is not None:
         advice.check_mirror_image(vehicle, sensor, image)
     made = obj.copy()
-    made.name = bridge.mirrored_name(obj.name, "right" if pose.position[1] > 0.0 else "left")
+    made.name = document.mirrored_name(obj.name, "right" if pose.position[1] > 0.0 else "left")
     made.perception_entropy.mirror_of = ""
     for collection in obj.users_collection:
         collection.objects.link(made)
-    bridge.place_poses(context.scene, {made.name: image})
+    document.place_poses(context.scene, {made.name: image})
     return made
 
 

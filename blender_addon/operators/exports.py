@@ -14,7 +14,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from .. import bridge, own_jobs
+from .. import document, own_jobs
 from ..engine import app, exchange, jobs, outputs, page, pe
 from ..own_jobs import ExportJob, WrittenFiles
 from . import running_job
@@ -82,7 +82,7 @@ def dialog(suffix: str, name: Callable[[Any], str] | None = None) -> dict[str, A
 def export_study(context: bpy.types.Context, filepath: str) -> Told:
     """Write a study (.toml) and the vehicle's mesh (.npz) beside it"""
     path = chosen_file(filepath)
-    study = bridge.study_as_drawn(context.scene)
+    study = document.study_as_drawn(context.scene)
     jobs.export_study(study, path, replace_study=True)  # the file dialog has confirmed it
     return told_of(WrittenFiles((path,)))
 
@@ -121,7 +121,7 @@ def export_scene(
     if not (row.has_several or path.suffix):
         path = path.with_suffix(Path(row.file).suffix)
     exchange.format_of_file(path, outputs.output_files(), row.name)  # refuses another's suffix
-    study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
+    study = document.study_from_scene(context.scene, context.evaluated_depsgraph_get())
     replace = replace or not row.has_several  # of one file the dialog has confirmed it
 
     return run(
@@ -133,7 +133,7 @@ def export_scene(
 def render_review(context: bpy.types.Context, filepath: str, asked_in_window: bool) -> Answer:
     """Score the present sensors and write a picture of the rig (.svg)"""
     path = chosen_file(filepath)
-    study = bridge.study_as_drawn(context.scene)
+    study = document.study_as_drawn(context.scene)
     jobs.prepare_folder(path.parent)  # fail before the work, not after
 
     return run(own_jobs.picture_job(study, path), asked_in_window)
@@ -162,11 +162,11 @@ def export_review(
     """Score the present sensors and write a page of the results (.html)"""
     path = chosen_file(filepath)
     about = page.About(title, author, date, revision)
-    study = bridge.study_as_drawn(context.scene)
+    study = document.study_as_drawn(context.scene)
     facts: dict[str, Any] = {
         "name": name_of(context.scene, path),
         "command": headless_command(path, about),
-        "versions": bridge.blender_version(),
+        "versions": document.blender_version(),
     }
     jobs.prepare_folder(path.parent)  # fail before the work, not after
     search = searched_from(context.scene, study)
@@ -246,11 +246,11 @@ def export_rig(
         path = path.with_name(rig_file(told))  # the dialog's own name, of another format
     name = exchange.format_of_file(path, exchange.FILES, told)
     row = exchange.rig_format(name)
-    study = bridge.study_from_scene(context.scene, context.evaluated_depsgraph_get())
+    study = document.study_from_scene(context.scene, context.evaluated_depsgraph_get())
     replace = replace or not (row.beside or row.is_folder)  # of one file the dialog has asked
     target = bpy.path.abspath(into) or None
     if row.write_scene is not None:
-        result = bridge.stored_result(context.scene, study)
+        result = document.stored_result(context.scene, study)
         job = own_jobs.rig_job(study, name, path, target, replace=replace, result=result)
         return run(job, asked_in_window)
     return told_of(own_jobs.write_rig(study, name, path, target, replace=replace))

@@ -5,7 +5,7 @@ from typing import Any
 
 import bpy
 
-from .. import bridge, library
+from .. import document, library
 from ..engine import pe
 from .declared import Failed, OperatorResult, operator
 from .surface_pose import is_part
@@ -38,7 +38,7 @@ def selected_parts(selected: Sequence[bpy.types.Object]) -> list[bpy.types.Objec
 
 def may_be_part(obj: bpy.types.Object) -> bool:
     """Whether an object is a mesh or an instance of a collection, and belongs to no sensor."""
-    is_instance = obj.instance_collection is not None and not bridge.mounted_on_sensor(obj)
+    is_instance = obj.instance_collection is not None and not document.mounted_on_sensor(obj)
     return is_instance or is_part(obj)
 
 

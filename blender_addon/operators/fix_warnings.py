@@ -8,7 +8,7 @@ import numpy as np
 from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
 from mathutils import Euler, Matrix, Vector
 
-from .. import bridge, signals
+from .. import document, signals
 from ..engine import geometry, pe, text
 from .declared import operator
 from .edit_sensors import rigid
@@ -32,7 +32,7 @@ def stand_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmoun
     turn = Euler([math.radians(each) for each in amount]).to_matrix()
     collection = _chosen_vehicle(context)
     depsgraph = context.evaluated_depsgraph_get()
-    vehicle = bridge.vehicle_from_collection(collection, depsgraph)
+    vehicle = document.vehicle_from_collection(collection, depsgraph)
     turned = vehicle.triangles @ np.array(turn).T
     shape = geometry.BodyShape(turned, vehicle.parts, vehicle.part_names)
     shift = (*shape.middle, shape.bounds[0][2])
@@ -75,7 +75,7 @@ def show_vehicle(context: bpy.types.Context, _subject: str, _amount: AdviceAmoun
     """Make the vehicle's collection and its parent collections visible again."""
     vehicle = context.scene.perception_entropy.vehicle
     root = context.view_layer.layer_collection
-    for layer in reversed(bridge.layers_of(root, vehicle)[:-1] if vehicle else []):
+    for layer in reversed(document.layers_of(root, vehicle)[:-1] if vehicle else []):
         layer.exclude = layer.hide_viewport = False
         layer.collection.hide_viewport = layer.collection.hide_render = False
 
@@ -156,7 +156,7 @@ def _sensors_on(
             for k in range(3)
         )
 
-    sensors = bridge.sensor_objects(context.scene)
+    sensors = document.sensor_objects(context.scene)
     return [obj for obj in sensors if near(obj.matrix_world.translation)]
 
 
@@ -170,7 +170,7 @@ def _follows(obj: bpy.types.Object, carried: list[bpy.types.Object]) -> bool:
 
 
 def _sensor_named(context: bpy.types.Context, name: str) -> bpy.types.Object:
-    for obj in bridge.sensor_objects(context.scene):
+    for obj in document.sensor_objects(context.scene):
         if obj.name == name:
             return obj
     raise pe.InputError("scene", "sensor", "one of the scene", repr(name))

@@ -12,7 +12,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from .. import bridge, signals, vehicle_cache
+from .. import document, signals, vehicle_cache
 from ..engine import catalog, exchange, graphics, pe, search, studies
 from ..sensor_kinds import mount_of
 from .declared import INTERNAL, Told, chosen_file, operator
@@ -56,7 +56,7 @@ def add_rig(context: bpy.types.Context, key: str, fit: bool, on_places: bool) ->
     Present sensors that are no variant yet are saved as one"""
     scene = context.scene
     rig = catalog.rig_named(key)
-    before = bridge.records_of_scene(scene)
+    before = document.records_of_scene(scene)
     vehicle = vehicle_cache.shared.read(scene, context.evaluated_depsgraph_get()).vehicle
     if isinstance(rig, catalog.RigTemplate):
         at = None if vehicle is None else places_of(scene, vehicle)
@@ -79,12 +79,12 @@ def add_rig(context: bpy.types.Context, key: str, fit: bool, on_places: bool) ->
     return f"Added {name}: {len(records)} sensors"
 
 
-def record_of(sensor: catalog.KnownSensor) -> bridge.SensorRecord:
+def record_of(sensor: catalog.KnownSensor) -> document.SensorRecord:
     """Return a sensor of a known rig as a variant holds it."""
     mount = mount_of(catalog.load(sensor.model).kind)
     values = (*sensor.pose.position, *sensor.pose.rpy)
     pose = search.pose_from_values(dict(zip(search.AXES, values, strict=True)))
-    return bridge.SensorRecord(
+    return document.SensorRecord(
         name=sensor.name, model=sensor.model, pose=pose, display=mount.display, size_m=mount.size_m
     )
 
@@ -106,7 +106,7 @@ def replace_sensors(
 ) -> Told:
     """Replace the sensors of the scene, as a variant; return what to report. `InputError` when they
     cannot be put into the scene."""
-    before = bridge.records_of_scene(scene)
+    before = document.records_of_scene(scene)
     records = tuple(
         replace(
             record_of(_known_sensor(scene, sensor)),
@@ -127,21 +127,23 @@ def _known_sensor(scene: bpy.types.Scene, sensor: pe.Sensor) -> catalog.KnownSen
     """Return a sensor with a model of the catalogue; an unknown model becomes an own sensor."""
     name = sensor.model.name
     if name not in catalog.entries() or catalog.load(name) is not sensor.model:
-        name = bridge.add_own_sensor(scene, name, catalog.to_table(sensor.model))
+        name = document.add_own_sensor(scene, name, catalog.to_table(sensor.model))
     return catalog.KnownSensor(sensor.name, name, sensor.pose)
 
 
 @operator(
     "Copy as Text",
     unless=lambda context: (
-        None if bridge.sensor_objects(context.scene) else "There are no sensors yet"
+        None if document.sensor_objects(context.scene) else "There are no sensors yet"
     ),
     options=INTERNAL,
 )
 def copy_rig(context: bpy.types.Context) -> str:
     """Copy the sensors as one line of text, to send. Paste Rig reads it, and so does pe"""
     depsgraph = context.evaluated_depsgraph_get()
-    found = [bridge.sensor_from_object(o, depsgraph) for o in bridge.sensor_objects(context.scene)]
+    found = [
+        document.sensor_from_object(o, depsgraph) for o in document.sensor_objects(context.scene)
+    ]
     context.window_manager.clipboard = studies.rig_line(pe.Rig(found))
     return f"Copied as one line of text: {len(found)} sensors"
 
@@ -173,7 +175,7 @@ def import_study(context: bpy.types.Context, filepath: str) -> Told:
     A vehicle that is already the same stays"""
     path = chosen_file(filepath)
     study = pe.load_study(path)
-    if lost := bridge.load_into(context.scene, study):
+    if lost := document.load_into(context.scene, study):
         return Told(f"The scene differs from the file in: {', '.join(lost)}", level="WARNING")
     if study.mesh_notes:
         return Told(f"Imported {filepath}; {study.mesh}: {'; '.join(study.mesh_notes)}")
@@ -203,5 +205,5 @@ def rig_of_file(scene: bpy.types.Scene, path: Path, format_name: str) -> exchang
     files, in the file's folder. `format_name`: `BY_NAME`, or a name of `RIG_FORMATS`."""
     several = [row.files for row in exchange.RIG_FORMATS.values() if row.is_folder]
     place = path.parent if any(path.name in files for files in several) else path
-    reference = bridge.document_of(scene.perception_entropy, "reference").reference
+    reference = document.document_of(scene.perception_entropy, "reference").reference
     return exchange.import_rig(place, None if format_name == BY_NAME else format_name, reference)

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import bpy
 
-from .. import bridge, diagnostics, engine_calls, result_staleness, signals, vehicle_cache
+from .. import diagnostics, document, engine_calls, result_staleness, signals, vehicle_cache
 from ..engine import advice, jobs, pe
 from ..live import FinishedScore, live_state
 from ..panel_text import typeset
@@ -95,7 +95,7 @@ class JobRow:
             return task.finish(bpy.context.scene, found)
         if scene is None:
             raise Refused("The scene was removed; its result was discarded")
-        with bridge.as_drawn(scene):  # sensors are placed as drawn
+        with document.as_drawn(scene):  # sensors are placed as drawn
             answer = task.finish(scene, found)
             result_staleness.update_result()  # the scene may have changed meanwhile
         return answer
@@ -158,7 +158,7 @@ class JobOperator(OperatorMixin):
             if not running.ended:
                 is_new = self.take_back is None
                 if is_new and self.task.place is not None and scene is not None:
-                    with bridge.as_drawn(scene):
+                    with document.as_drawn(scene):
                         self.take_back = self.task.place(scene, running.seen)
                 running.show(context)
                 return {"RUNNING_MODAL"}
@@ -173,7 +173,7 @@ class JobOperator(OperatorMixin):
             return {"PASS_THROUGH"}
         try:
             if self.take_back is not None and scene is not None:
-                with bridge.as_drawn(scene):
+                with document.as_drawn(scene):
                     self.take_back()  # its undo step begins where the search began
             lost = running.found is None and not running.seen.dropped
             if lost and scene is not None and self.task.rescue is not None:
@@ -207,7 +207,7 @@ class PE_OT_run_job(JobOperator, bpy.types.Operator):
     row = JobRow(read=lambda _context: None, unless=lambda _context: "")  # until one is asked for
 
 
-Make = Callable[[bpy.types.Scene, pe.Study, bridge.Fingerprint], Task]
+Make = Callable[[bpy.types.Scene, pe.Study, document.Fingerprint], Task]
 
 
 def of_study(make: Make) -> Callable[[bpy.types.Context], Task]:
@@ -216,15 +216,15 @@ def of_study(make: Make) -> Callable[[bpy.types.Context], Task]:
 
     def read(context: bpy.types.Context) -> Task:
         scene = context.scene
-        with bridge.as_drawn(scene):
-            bridge.read_states(scene)
+        with document.as_drawn(scene):
+            document.read_states(scene)
             depsgraph = context.evaluated_depsgraph_get()
             vehicle = vehicle_cache.shared.read(scene, depsgraph).vehicle
-            sensors = bridge.sensor_objects(scene)
-            study = bridge.study_from_scene(scene, depsgraph, vehicle, sensors)
+            sensors = document.sensor_objects(scene)
+            study = document.study_from_scene(scene, depsgraph, vehicle, sensors)
             task = make(scene, study, result_staleness.fingerprint(scene, depsgraph, sensors))
             task.job.as_drawn = engine_calls.checker_of_study
-            task.job.notes = bridge.missing_data(scene, sensors)  # what the scene lacks
+            task.job.notes = document.missing_data(scene, sensors)  # what the scene lacks
             return task
 
     return read
@@ -242,7 +242,7 @@ def begin(row: JobRow, **asked: Any) -> OperatorResult:
 
 
 def cached_score(
-    scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint
+    scene: bpy.types.Scene, study: pe.Study, taken: document.Fingerprint
 ) -> pe.Score | None:
     """Return the score of a study as it was read from a scene, if it was made in this session. None
     for a prior of labelled boxes: their file may have changed since."""
@@ -254,18 +254,18 @@ def cached_score(
 
 def store_result(scene: bpy.types.Scene, outcome: jobs.Outcome, signature: str) -> None:
     """Store a result in the scene; keep its score for the views and for the next search."""
-    bridge.store_outcome(scene, outcome, signature)
+    document.store_outcome(scene, outcome, signature)
     live_state(scene.name).finished = FinishedScore(signature, outcome.study, outcome.after)
     diagnostics.explain_score(scene, outcome, signature)
     signals.view_changed.emit()  # there is a ground map of all voxels now
 
 
-def score_task(_scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint) -> Task:
+def score_task(_scene: bpy.types.Scene, study: pe.Study, taken: document.Fingerprint) -> Task:
     """Score the sensors, also where a score is cached: the button was pressed."""
 
     def finish(scene: bpy.types.Scene, outcome: jobs.Outcome) -> str:
         store_result(scene, outcome, taken.text)
-        bridge.store_variant_scores(scene, outcome, taken.surroundings)
+        document.store_variant_scores(scene, outcome, taken.surroundings)
         if not bpy.app.background:
             known_rigs.request(scene, study, taken.surroundings)
         seen = advice.percent(outcome.after.coverage, 1)
@@ -274,9 +274,9 @@ def score_task(_scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerpri
     return Task(jobs.ScoreJob(study), finish)
 
 
-def optimize_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint) -> Task:
+def optimize_task(scene: bpy.types.Scene, study: pe.Study, taken: document.Fingerprint) -> Task:
     """Search, if that is possible; the score of the start is not made again if it is cached."""
-    bridge.check_placeable(scene, study)
+    document.check_placeable(scene, study)
     job = jobs.OptimizeJob(study, before=cached_score(scene, study, taken))
 
     def finish(scene: bpy.types.Scene, outcome: jobs.Outcome) -> Told:
@@ -288,30 +288,30 @@ def optimize_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerp
 
     def rescue(scene: bpy.types.Scene, job: jobs.OptimizeJob) -> None:
         if job.best is not study:
-            bridge.keep_rig(scene, "Best so far", job.best.rig)
+            document.keep_rig(scene, "Best so far", job.best.rig)
 
     def place(scene: bpy.types.Scene, job: jobs.OptimizeJob) -> Callable[[], None]:
-        return bridge.place_for_now(scene, job.best.rig, study.rig)
+        return document.place_for_now(scene, job.best.rig, study.rig)
 
     return Task(job, finish, rescue=rescue, place=place)
 
 
 def store_search(
-    scene: bpy.types.Scene, outcome: jobs.Outcome, taken: bridge.Fingerprint
+    scene: bpy.types.Scene, outcome: jobs.Outcome, taken: document.Fingerprint
 ) -> list[str]:
     """Keep the best rig as a variant, then move the sensors; return names of removed ones. Undo
     restores the poses only: the variant has an undo step of its own before it."""
     settings = scene.perception_entropy
-    result_key = bridge.store_search(scene, outcome, taken.surroundings)
+    result_key = document.store_search(scene, outcome, taken.surroundings)
     if bpy.ops.ed.undo_push.poll():  # a script without a window has no undo
         bpy.ops.ed.undo_push(message="Optimize: Keep Variant")
     goes_on = settings.has_result and settings.result_signature == taken.text
     first = settings.result if goes_on else None
-    gone = bridge.place_rig(scene, outcome.study.rig, outcome.start.rig)
+    gone = document.place_rig(scene, outcome.study.rig, outcome.start.rig)
     store_result(scene, outcome, taken.with_rig(outcome.study.rig).text)
     if first is not None and first.kind == "optimize":  # of searches in a row
-        bridge.begin_with(settings, first)
-    bridge.mark_active(scene, result_key)
+        document.begin_with(settings, first)
+    document.mark_active(scene, result_key)
     return gone
 
 
@@ -328,12 +328,12 @@ def search_line(outcome: jobs.Outcome) -> str:
     return f"Perception entropy {before:.3f} to {after:.3f} nats ({change}; {best})"
 
 
-def front_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint) -> Task:
+def front_task(scene: bpy.types.Scene, study: pe.Study, taken: document.Fingerprint) -> Task:
     """Search for a front, if there is something to choose; keep it as variants."""
-    bridge.check_choosable(scene, study)
+    document.check_choosable(scene, study)
 
     def finish(scene: bpy.types.Scene, found: jobs.TradeOff) -> str:
-        bridge.store_front(scene, found, taken.surroundings)
+        document.store_front(scene, found, taken.surroundings)
         signals.view_changed.emit()
         early = ", stopped early" if found.stopped else ""
         return f"{len(found.front)} designs on the Pareto front, kept as variants{early}"
@@ -341,25 +341,25 @@ def front_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprin
     return Task(jobs.FrontJob(study), finish, "trade_off")
 
 
-def check_task(scene: bpy.types.Scene, study: pe.Study, taken: bridge.Fingerprint) -> Task:
+def check_task(scene: bpy.types.Scene, study: pe.Study, taken: document.Fingerprint) -> Task:
     """Check all requirements that the rig can be held to; verdicts are stored as they are found.
     After Esc those that were found before it are kept; a requirement that was changed meanwhile has
     no verdict."""
     if not study.requirements and not study.stories:
         raise pe.InputError("scene", "requirements", "at least one, or a story", "none")
-    tables = {*bridge.requirements_key(scene.perception_entropy)}
-    signatures = bridge.story_signatures(scene.perception_entropy, taken.text)
-    bridge.store_verdicts(scene.perception_entropy, ())
+    tables = {*document.requirements_key(scene.perception_entropy)}
+    signatures = document.story_signatures(scene.perception_entropy, taken.text)
+    document.store_verdicts(scene.perception_entropy, ())
     count = 0
 
     def store(scene: bpy.types.Scene, found: jobs.CheckJob | jobs.Checked) -> None:
         nonlocal count
         count = len(found.verdicts)
         settings = scene.perception_entropy
-        same = {name for name, _ in tables & {*bridge.requirements_key(settings)}}
+        same = {name for name, _ in tables & {*document.requirements_key(settings)}}
         kept = [each for each in found.verdicts if each.name in same]
-        bridge.store_verdicts(settings, kept, found.unchecked)
-        bridge.store_driven(settings, found.driven, signatures)
+        document.store_verdicts(settings, kept, found.unchecked)
+        document.store_driven(settings, found.driven, signatures)
 
     def progressed(scene: bpy.types.Scene, job: jobs.CheckJob) -> None:
         if len(job.verdicts) > count:

@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 
-from .. import bridge
+from .. import document
 from ..sensor_kinds import kind_label, row_of
 from .declared import Refused, chosen_sensor, operator
 from .edit_sensors import NAME
@@ -92,7 +92,7 @@ def look_through(context: bpy.types.Context, name: str) -> None:
     scene = context.scene
     depsgraph = context.evaluated_depsgraph_get()
     obj = chosen_sensor(context, name)
-    sensor = bridge.sensor_from_object(obj, depsgraph)
+    sensor = document.sensor_from_object(obj, depsgraph)
     row = row_of(sensor.kind)
     if row.camera is None:
         what = kind_label(sensor.kind)
@@ -100,7 +100,7 @@ def look_through(context: bpy.types.Context, name: str) -> None:
     if looking_through(scene) == obj:
         come_back(scene)
     else:
-        bridge.look_through(scene, obj, row.camera(sensor.model))
+        document.look_through(scene, obj, row.camera(sensor.model))
         look_along(scene, context.area)
 
 
@@ -125,5 +125,5 @@ def looking_through(scene: bpy.types.Scene) -> bpy.types.Object | None:
 
 def come_back(scene: bpy.types.Scene) -> None:
     """Restore the scene's camera, size of renders, and views."""
-    bridge.look_back(scene)
+    document.look_back(scene)
     restore(scene)

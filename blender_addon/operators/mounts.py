@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 from bpy.props import EnumProperty
 
-from .. import bridge, signals
+from .. import document, signals
 from ..choices import BY_GROUP, BY_PARTS
 from ..engine import catalog, search
 from .add_sensor import select_only
@@ -25,7 +25,7 @@ _listed: list[tuple[str, str, str]] = []
 
 def take_sensors_off(scene: bpy.types.Scene, mount: bpy.types.PropertyGroup) -> None:
     """Take sensors off a mount that is about to be removed."""
-    for obj in bridge.sensor_objects(scene):
+    for obj in document.sensor_objects(scene):
         if obj.perception_entropy.mount == mount.name:
             obj.perception_entropy.mount = ""
     signals.view_changed.emit()
@@ -92,7 +92,7 @@ def add_no_go(context: bpy.types.Context) -> None:
     low, high = no_go_extent(context)
     obj.location = (low + high) / 2.0
     obj.scale = np.maximum(high - low, MIN_SIDE_M) / (2.0 * NO_GO_SIZE_M)
-    bridge.shown_collection(context.scene).objects.link(obj)
+    document.shown_collection(context.scene).objects.link(obj)
     obj.perception_entropy.is_no_go = True
     select_only(context, obj)
 
@@ -125,11 +125,11 @@ def put_on_mount(
     """Put a sensor on a mount, at the nearest point to where it is. `InputError` when the mount has
     no faces or slots, or its pose is fixed."""
     row = scene.perception_entropy.mounts[name]
-    mount = bridge.mount_of_row(scene, depsgraph, row)
-    vehicle = bridge.vehicle_of_scene(scene, depsgraph)
-    sensor = bridge.sensor_from_object(obj, depsgraph)
+    mount = document.mount_of_row(scene, depsgraph, row)
+    vehicle = document.vehicle_of_scene(scene, depsgraph)
+    sensor = document.sensor_from_object(obj, depsgraph)
     housing = catalog.housing(sensor.model.name)
-    bridge.place_poses(scene, {obj.name: search.snap_to_mount(sensor, mount, vehicle, housing)})
+    document.place_poses(scene, {obj.name: search.snap_to_mount(sensor, mount, vehicle, housing)})
 
 
 def selected_parts(context: bpy.types.Context) -> list[bpy.types.Object]:

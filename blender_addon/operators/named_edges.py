@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 from bpy.props import StringProperty
 
-from .. import bridge, signals
+from .. import document, signals
 from ..engine import pe, search
 from .declared import Refused, operator
 
@@ -21,7 +21,7 @@ def name_edge(context: bpy.types.Context, name: str) -> str:
     """Name an edge, from which the positions of sensors are told: of the vertices that are selected
     in Edit Mode, or the line or curve beside the vehicle that is selected in Object Mode"""
     scene = context.scene
-    taken = [obj.perception_entropy.edge_name for obj in bridge.edge_objects(scene)]
+    taken = [obj.perception_entropy.edge_name for obj in document.edge_objects(scene)]
     if name in taken:
         raise Refused(f"There is an edge {name!r} already: choose another name")
     obj = context.active_object
@@ -38,7 +38,7 @@ def name_edge(context: bpy.types.Context, name: str) -> str:
     if len(points) < POINTS:
         raise Refused(f"Select {POINTS} vertices or more first")
     edge = pe.Edge(name, np.round(points, search.POSITION_DECIMALS).tolist())
-    bridge.add_edge(scene, edge)
+    document.add_edge(scene, edge)
     return f"Edge {name!r} of {len(edge.points)} vertices"
 
 

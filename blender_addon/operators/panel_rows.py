@@ -4,7 +4,7 @@ from itertools import count
 
 import bpy
 
-from .. import bridge, vehicle_cache
+from .. import document, vehicle_cache
 from ..choices import REGION_ITEMS
 from ..engine import catalog, kinds, pe, studies
 from ..properties import DEFAULT_REGION
@@ -76,7 +76,7 @@ def guess_axles(context: bpy.types.Context) -> str:
     reference = pe.guessed_reference(vehicle)
     if reference is None:
         raise pe.InputError("vehicle", "axles", "parts named as wheels, front and rear", "none")
-    bridge.put(scene.perception_entropy, bridge.REFERENCE, studies.write(reference))
+    document.put(scene.perception_entropy, document.REFERENCE, studies.write(reference))
     return f"Rear axle at x {reference.rear_axle_x:g} m, z {reference.rear_axle_z:g} m"
 
 

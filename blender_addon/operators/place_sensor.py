@@ -9,7 +9,7 @@ import numpy as np
 from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, StringProperty
 from mathutils import Matrix, Vector
 
-from .. import bridge
+from .. import document
 from ..engine import catalog, kinds, pe
 from ..housing import measured_housing
 from ..sensor_kinds import Mount, mount_for
@@ -58,9 +58,9 @@ def _stance(self: Any, mount: Mount) -> Stance:
 
 def _put(self: Any, context: bpy.types.Context, name: str, mount: Mount, placed: Matrix) -> None:
     """Add the sensor with a pose, or move the one that is there; with its mirror image if asked."""
-    pose = bridge.pose_of_matrix(np.array(placed, dtype=float))
+    pose = document.pose_of_matrix(np.array(placed, dtype=float))
     if self.sensor:
-        bridge.place_poses(context.scene, {self.sensor: pose})
+        document.place_poses(context.scene, {self.sensor: pose})
         obj = context.scene.objects[self.sensor]
     else:
         body = measured_housing(self.model) if self.housing else None
@@ -68,9 +68,9 @@ def _put(self: Any, context: bpy.types.Context, name: str, mount: Mount, placed:
         obj.location = placed.to_translation()
         obj.rotation_euler = placed.to_euler()
         context.view_layer.update()
-    if self.mirrored and not obj.perception_entropy.mirror_of and not bridge.in_the_middle(pose):
+    if self.mirrored and not obj.perception_entropy.mirror_of and not document.in_the_middle(pose):
         try:
-            bridge.link_mirror(obj, mirrored_copy(context, obj))
+            document.link_mirror(obj, mirrored_copy(context, obj))
         except pe.InputError as error:
             self.report({"WARNING"}, str(error))
     select_only(context, obj)

@@ -15,7 +15,7 @@ import numpy as np
 from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix
 
-from .. import bridge, engine_calls, engine_process, viewport
+from .. import document, engine_calls, engine_process, viewport
 from ..choices import free_name
 from ..engine import catalog, graphics, kinds, pe
 from ..engine_calls import Gain
@@ -208,10 +208,10 @@ class HeldSensor:
                 self.matrix = Matrix.Translation(self.matrix.translation) @ self._own
             for axis, value in wanted.items():
                 self.matrix.translation[axis] = value
-            pose = bridge.pose_of_matrix(np.array(self.matrix, dtype=float))
+            pose = document.pose_of_matrix(np.array(self.matrix, dtype=float))
             stem = graphics.Primitives.of([spot.point, pose.position], STEM_COLOR)
-            is_two = self.mirrored and not bridge.in_the_middle(pose)
-            poses = [pose, bridge.mirrored_pose(pose)] if is_two else [pose]
+            is_two = self.mirrored and not document.in_the_middle(pose)
+            poses = [pose, document.mirrored_pose(pose)] if is_two else [pose]
             lines, faces = ([moved_to(shape, at) for at in poses] for shape in self._shape)
             self.lines = graphics.Primitives.joined([*lines, stem])
             self._faces = graphics.Primitives.joined(faces)
@@ -271,12 +271,12 @@ class HeldSensor:
     ) -> tuple[int, pe.Study, str] | None:
         """Return what it is scored in: a number, the study, its name; None, with the error as text,
         if the scene has no study."""
-        objects = [obj for obj in bridge.sensor_objects(scene) if obj.name != self.name]
-        sensors = bridge.possible_sensors(objects, depsgraph)
+        objects = [obj for obj in document.sensor_objects(scene) if obj.name != self.name]
+        sensors = document.possible_sensors(objects, depsgraph)
         name = free_name(self.kind.label, {sensor.name for sensor in sensors})
         try:
             rig = pe.Rig([*sensors, pe.Sensor(name, self.model)])
-            return next(_numbers), bridge.study_of_rig(scene, depsgraph, rig), name
+            return next(_numbers), document.study_of_rig(scene, depsgraph, rig), name
         except (pe.InputError, MemoryError) as error:
             self.score = f"no score: {error}"
             return None

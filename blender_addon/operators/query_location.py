@@ -6,7 +6,7 @@ from typing import Any
 import bpy
 from bpy.props import FloatVectorProperty
 
-from .. import bridge, location_query
+from .. import document, location_query
 from . import modes
 from .declared import OperatorResult, Unless, operator, report
 from .surface_pose import ViewUnderMouse, ray_of, view_under
@@ -81,7 +81,7 @@ def _point(context: bpy.types.Context, event: bpy.types.Event) -> None:
 
 
 def _lacks_sensors(context: bpy.types.Context) -> str | None:
-    return None if bridge.sensor_objects(context.scene) else "There are no sensors yet"
+    return None if document.sensor_objects(context.scene) else "There are no sensors yet"
 
 
 @operator(

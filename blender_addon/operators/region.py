@@ -6,7 +6,7 @@ import bpy
 from bpy.props import BoolProperty
 from mathutils import Vector
 
-from .. import bridge, signals, where_map
+from .. import document, signals, where_map
 from ..engine import advice, jobs, pe
 from .declared import OperatorResult, Refused, chosen_sensor, operator
 from .edit_sensors import NAME
@@ -41,7 +41,7 @@ def free_region(context: bpy.types.Context, operator: Any) -> OperatorResult:
     return begin(REGION, sensor=name, **asked)
 
 
-def _task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> Task:
+def _task(scene: bpy.types.Scene, study: pe.Study, _taken: document.Fingerprint) -> Task:
     asked = REGION.asked
     loss = scene.perception_entropy.view.region_loss
     options: dict[str, Any] = {"allowed": loss or None, "count": asked["places"] or None}
@@ -84,7 +84,7 @@ def use_as_mount(context: bpy.types.Context) -> str:
     found = found.allowing(loss) if loss > 0.0 else found
     mount = jobs.region_mount(found)
     row = new_row(scene, "mounts", f"{found.sensor} region")
-    bridge.write_mount(scene, row, mount)
+    document.write_mount(scene, row, mount)
     context.view_layer.update()
     before = Vector(obj.matrix_world.translation)
     if not found.holds_sensor:  # the region errs to the safe side, and the sensor has to be on it

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import bpy
 
-from .. import bridge, vehicle_cache
+from .. import document, vehicle_cache
 from ..engine import requirements, studies, wording
 from ..overlay.layer_cache import shown_of
 from ..overlay.requirement_zones import VerdictShape
@@ -37,13 +37,13 @@ def add_requirement(context: bpy.types.Context, preset: str) -> str:
     if preset != ALL:
         return f"Added {_add(scene, *_requirement(preset))}"
     settings = scene.perception_entropy
-    present = {bridge.preset_of(row) for row in settings.requirements}
+    present = {document.preset_of(row) for row in settings.requirements}
     presets = studies.requirement_file.presets()
     made = dict(_requirement(each) for each in presets if each not in present)
     depsgraph = context.evaluated_depsgraph_get()
     chosen = settings.requirement_index
     vehicle = vehicle_cache.shared.read(scene, depsgraph).vehicle
-    study = bridge.study_from_scene(scene, depsgraph, vehicle)
+    study = document.study_from_scene(scene, depsgraph, vehicle)
     fitting, reasons = requirements.checkable(
         list(made), study.rig, study.vehicle, study.reference, space=study.space
     )
@@ -59,7 +59,7 @@ def _add(scene: bpy.types.Scene, made: requirements.Requirement, wanted: str) ->
     """Add a row with a requirement; return the name that it got."""
     row = new_row(scene, "requirements", wanted)
     name = row.name
-    bridge.write_row(row, made)
+    document.write_row(row, made)
     row.name = name
     return name
 
@@ -116,7 +116,7 @@ def shown_verdicts(scene: bpy.types.Scene) -> dict[str, ShownVerdict]:
 
 def _stored(row: bpy.types.PropertyGroup) -> ShownVerdict:
     """Return a row's stored verdict in words."""
-    stored = bridge.stored_verdict(row)
+    stored = document.stored_verdict(row)
     if stored is None or isinstance(stored, str):
         return ShownVerdict(None, "", f"not checked: {stored}" if stored else "")
     return ShownVerdict(stored.met, wording.margin_text(stored), wording.verdict_text(stored))

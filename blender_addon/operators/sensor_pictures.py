@@ -9,7 +9,7 @@ import numpy as np
 from gpu_extras.presets import draw_texture_2d
 from mathutils import Matrix
 
-from .. import bridge, viewport
+from .. import document, viewport
 from ..engine import catalog, pe
 
 TITLE_PX = 20.0
@@ -135,7 +135,7 @@ def has_room(context: bpy.types.Context) -> bool:
 def sensor_of(obj: bpy.types.Object) -> pe.Sensor | None:
     """Return an object's sensor as it stands; None where it is not possible: the list says why."""
     try:
-        pose = bridge.pose_of_matrix(np.array(obj.matrix_world, dtype=float))
+        pose = document.pose_of_matrix(np.array(obj.matrix_world, dtype=float))
         return pe.Sensor(obj.name, catalog.load(obj.perception_entropy.model), pose)
     except pe.InputError:
         return None

@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 
-from .. import bridge
+from .. import document
 from ..engine import advice
 from ..overlay.layer_cache import shown_of
 from ..overlay.layers import WHOLE_RIG
@@ -42,5 +42,5 @@ def take_better_place(context: bpy.types.Context) -> str:
     if found is None or found.better is None:
         raise Refused("Best Way shows no better place for the active sensor")
     better = found.better
-    bridge.place_poses(context.scene, better.poses)
+    document.place_poses(context.scene, better.poses)
     return f"Moved by {better.distance * 100.0:.0f} cm: {better.change:+.3f} nats"

@@ -7,7 +7,7 @@ from typing import Any
 import bpy
 from bpy.props import FloatVectorProperty, IntProperty, StringProperty
 
-from .. import bridge, where_map
+from .. import document, where_map
 from ..engine import jobs, pe
 from .add_sensor import select_only
 from .declared import INTERNAL, OperatorResult, Refused, operator
@@ -23,7 +23,7 @@ NONE_FOUND = "No move of one sensor, and no added one that was tried, is enough"
     "What Would Mend It?",
     mode="Sensors are placed in Object Mode",
     unless=lambda context: (
-        None if bridge.sensor_objects(context.scene) else "There are no sensors yet"
+        None if document.sensor_objects(context.scene) else "There are no sensors yet"
     ),
     options=INTERNAL,
     requirement=StringProperty(name="Requirement", description="Its name; empty: the location"),
@@ -38,7 +38,7 @@ def suggest(
     return begin(SUGGESTIONS, of=requirement or tuple(point))
 
 
-def _task(_scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> Task:
+def _task(_scene: bpy.types.Scene, study: pe.Study, _taken: document.Fingerprint) -> Task:
     of = SUGGESTIONS.asked["of"]
     given: dict[str, Any] = {"names": (of,)} if isinstance(of, str) else {"spot": of[:2]}
 
@@ -71,7 +71,7 @@ def take_suggestion(context: bpy.types.Context, number: int) -> str:
     if chosen.added:
         put(context, chosen.rig[chosen.moved[0]])
     else:
-        bridge.place_rig(scene, chosen.rig, chosen.start)
+        document.place_rig(scene, chosen.rig, chosen.start)
         select_only(context, scene.objects[chosen.moved[0]])
     where_map.store_offers(scene.name, None)
     return chosen.sentence

@@ -9,7 +9,7 @@ import numpy as np
 from bpy_extras import view3d_utils
 from mathutils import Matrix, Vector
 
-from .. import bridge
+from .. import document
 from ..engine import Floats, search
 from ..sensor_kinds import Mount
 
@@ -44,8 +44,8 @@ def parts_of(
     """Return the names of objects that a sensor may be put on; None (all) without a vehicle."""
     if collection is None:
         return None
-    members = bridge.visible_members(collection, depsgraph.view_layer)
-    return {obj.name_full for obj in members if not bridge.mounted_on_sensor(obj)}
+    members = document.visible_members(collection, depsgraph.view_layer)
+    return {obj.name_full for obj in members if not document.mounted_on_sensor(obj)}
 
 
 def spot_on_ray(
@@ -204,8 +204,8 @@ def vehicle_box(vehicle: bpy.types.Collection | None) -> Floats:
 
 def is_part(obj: bpy.types.Object) -> bool:
     """Whether an object may be a part of a vehicle."""
-    is_mesh = obj.type == "MESH" and not bridge.in_surroundings(obj)
-    return is_mesh and not bridge.mounted_on_sensor(obj)
+    is_mesh = obj.type == "MESH" and not document.in_surroundings(obj)
+    return is_mesh and not document.mounted_on_sensor(obj)
 
 
 def _axes_looking_along(normal: Vector) -> Matrix:

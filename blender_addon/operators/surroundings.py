@@ -9,7 +9,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from .. import body_query, bridge, housing, vehicle_cache
+from .. import body_query, document, housing, vehicle_cache
 from ..engine import graphics, requirements
 from .declared import operator
 
@@ -56,7 +56,7 @@ SIDES = 24
 def _made(scene: bpy.types.Scene) -> bpy.types.Collection | None:
     """Return the collection of a scene's surroundings."""
     every = scene.collection.children_recursive
-    return next((each for each in every if each.get(bridge.SURROUNDINGS)), None)
+    return next((each for each in every if each.get(document.SURROUNDINGS)), None)
 
 
 @operator("Add or Remove Surroundings", mode="Surroundings are added in Object Mode")
@@ -73,7 +73,7 @@ def surroundings(context: bpy.types.Context) -> str:
         bpy.data.batch_remove([each for each in data if not each.users])
         return "Surroundings removed"
     made = bpy.data.collections.new(NAME)
-    made[bridge.SURROUNDINGS] = True
+    made[document.SURROUNDINGS] = True
     scene.collection.children.link(made)
     for obj in (_road(), *_marks(), _sun()):
         obj.hide_select = True

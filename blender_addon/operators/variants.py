@@ -7,7 +7,7 @@ from typing import Any
 import bpy
 from bpy.props import IntProperty
 
-from .. import bridge, diagnostics, result_staleness, signals
+from .. import diagnostics, document, result_staleness, signals
 from ..choices import BEFORE_MOVE, free_name
 from ..engine import pe
 from .declared import INTERNAL, UNDO, operator
@@ -26,7 +26,7 @@ def unless_variants(context: bpy.types.Context) -> str | None:
 
 
 def _unless_active(context: bpy.types.Context) -> str | None:
-    active = bridge.active_variant(context.scene)
+    active = document.active_variant(context.scene)
     return "No variant was put here: save this as a new one" if active is None else None
 
 
@@ -45,7 +45,7 @@ def of_variant(
             settings = context.scene.perception_entropy
             rows = list(settings.variants)
             wanted = [row for row in rows if row.key == key] or rows[settings.variant_index :][:1]
-            with bridge.as_drawn(scene) if of_sensors else contextlib.nullcontext():
+            with document.as_drawn(scene) if of_sensors else contextlib.nullcontext():
                 return function(scene, wanted[0] if wanted else None)
 
         act.__name__ = function.__name__
@@ -71,12 +71,12 @@ def save_variant(scene: bpy.types.Scene, _variant: object) -> str:
 @of_variant("Update Variant", unless=_unless_active, of_sensors=True)
 def update_variant(scene: bpy.types.Scene, _variant: object) -> str:
     """Overwrite the active variant with the present sensors"""
-    row: Any = bridge.active_variant(scene)  # there is one, or the operator is not possible
-    records = bridge.records_of_scene(scene)
-    if not bridge.same_score(bridge.records_of(row), records):
+    row: Any = document.active_variant(scene)  # there is one, or the operator is not possible
+    records = document.records_of_scene(scene)
+    if not document.same_score(document.records_of(row), records):
         row.score_json = row.figures_json = ""
-    bridge.write_records(row, records)
-    bridge.mark_active(scene, row.key)
+    document.write_records(row, records)
+    document.mark_active(scene, row.key)
     return f"Updated {row.name}"
 
 
@@ -86,7 +86,7 @@ def switch_variant(scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> 
 
     If the present sensors are no variant yet, they are saved as one: nothing is lost"""
     key = variant.key
-    before = bridge.records_of_scene(scene)
+    before = document.records_of_scene(scene)
     kept = keep_unsaved(scene, before)
     variant = next(row for row in scene.perception_entropy.variants if row.key == key)
     switch(scene, variant, before)
@@ -97,9 +97,9 @@ def copy_variant(context: bpy.types.Context, source: bpy.types.PropertyGroup) ->
     """Add a copy of a variant with its score; return its name."""
     scene = context.scene
     key = source.key
-    made = bridge.add_variant(scene, _free(scene, source.name), bridge.records_of(source))
+    made = document.add_variant(scene, _free(scene, source.name), document.records_of(source))
     original = next(row for row in scene.perception_entropy.variants if row.key == key)
-    bridge.copy_score(original, made)
+    document.copy_score(original, made)
     return str(made.name)
 
 
@@ -133,15 +133,15 @@ def ghost_variant(scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) -> N
 
 def save_scene(scene: bpy.types.Scene, name: str) -> bpy.types.PropertyGroup:
     """Store the scene's sensors as a new variant and make it the active one."""
-    row = bridge.add_variant(scene, _free(scene, name), bridge.records_of_scene(scene))
-    bridge.copy_scene_score(scene, row, result_staleness.fingerprint(scene))
-    bridge.mark_active(scene, row.key)
+    row = document.add_variant(scene, _free(scene, name), document.records_of_scene(scene))
+    document.copy_scene_score(scene, row, result_staleness.fingerprint(scene))
+    document.mark_active(scene, row.key)
     return row
 
 
-def keep_unsaved(scene: bpy.types.Scene, records: tuple[bridge.SensorRecord, ...]) -> str:
+def keep_unsaved(scene: bpy.types.Scene, records: tuple[document.SensorRecord, ...]) -> str:
     """Store the scene's sensors as a variant unless they are one; return the new name or ""."""
-    if not records or bridge.matching_variant(scene, records) is not None:
+    if not records or document.matching_variant(scene, records) is not None:
         return ""
     return save_scene(scene, UNSAVED).name
 
@@ -149,13 +149,13 @@ def keep_unsaved(scene: bpy.types.Scene, records: tuple[bridge.SensorRecord, ...
 def switch(
     scene: bpy.types.Scene,
     variant: bpy.types.PropertyGroup,
-    before: tuple[bridge.SensorRecord, ...],
+    before: tuple[document.SensorRecord, ...],
 ) -> None:
     """Apply a variant and show its result; restore the sensors where it cannot be applied."""
     try:
-        bridge.activate_variant(scene, variant)
+        document.activate_variant(scene, variant)
     except pe.InputError:
-        bridge.apply_records(scene, before)
+        document.apply_records(scene, before)
         raise
     show_own_result(scene, variant)
 
@@ -168,8 +168,8 @@ def show_own_result(scene: bpy.types.Scene, variant: bpy.types.PropertyGroup) ->
     if settings.has_result and not settings.result_stale:
         return
     with contextlib.suppress(pe.InputError):  # a score says what is wrong
-        depsgraph = bridge.view_layer_of(scene).depsgraph
-        outcome = bridge.restore_result(scene, variant, now, depsgraph)
+        depsgraph = document.view_layer_of(scene).depsgraph
+        outcome = document.restore_result(scene, variant, now, depsgraph)
         if outcome is not None:
             diagnostics.explain_score(scene, outcome, now.text)
 
@@ -181,15 +181,15 @@ def _free(scene: bpy.types.Scene, name: str) -> str:
 def stand_as_variant(
     scene: bpy.types.Scene,
     title: str,
-    records: tuple[bridge.SensorRecord, ...],
+    records: tuple[document.SensorRecord, ...],
     note: str,
-    before: tuple[bridge.SensorRecord, ...],
+    before: tuple[document.SensorRecord, ...],
 ) -> str:
     """Store the present sensors, and apply other sensors as a new variant; return its name.
     `InputError` when they cannot stand here; there is no such variant then."""
     keep_unsaved(scene, before)
     rows = scene.perception_entropy.variants
-    row = bridge.add_variant(scene, _free(scene, title), records)
+    row = document.add_variant(scene, _free(scene, title), records)
     row.note = note
     key = row.key
     name = row.name

@@ -6,7 +6,7 @@ from typing import Any
 import bpy
 from bpy.props import EnumProperty, IntProperty
 
-from .. import bridge, location_query, where_map
+from .. import document, location_query, where_map
 from ..engine import catalog, jobs, kinds, pe
 from ..housing import measured_housing
 from ..sensor_kinds import mount_for
@@ -62,7 +62,7 @@ def _lacks(context: bpy.types.Context) -> str | None:
     settings = context.scene.perception_entropy
     if settings.vehicle is None:
         return "There is no vehicle yet"
-    return None if bridge.sensor_objects(context.scene) else "There are no sensors yet"
+    return None if document.sensor_objects(context.scene) else "There are no sensors yet"
 
 
 @operator(
@@ -81,13 +81,13 @@ def where(_context: bpy.types.Context, operator: Any) -> OperatorResult:
     return begin(PLACES, **asked)
 
 
-def _task(scene: bpy.types.Scene, study: pe.Study, _taken: bridge.Fingerprint) -> Task:
+def _task(scene: bpy.types.Scene, study: pe.Study, _taken: document.Fingerprint) -> Task:
     asked = PLACES.asked
     model = catalog.load(asked["model"])
     name = asked["on"]
     sensor = pe.Sensor(kinds.kind_of(model).label, model)
     mount = "" if name == WHOLE else name
-    study = bridge.with_mount(study, scene, bpy.context.evaluated_depsgraph_get(), mount)
+    study = document.with_mount(study, scene, bpy.context.evaluated_depsgraph_get(), mount)
     options: dict[str, Any] = {"mount": mount, "count": asked["places"] or None}
     job = jobs.WhereJob(study, sensor, asked["figure"], **options)
     seen = 0
@@ -141,7 +141,7 @@ def put(context: bpy.types.Context, sensor: pe.Sensor) -> bpy.types.Object:
     name = sensor.model.name
     body = measured_housing(name)
     obj = new_sensor(context, sensor.name, name, mount_for(sensor.model), body=body)
-    bridge.place_poses(context.scene, {obj.name: sensor.pose})
+    document.place_poses(context.scene, {obj.name: sensor.pose})
     select_only(context, obj)
     return obj
 

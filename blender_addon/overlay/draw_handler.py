@@ -12,7 +12,7 @@ import gpu
 import numpy as np
 from mathutils import Matrix
 
-from .. import body_query, bridge, engine_process, vehicle_cache, viewport
+from .. import body_query, document, engine_process, vehicle_cache, viewport
 from ..engine import graphics, pe
 from ..panel_text import is_simple, plain
 from . import labels, scheduler, strip, surroundings, wipe
@@ -195,7 +195,7 @@ def legend_of(scene: str, layer: str, name: str) -> graphics.ColorKey | None:
 
 def _seconds(scene: bpy.types.Scene) -> float:
     """Return how long after the first frame of a scene its present one is [s]."""
-    return (scene.frame_current - scene.frame_start) / bridge.frame_rate(scene)
+    return (scene.frame_current - scene.frame_start) / document.frame_rate(scene)
 
 
 def uploaded(scene: str, layer: Layer, names: list[str], seconds: float = 0.0) -> list[Batches]:
@@ -259,4 +259,4 @@ def _eye(context: bpy.types.Context) -> pe.Pose | None:
     """Return the pose of the sensor that the view looks through."""
     name = _sensor_looked_through(context)
     sensor = context.scene.objects.get(name) if name else None
-    return None if sensor is None else bridge.pose_of_matrix(np.array(sensor.matrix_world))
+    return None if sensor is None else document.pose_of_matrix(np.array(sensor.matrix_world))

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import bpy
 import numpy as np
 
-from .. import best_so_far, bridge, location_query, sensor_cache, vehicle_cache, where_map
+from .. import best_so_far, document, location_query, sensor_cache, vehicle_cache, where_map
 from ..choices import LimitBox
 from ..engine import graphics, pe, studies
 from ..engine_calls import rig_key
@@ -82,7 +82,7 @@ class SnapshotReader:
             compared=compared,
             compared_name=compared_name,
             has_result=scene.perception_entropy.has_result,
-            focus=bridge.focus_regions(scene),
+            focus=document.focus_regions(scene),
             reference=_reference(scene),
             where=where_map.maps.get(scene.name),
             region=where_map.regions.get(scene.name),
@@ -107,12 +107,12 @@ class SnapshotReader:
         shown = []
         found: dict[Hashable, np.ndarray] = {}
         for row in scene.perception_entropy.mounts:
-            if (said := bridge.mount_key(row)) is None:
+            if (said := document.mount_key(row)) is None:
                 continue
             key = said, body_key
             faces = known.get(key)
             if faces is None:
-                faces = bridge.mount_faces(scene, depsgraph, row, vehicle)
+                faces = document.mount_faces(scene, depsgraph, row, vehicle)
             found[key] = faces
             if len(faces):
                 shown.append(MountFaces(row.name, key, faces, row.name in chosen))
@@ -124,15 +124,15 @@ class SnapshotReader:
         settings = scene.perception_entropy
         space = None
         try:
-            space = bridge.document_of(settings, "space").space
-            document = bridge.document_of(settings, *bridge.SCORED_PARTS)
-            model = document.perception
-            targets = document.metric
-            key = bridge.prior_key(scene), space, model, targets
+            space = document.document_of(settings, "space").space
+            scored = document.document_of(settings, *document.SCORED_PARTS)
+            model = scored.perception
+            targets = scored.metric
+            key = document.prior_key(scene), space, model, targets
             known = self._inputs.get(scene.name)
             if known is None or known.key != key:
                 known = ScoringInputs(
-                    bridge.prior_from_scene(scene), space, model, key=key, targets=targets
+                    document.prior_from_scene(scene), space, model, key=key, targets=targets
                 )
         except pe.InputError as error:
             known = ScoringInputs(None, space, None, str(error))
@@ -165,7 +165,7 @@ class SnapshotReader:
         else:
             try:
                 objects = sensor_cache.sensors(scene)
-                study = bridge.study_from_scene(scene, depsgraph, vehicle, objects)
+                study = document.study_from_scene(scene, depsgraph, vehicle, objects)
             except pe.InputError:
                 return None
             study = replace(study, prior=inputs.prior or study.prior)
@@ -215,7 +215,7 @@ def _sensors(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> tuple[Sc
     active = layer.objects.active
     for obj in sensor_cache.sensors(scene):
         with contextlib.suppress(pe.InputError):
-            possible.append((obj, bridge.sensor_from_object(obj, depsgraph)))
+            possible.append((obj, document.sensor_from_object(obj, depsgraph)))
     colors = graphics.sensor_colors(sensor for _, sensor in possible)
     found = []
     for obj, sensor in possible:
@@ -236,12 +236,12 @@ def _boxes(
     found: list[LimitBox] = []
     faces = {each.name: each.triangles for each in mounts}
     with contextlib.suppress(pe.InputError):
-        found += bridge.no_go_boxes(scene)
+        found += document.no_go_boxes(scene)
     for each in sensors:
         if each.selected and (obj := scene.objects.get(each.sensor.name)) is not None:
             with contextlib.suppress(pe.InputError):
                 around = faces.get(obj.perception_entropy.mount)
-                box = bridge.bounds_box(obj, each.sensor, vehicle, around)
+                box = document.bounds_box(obj, each.sensor, vehicle, around)
                 found += [] if box is None else [box]
     return tuple(found)
 
@@ -253,7 +253,7 @@ def _scored(
     finished = live_state(scene.name).finished
     if finished is None or scene.perception_entropy.result_stale or finished.study.space != space:
         return None
-    if bridge.shown_state(scene):  # the score is of the vehicle as drawn
+    if document.shown_state(scene):  # the score is of the vehicle as drawn
         return None
     now = {(e.sensor.name, e.sensor.model, e.sensor.pose) for e in sensors if e.counted}
     then = {(each.name, each.model, each.pose) for each in finished.study.rig}
@@ -302,7 +302,7 @@ def _variant(scene: bpy.types.Scene, key: int) -> tuple[tuple[pe.Sensor, ...], s
     for row in settings.variants if key else ():
         if row.key == key:
             with contextlib.suppress(pe.InputError):
-                rig = bridge.rig_of(bridge.records_of(row), returns=settings.returns)
+                rig = document.rig_of(document.records_of(row), returns=settings.returns)
                 return tuple(rig), row.name
     return (), ""
 
@@ -314,17 +314,17 @@ def _requirements(scene: bpy.types.Scene) -> dict[str, Any]:
     index = settings.requirement_index
     chosen = rows[index].name if index < len(rows) else ""
     try:
-        found = bridge.requirements_of(settings)
+        found = document.requirements_of(settings)
     except pe.InputError:
         return {"requirement": chosen}
-    key = bridge.requirements_key(settings)
+    key = document.requirements_key(settings)
     return {"requirements": found, "requirements_key": key, "requirement": chosen}
 
 
 def _reference(scene: bpy.types.Scene) -> pe.Reference | None:
     """Return the positions of the axles; None where they are not known, or wrong."""
     with contextlib.suppress(pe.InputError):
-        return bridge.document_of(scene.perception_entropy, "reference").reference
+        return document.document_of(scene.perception_entropy, "reference").reference
     return None
 
 
@@ -334,10 +334,10 @@ def _story(scene: bpy.types.Scene) -> dict[str, Any]:
     if settings.story_index >= len(settings.stories):
         return {}
     try:
-        found = bridge.story_of(settings.stories[settings.story_index])
-        time = bridge.document_of(settings, "time").time
+        found = document.story_of(settings.stories[settings.story_index])
+        time = document.document_of(settings, "time").time
     except pe.InputError:
         return {}
     shown = {"story": found, "confirmation": time.confirmation}
     rates = tuple(time.frames.rates.items())
-    return {**shown, "rates": rates, "rate_hz": bridge.frame_rate(scene)}
+    return {**shown, "rates": rates, "rate_hz": document.frame_rate(scene)}

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from bpy.types import Context, PropertyGroup, Scene, UILayout
 
-from ..bridge import NONE, keep_property, limit_property, limits_of, shown_state
+from ..document import NONE, keep_property, limit_property, limits_of, shown_state
 from ..engine import advice, scoring, search
 from ..live import (
     AT_REST,

@@ -4,7 +4,7 @@ from typing import Any
 
 from bpy.types import Context, PropertyGroup, UILayout
 
-from ..bridge import after_of, full_table
+from ..document import after_of, full_table
 from ..operators import shown_verdicts
 from ..panel_text import draw_label, is_simple
 from ..properties.requirement import BODIES_ASKED, OF_GROUND

@@ -3,7 +3,7 @@
 from bpy.types import Context, Object, PropertyGroup, UILayout
 
 from .. import where_map
-from ..bridge import holder_of, in_surroundings
+from ..document import holder_of, in_surroundings
 from ..engine import search
 from ..operators import shown_way
 from ..panel_text import draw_label, is_simple, worded

@@ -4,8 +4,8 @@ from typing import Any
 
 from bpy.types import Context, Object, PropertyGroup, Scene, UILayout
 
-from ..bridge import figures_of_sensor, sensor_loss
 from ..diagnostics import explanation
+from ..document import figures_of_sensor, sensor_loss
 from ..panel_text import draw_label, is_simple
 from ..sensor_cache import sensors as listed_sensors
 from .layout import ICON_PX, fitted, row_list

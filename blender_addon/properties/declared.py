@@ -14,12 +14,12 @@ from bpy.props import (
 )
 from bpy.types import PropertyGroup
 
-from .. import bridge
+from .. import document
 from ..engine import studies
 from .callbacks import changed, redraw
 from .fields import view
 
-PathOf = Callable[[PropertyGroup], tuple[PropertyGroup, bridge.Keys]]
+PathOf = Callable[[PropertyGroup], tuple[PropertyGroup, document.Keys]]
 
 DRAWN = "reference."
 """Settings whose keys begin so change the picture in the 3D view, and no score."""
@@ -53,17 +53,17 @@ def view_of(
     `path_of`: From a group of properties to the group with the table, and the value's keys in it.
     `is_explicit`: Whether the table has the value, too, where it is the default of a study file.
     """
-    in_file = bridge.in_file(setting)
+    in_file = document.in_file(setting)
     _, own = _kind_of(setting, setting.rule, cast(studies.Panel, setting.panel))
 
     def read(group: PropertyGroup) -> Any:
         owner, path = path_of(group)
-        return bridge.property_value(setting, bridge.value_at(owner.table, path, in_file))
+        return document.property_value(setting, document.value_at(owner.table, path, in_file))
 
     def write(group: PropertyGroup, value: Any) -> None:
         owner, path = path_of(group)
-        found = bridge.value_of_property(setting, value)
-        bridge.put(owner, path, None if found == in_file and not is_explicit else found)
+        found = document.value_of_property(setting, value)
+        document.put(owner, path, None if found == in_file and not is_explicit else found)
 
     callbacks = view(
         read,
@@ -102,7 +102,7 @@ def _kind_of(
     high = rule.maximum if panel.max is None else panel.max
     low = low if panel.min is None else panel.min
     if isinstance(rule, studies.Whole):
-        high = bridge.LARGEST_INT if high is None else min(high, bridge.LARGEST_INT)
+        high = document.LARGEST_INT if high is None else min(high, document.LARGEST_INT)
         return IntProperty, {"min": low, "max": high}
     low, high = (end if math.isfinite(end) else None for end in (low, high))
     return FloatProperty, {"min": low, "max": high, "unit": UNITS.get(rule.unit)}

@@ -8,7 +8,7 @@ from typing import Any
 
 from bpy.types import Collection, Context, Object, PropertyGroup
 
-from .. import bridge
+from .. import document
 from ..choices import BY_GROUP, BY_MESH, BY_PARTS, ON_SLOTS, ON_SURFACE, REGION_ITEMS, free_name
 from ..engine import geometry, kinds, motion, pe
 from ..sensor_kinds import OwnCamera, OwnLidar, OwnTable, own_kinds
@@ -59,7 +59,7 @@ class PE_FocusSettings(FocusFields, PropertyGroup):
 def _curve_path(key: str) -> PathOf:
     """Return what finds a number of the curve of a row's kind in the scene's table."""
 
-    def path_of(row: PropertyGroup) -> tuple[PropertyGroup, bridge.Keys]:
+    def path_of(row: PropertyGroup) -> tuple[PropertyGroup, document.Keys]:
         return row.id_data.perception_entropy, ("ap", row.name, key)
 
     return path_of
@@ -76,7 +76,7 @@ class PE_CurveSettings(ApCurveFields, PropertyGroup):
         "Own",
         "Use these numbers, for example of your detector, instead of the default curve",
         update=changed,
-        **view(bridge.has_own_curve, bridge.switch_own_curve),
+        **view(document.has_own_curve, document.switch_own_curve),
     )
 
 
@@ -111,8 +111,8 @@ class PE_SensorOption(OptionFields, Tabled, PropertyGroup):
         search=model_suggestions,
         search_options={"SUGGESTION"},
         **view(
-            lambda row: bridge.value_at(row.table, ("model",), ""),
-            lambda row, name: bridge.put(row, ("model",), name or None),
+            lambda row: document.value_at(row.table, ("model",), ""),
+            lambda row, name: document.put(row, ("model",), name or None),
         ),
     )
 
@@ -203,8 +203,8 @@ class PE_State(StateFields, Switched, Tabled, PropertyGroup):
         NO_FRAME,
         min=NO_FRAME,
         **view(
-            lambda row: bridge.value_at(row.table, ("frame",), NO_FRAME),
-            lambda row, frame: bridge.put(row, ("frame",), None if frame < 0 else frame),
+            lambda row: document.value_at(row.table, ("frame",), NO_FRAME),
+            lambda row, frame: document.put(row, ("frame",), None if frame < 0 else frame),
         ),
     )
 

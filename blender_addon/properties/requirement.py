@@ -11,13 +11,13 @@ from typing import Any
 
 from bpy.types import Context, PropertyGroup
 
-from .. import bridge, signals
+from .. import document, signals
 from ..engine import pe, requirements, studies
 from .declared import mixin, property_of
 from .fields import menu, text, view
 from .list_rows import Switched, Tabled
 
-Change = Callable[[bridge.TableData, Any], None]
+Change = Callable[[document.TableData, Any], None]
 BODIES_ASKED = "bodies"
 GROUND_ASKED = "ground"
 ASKS = (
@@ -31,7 +31,7 @@ SHAPES = (
     ("path", "Path", "A line along which a body moves"),
     ("spots", "Spots", "Single places"),
 )
-USUAL: dict[str, bridge.TableData] = {
+USUAL: dict[str, document.TableData] = {
     "area": {"x": ["front + 1", "front + 5"], "y": ["right", "left"]},
     "polygon": {"polygon": [["front + 1", "right"], ["front + 5", 0.0], ["front + 1", "left"]]},
     "ring": {"ring": [0.2, 1.0]},
@@ -54,15 +54,15 @@ SECTIONS = {
 
 
 def _view(
-    get: Callable[[bridge.TableData], Any], put: Change, items: Sequence[tuple[Any, ...]] = ()
+    get: Callable[[document.TableData], Any], put: Change, items: Sequence[tuple[Any, ...]] = ()
 ) -> dict[str, Any]:
     """Return the callbacks of a property: read from a row's full table, and changed in it."""
 
     def write(row: PropertyGroup, value: Any) -> None:
-        bridge.edit_row(row, lambda table: put(table, value))
+        document.edit_row(row, lambda table: put(table, value))
         signals.study_changed.emit()
 
-    return view(lambda row: get(bridge.full_table(row)), write, items)
+    return view(lambda row: get(document.full_table(row)), write, items)
 
 
 def _choice(
@@ -88,14 +88,14 @@ def _declared() -> Any:
 def _declared_view(section: str, setting: studies.Setting) -> dict[str, Any]:
     """Return the callbacks of a declared setting; its default removes the key."""
     name = setting.name
-    default = bridge.in_file(setting)
+    default = document.in_file(setting)
 
-    def get(table: bridge.TableData) -> Any:
+    def get(table: document.TableData) -> Any:
         value = table.get(section, {}).get(name, default)
-        return bridge.property_value(setting, value)
+        return document.property_value(setting, value)
 
-    def put(table: bridge.TableData, value: Any) -> None:
-        found = bridge.value_of_property(setting, value)
+    def put(table: document.TableData, value: Any) -> None:
+        found = document.value_of_property(setting, value)
         own = table.setdefault(section, {})
         own.pop(name, None)
         if name in ZERO_COUNTS or found != default:
@@ -106,13 +106,13 @@ def _declared_view(section: str, setting: studies.Setting) -> dict[str, Any]:
     return own | {"default": None, "update": None}  # its default is in the table
 
 
-def asked_for(table: bridge.TableData) -> str:
+def asked_for(table: document.TableData) -> str:
     """Return whether test bodies or blind ground are asked for."""
     criterion = table.get("criterion", {})
     return GROUND_ASKED if {"blind_m2", "blind_out"} & criterion.keys() else BODIES_ASKED
 
 
-def ask_for(table: bridge.TableData, what: str) -> None:
+def ask_for(table: document.TableData, what: str) -> None:
     """Ask for test bodies, or for blind ground; keys of the other go."""
     if what == asked_for(table):
         return
@@ -127,47 +127,47 @@ def ask_for(table: bridge.TableData, what: str) -> None:
         table["body"] = [USUAL_BODY]
 
 
-def shape_of(table: bridge.TableData) -> str:
+def shape_of(table: document.TableData) -> str:
     """Return the shape of the zone."""
     return next((shape for shape in USUAL if table.get("zone", {}).get(shape)), "area")
 
 
-def reshape(table: bridge.TableData, shape: str) -> None:
+def reshape(table: document.TableData, shape: str) -> None:
     """Give the zone another shape, as it usually begins."""
     if shape != shape_of(table):
         _set_shape(table, deepcopy(USUAL[shape]))
 
 
-def _set_shape(table: bridge.TableData, keys: bridge.TableData) -> None:
+def _set_shape(table: document.TableData, keys: document.TableData) -> None:
     zone = table.setdefault("zone", {})
     for key in SHAPE_KEYS:
         zone.pop(key, None)
     zone |= keys
 
 
-def _zone_line(table: bridge.TableData) -> str:
+def _zone_line(table: document.TableData) -> str:
     zone = table.get("zone", {})
-    return bridge.line_of({key: zone[key] for key in SHAPE_KEYS if zone.get(key)})
+    return document.line_of({key: zone[key] for key in SHAPE_KEYS if zone.get(key)})
 
 
-def _set_zone(table: bridge.TableData, line: str) -> None:
-    _set_shape(table, bridge.read_line(line, "x"))
+def _set_zone(table: document.TableData, line: str) -> None:
+    _set_shape(table, document.read_line(line, "x"))
 
 
-def _bodies_line(table: bridge.TableData) -> str:
+def _bodies_line(table: document.TableData) -> str:
     value = table.get("body", [])
     bodies = value if isinstance(value, list) else [value]
     tables = [each for each in bodies if not isinstance(each, str)]
     if len(tables) == len(bodies) == 1:
-        return bridge.line_of(tables[0])
+        return document.line_of(tables[0])
     if not tables:
         return ", ".join(map(str, bodies))
     return ", ".join(
-        f"{{ {bridge.line_of(each)} }}" if each in tables else f'"{each}"' for each in bodies
+        f"{{ {document.line_of(each)} }}" if each in tables else f'"{each}"' for each in bodies
     )
 
 
-def _set_bodies(table: bridge.TableData, line: str) -> None:
+def _set_bodies(table: document.TableData, line: str) -> None:
     """Set names of bodies, the keys of an own body, or several of both."""
     if "=" not in line:
         table["body"] = [each.strip() for each in line.split(",") if each.strip()]
@@ -179,11 +179,11 @@ def _set_bodies(table: bridge.TableData, line: str) -> None:
         raise pe.InputError("scene", "bodies", "names, or keys of a body", str(error)) from None
 
 
-def _headings_line(table: bridge.TableData) -> str:
+def _headings_line(table: document.TableData) -> str:
     return ", ".join(f"{angle:g}" for angle in table.get("headings", ()))
 
 
-def _set_headings(table: bridge.TableData, line: str) -> None:
+def _set_headings(table: document.TableData, line: str) -> None:
     """Set the headings [deg]; an empty line stands for those of the bodies."""
     table.pop("headings", None)
     if line.strip():

@@ -7,7 +7,7 @@ from typing import Any
 import bpy
 from bpy.types import Collection, PropertyGroup
 
-from .. import bridge
+from .. import document
 from ..choices import PANELS, PRIORS
 from ..engine import search, studies
 from .callbacks import changed, kinds_to_add, redraw, select_object_by_index, selected_object_index
@@ -78,40 +78,40 @@ def _limits() -> Any:
     for key in search.LIMITED:
         row = search.FIGURES[key]
         is_seen = key in search.KEPT or key == search.REQUIREMENTS
-        properties[bridge.keep_property(key)] = switch(
+        properties[document.keep_property(key)] = switch(
             f"Keep {row.label}",
             f"{KEEPS if is_seen else HOLDS}. {row.about}",
             **view(partial(_is_kept, key), partial(_keep, key)),
         )
         if row.rule is not None:
-            properties[bridge.limit_property(key)] = _limit_number(key, row)
+            properties[document.limit_property(key)] = _limit_number(key, row)
     return mixin("Limit", properties)
 
 
 def _is_kept(key: str, settings: PropertyGroup) -> bool:
-    return bridge.limit_of(settings, key)[1]
+    return document.limit_of(settings, key)[1]
 
 
 def _keep(key: str, settings: PropertyGroup, locked: bool) -> None:
-    number, _ = bridge.limit_of(settings, key)
-    bridge.put_limit(settings, key, number, locked)
+    number, _ = document.limit_of(settings, key)
+    document.put_limit(settings, key, number, locked)
 
 
 def _number(key: str, settings: PropertyGroup) -> float:
-    number, _ = bridge.limit_of(settings, key)
-    return bridge.NONE if number is None else number
+    number, _ = document.limit_of(settings, key)
+    return document.NONE if number is None else number
 
 
 def _set_number(key: str, settings: PropertyGroup, number: float) -> None:
-    _, locked = bridge.limit_of(settings, key)
-    number = bridge.as_typed(number) if isinstance(number, float) else number
-    bridge.put_limit(settings, key, None if number <= bridge.NONE else number, locked)
+    _, locked = document.limit_of(settings, key)
+    number = document.as_typed(number) if isinstance(number, float) else number
+    document.put_limit(settings, key, None if number <= document.NONE else number, locked)
 
 
 def _limit_number(key: str, row: search.Figure) -> Any:
-    about = f"{row.about}: at {'least' if row.higher else 'most'}; {bridge.NONE}: no limit"
+    about = f"{row.about}: at {'least' if row.higher else 'most'}; {document.NONE}: no limit"
     rule: Any = row.rule
-    least = bridge.NONE
+    least = document.NONE
     assert rule is not None, "a figure with a limit's number has its rule"
     is_whole = isinstance(rule, studies.Whole)
     high = rule.maximum if is_whole else min(rule.maximum, LARGEST_LIMIT)
@@ -126,10 +126,10 @@ def _limit_number(key: str, row: search.Figure) -> Any:
 LimitFields: Any = _limits()
 
 
-class PE_SceneSettings(StudyFields, ListFields, LimitFields, bridge.ResultViews, PropertyGroup):
+class PE_SceneSettings(StudyFields, ListFields, LimitFields, document.ResultViews, PropertyGroup):
     """The study's settings, views of its table, and the last result."""
 
-    table: text("Study", "The settings as a study file has them, as JSON", bridge.new_table())
+    table: text("Study", "The settings as a study file has them, as JSON", document.new_table())
     kind_to_add: menu("Kind", "Kind of sensor that Add and Place put on the vehicle", kinds_to_add)
     vehicle: pointer(
         "Vehicle",
@@ -165,8 +165,8 @@ class PE_SceneSettings(StudyFields, ListFields, LimitFields, bridge.ResultViews,
         METHODS,
         default=search.DEFAULT_METHOD,
         **view(
-            lambda own: bridge.value_at(own.table, METHOD, search.DEFAULT_METHOD),
-            lambda own, name: bridge.put(own, METHOD, name),
+            lambda own: document.value_at(own.table, METHOD, search.DEFAULT_METHOD),
+            lambda own, name: document.put(own, METHOD, name),
             METHODS,
         ),
     )
@@ -177,7 +177,7 @@ class PE_SceneSettings(StudyFields, ListFields, LimitFields, bridge.ResultViews,
         "Mounting Errors",
         "Evaluate each candidate by its mean over small mounting errors, so the result "
         "is not sensitive to them. A candidate takes about eight times as long",
-        **view(bridge.has_mounting_errors, bridge.switch_mounting_errors),
+        **view(document.has_mounting_errors, document.switch_mounting_errors),
     )
 
     axles_known: switch(
@@ -185,7 +185,7 @@ class PE_SceneSettings(StudyFields, ListFields, LimitFields, bridge.ResultViews,
         "Set the positions of the axles: the rear axle is the origin of Autoware, "
         "nuScenes, ASAM OSI and DriveWorks",
         update=redraw,
-        **view(bridge.has_axles, bridge.switch_axles),
+        **view(document.has_axles, document.switch_axles),
     )
 
     panels: menu("Panels", "Which panels the tab has, and in which words", PANELS)

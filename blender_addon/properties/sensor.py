@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 from bpy.types import Context, Object, PropertyGroup
 
-from .. import bridge, edge_cache
+from .. import document, edge_cache
 from ..choices import BODY_ITEMS
 from ..engine import catalog, graphics, pe, search, studies
 from ..sensor_kinds import DEFAULT_MODEL
@@ -39,12 +39,12 @@ def shown_pose(obj: Object) -> pe.Pose:
     mirrored object, which cannot be scored, gets the nearest pose."""
     ground_from_sensor = np.array(obj.matrix_world, dtype=float)
     try:
-        held = bridge.last_written_pose(obj, ground_from_sensor)
-        return bridge.pose_of_matrix(ground_from_sensor) if held is None else held
+        held = document.last_written_pose(obj, ground_from_sensor)
+        return document.pose_of_matrix(ground_from_sensor) if held is None else held
     except pe.InputError:
         location, rotation, _ = obj.matrix_world.decompose()
         angles = rotation.to_euler("XYZ")
-        return bridge.pose_from_numbers((*location, *(math.degrees(angle) for angle in angles)))
+        return document.pose_from_numbers((*location, *(math.degrees(angle) for angle in angles)))
 
 
 def _position(settings: PropertyGroup) -> tuple[float, ...]:
@@ -66,12 +66,12 @@ def _set_rotation(settings: PropertyGroup, value: Sequence[float]) -> None:
 
 
 def _stand(obj: Object, position: Sequence[float], degrees: Sequence[float]) -> None:
-    bridge.place_at(obj, bridge.pose_from_numbers((*position, *degrees)))
+    document.place_at(obj, document.pose_from_numbers((*position, *degrees)))
 
 
 def _edges(settings: PropertyGroup) -> dict[str, str]:
     """Return the edges that a sensor's position is told from, by axis."""
-    return dict(bridge.value_at(settings.table, EDGES, {}))
+    return dict(document.value_at(settings.table, EDGES, {}))
 
 
 def _edge_of(axis: str) -> dict[str, Any]:
@@ -80,7 +80,7 @@ def _edge_of(axis: str) -> dict[str, Any]:
     def write(settings: PropertyGroup, name: str) -> None:
         named = _edges(settings) | {axis: name}
         own = {each: named[each] for each in search.POSITION_AXES if named.get(each)}
-        bridge.put(settings, EDGES, own or None)
+        document.put(settings, EDGES, own or None)
 
     return view(lambda settings: _edges(settings).get(axis, ""), write)
 
@@ -128,18 +128,20 @@ def _set_distances(settings: PropertyGroup, values: Sequence[float]) -> None:
 
 
 def _free(settings: PropertyGroup) -> list[bool]:
-    free = bridge.ticked_axes(settings)
+    free = document.ticked_axes(settings)
     return [axis in free for axis in search.AXES]
 
 
 def _set_free(settings: PropertyGroup, ticked: Sequence[bool]) -> None:
     free = [axis for axis, is_free in zip(search.AXES, ticked, strict=True) if is_free]
-    bridge.put(settings, ("free",), None if free == list(search.PAPER_FREE) else free)
+    document.put(settings, ("free",), None if free == list(search.PAPER_FREE) else free)
 
 
 def _bounds(settings: PropertyGroup) -> dict[str, list[float]]:
     """Return the bounds of a sensor's axes, as its table has them."""
-    return {axis: list(ends) for axis, ends in bridge.value_at(settings.table, BOUNDS, {}).items()}
+    return {
+        axis: list(ends) for axis, ends in document.value_at(settings.table, BOUNDS, {}).items()
+    }
 
 
 def _bounded(settings: PropertyGroup) -> list[bool]:
@@ -157,7 +159,7 @@ def _set_bounded(settings: PropertyGroup, bounded: Sequence[bool]) -> None:
         reach = REACH_M if axis in search.POSITION_AXES else REACH_DEG
         if is_bounded:
             ends[axis] = own.get(axis, [round(value - reach, 3), round(value + reach, 3)])
-    bridge.put(settings, BOUNDS, ends or None)
+    document.put(settings, BOUNDS, ends or None)
 
 
 def _ends(which: int) -> dict[str, Any]:
@@ -172,38 +174,38 @@ def _ends(which: int) -> dict[str, Any]:
         own = _bounds(settings)
         for axis, value in zip(search.AXES, values, strict=True):
             if axis in own:
-                own[axis][which] = bridge.as_typed(value)
-        bridge.put(settings, BOUNDS, own or None)
+                own[axis][which] = document.as_typed(value)
+        document.put(settings, BOUNDS, own or None)
 
     return view(read, write)
 
 
 def _color(settings: PropertyGroup) -> tuple[float, ...]:
-    color = bridge.value_at(settings.table, COLOR)
+    color = document.value_at(settings.table, COLOR)
     return (0.0, 0.0, 0.0) if color is None else graphics.rgb_of(color)
 
 
 def _set_color(settings: PropertyGroup, color: Sequence[float]) -> None:
-    bridge.put(settings, COLOR, graphics.color_text(color))
+    document.put(settings, COLOR, graphics.color_text(color))
 
 
 def _has_curve(settings: PropertyGroup) -> bool:
-    return bridge.value_at(settings.table, CURVE) is not None
+    return document.value_at(settings.table, CURVE) is not None
 
 
 def _switch_curve(settings: PropertyGroup, on: bool) -> None:
     """Begin with the curve of the sensor's kind, or remove its own one."""
     if on != _has_curve(settings):
         entry = catalog.entries().get(settings.model)
-        usual = None if entry is None else bridge.curve_table(entry.kind)
-        bridge.put(settings, CURVE, (usual or {"a": 0.0, "b": 0.0}) if on else None)
+        usual = None if entry is None else document.curve_table(entry.kind)
+        document.put(settings, CURVE, (usual or {"a": 0.0, "b": 0.0}) if on else None)
 
 
 def _kept(key: str, usual: Any) -> dict[str, Any]:
     """Return the callbacks of a value that stands in the table as it is, unless it is the usual."""
     return view(
-        lambda settings: bridge.value_at(settings.table, (key,), usual),
-        lambda settings, value: bridge.put(settings, (key,), None if value == usual else value),
+        lambda settings: document.value_at(settings.table, (key,), usual),
+        lambda settings, value: document.put(settings, (key,), None if value == usual else value),
     )
 
 
@@ -287,8 +289,8 @@ class PE_ObjectSettings(GroundPose, CurveFields, SheetFields, PropertyGroup):
         search_options={"SUGGESTION"},
         update=model_chosen,
         **view(
-            lambda own: bridge.value_at(own.table, ("model",), DEFAULT_MODEL),
-            lambda own, name: bridge.put(own, ("model",), name),
+            lambda own: document.value_at(own.table, ("model",), DEFAULT_MODEL),
+            lambda own, name: document.put(own, ("model",), name),
         ),
     )
     color: numbers(

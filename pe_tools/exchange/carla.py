@@ -1,4 +1,4 @@
-"""CARLA's objects.json, from which its ROS bridge spawns sensors. Coordinates are right-handed,
+"""CARLA's objects.json, from which its ROS document spawns sensors. Coordinates are right-handed,
 angles are in degrees. Autoware's interface to CARLA has a file of that name with a list of sensors
 alone: its numbers are in CARLA's own coordinates, which are left-handed."""
 

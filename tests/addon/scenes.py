@@ -5,7 +5,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from blender_addon import bridge
+from blender_addon import document
 from blender_addon.overlay import scheduler
 from blender_addon.overlay.layer_cache import shown
 from blender_addon.overlay.layers import LAYERS
@@ -123,7 +123,7 @@ def drawn(scene) -> dict[str, dict[str, LayerShape]]:
 
 def study():
     """Return the study of the scene that is open."""
-    return bridge.study_from_scene(bpy.context.scene, depsgraph())
+    return document.study_from_scene(bpy.context.scene, depsgraph())
 
 
 def shipped_study(name: str):
@@ -134,7 +134,7 @@ def shipped_study(name: str):
 
 def vehicle(collection):
     """Return a collection as the engine's vehicle."""
-    return bridge.vehicle_from_collection(collection, depsgraph())
+    return document.vehicle_from_collection(collection, depsgraph())
 
 
 def edges_of(triangles: np.ndarray) -> list[tuple[int, int]]:

@@ -5,7 +5,7 @@ import math
 import bpy
 import pytest
 
-from blender_addon import bridge
+from blender_addon import document
 from blender_addon.engine import catalog
 from tests.addon import scenes
 
@@ -32,7 +32,7 @@ def test_an_own_lidar_is_a_model_like_any_other(car):
 
 def test_a_name_that_is_taken_and_figures_that_cannot_be_are_said_at_the_row(car):
     row = add_own(name="Pandar64")
-    bridge.sync_own_sensors()
+    document.sync_own_sensors()
     assert "a name used once" in row.problem and catalog.load("Pandar64").max_range == 200.0
     row.name = "Mine"
     row.azimuths = (10.0, -10.0)

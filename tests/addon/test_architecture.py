@@ -37,48 +37,49 @@ view_settings: choices engine
 english:
 panel_text: choices
 own_catalog: engine
-edge_cache: bridge engine vehicle_cache
-properties: bridge choices edge_cache engine sensor_kinds signals view_settings
-bridge: choices engine sensor_kinds
-sensor_cache: bridge
+edge_cache: document engine vehicle_cache
+properties: document choices edge_cache engine sensor_kinds signals view_settings
+document: choices engine sensor_kinds
+sensor_cache: document
 engine_calls: engine
 analysis_calls: engine engine_calls overlay
 own_jobs: engine
-film: bridge engine
+film: document engine
 engine_process: analysis_calls engine overlay
-vehicle_cache: bridge engine
+vehicle_cache: document engine
 change_events: sensor_cache signals vehicle_cache
-consistency: bridge sensor_cache
+consistency: document sensor_cache
 viewport: panel_text
-result_staleness: bridge sensor_cache signals vehicle_cache
-diagnostics: analysis_calls bridge engine engine_process sensor_cache signals vehicle_cache
-location_query: bridge engine engine_process sensor_cache signals vehicle_cache
-body_query: analysis_calls bridge choices engine engine_process sensor_cache vehicle_cache viewport
-where_map: bridge engine signals
+result_staleness: document sensor_cache signals vehicle_cache
+diagnostics: analysis_calls document engine engine_process sensor_cache signals vehicle_cache
+location_query: document engine engine_process sensor_cache signals vehicle_cache
+body_query: analysis_calls choices document engine engine_process sensor_cache vehicle_cache
+  viewport
+where_map: document engine signals
 housing: engine sensor_cache sensor_kinds
 library:
 verification: engine engine_process signals
 preferences_panel: library own_catalog panel_text properties signals verification
-live: analysis_calls bridge change_events choices engine engine_calls engine_process panel_text
+live: analysis_calls document change_events choices engine engine_calls engine_process panel_text
     sensor_cache signals vehicle_cache viewport
 best_so_far: engine
 variant_pictures:
 overlay: choices engine engine_calls view_settings viewport
-overlay.snapshot: best_so_far bridge choices engine engine_calls live location_query overlay
+overlay.snapshot: best_so_far document choices engine engine_calls live location_query overlay
     sensor_cache vehicle_cache view_settings where_map
 overlay.scheduler: analysis_calls engine engine_process overlay overlay.snapshot sensor_cache
     viewport
 overlay.surroundings: engine overlay viewport
-overlay.draw_handler: body_query bridge engine engine_process overlay overlay.scheduler
+overlay.draw_handler: body_query document engine engine_process overlay overlay.scheduler
     overlay.surroundings panel_text vehicle_cache viewport
-operators: best_so_far body_query bridge choices diagnostics engine engine_calls engine_process
+operators: best_so_far body_query document choices diagnostics engine engine_calls engine_process
     english film housing library live location_query overlay overlay.scheduler
     overlay.surroundings own_jobs panel_text properties result_staleness sensor_cache sensor_kinds
     signals variant_pictures vehicle_cache verification view_settings viewport where_map
-panels: body_query bridge choices diagnostics engine live location_query operators panel_text
+panels: body_query document choices diagnostics engine live location_query operators panel_text
     properties sensor_cache sensor_kinds where_map
-commands: bridge engine film result_staleness
-wiring: body_query bridge change_events consistency diagnostics engine_process housing live
+commands: document engine film result_staleness
+wiring: body_query document change_events consistency diagnostics engine_process housing live
     location_query operators overlay.draw_handler overlay.scheduler result_staleness sensor_cache
     signals variant_pictures vehicle_cache viewport where_map
 __main__: __init__ commands engine
@@ -97,7 +98,7 @@ ARRAY_TYPES = {"Flags", "Floats", "Ints", "Singles"}
 
 
 def files():
-    """Yield every file of the add-on with its name: ``overlay.draw_handler``, ``bridge``.
+    """Yield every file of the add-on with its name: ``overlay.draw_handler``, ``document``.
 
     Copies of the engine and the tools are there while the extension is built.
     """
@@ -161,11 +162,11 @@ def test_imports_are_seen_wherever_they_stand(tmp_path):
     path = tmp_path / PACKAGE / "operators" / "job.py"
     path.parent.mkdir(parents=True)
     path.write_text(
-        "from .. import result_staleness as s, bridge\n"
+        "from .. import result_staleness as s, document\n"
         "from ..overlay import draw_handler\n"
         "def f():\n    from . import running_job\n    import blender_addon.overlay.labels\n"
     )
-    expected = ["result_staleness", "bridge", "overlay.draw_handler"]
+    expected = ["result_staleness", "document", "overlay.draw_handler"]
     expected += ["operators.running_job", "overlay.labels"]
     assert list(imported_files(path, tmp_path)) == expected
     face = path.with_name("__init__.py")
@@ -178,13 +179,13 @@ def packages_imported(name):
     return {full.partition(".")[0] for full in imported(FILES[name])}
 
 
-def test_the_bridge_is_taken_by_its_face():
+def test_the_document_is_taken_by_its_face():
     offenders = [
         f"{name}: {to}"
         for name, path in FILES.items()
-        if unit_of(name) != "bridge"
+        if unit_of(name) != "document"
         for to in imported_files(path)
-        if to.startswith("bridge.")
+        if to.startswith("document.")
     ]
     assert not offenders
 

@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import bridge, result_staleness, vehicle_cache
+from blender_addon import document, result_staleness, vehicle_cache
 from tests.addon import scenes
 from tests.engine import shapes
 
@@ -70,7 +70,7 @@ def test_a_frame_is_a_state_and_its_motions_are_those_of_the_hinge(car):
     car.frame_set(OPEN_FRAME)
     bpy.context.view_layer.update()
     shown = bpy.data.objects["mirror"].matrix_world.translation
-    study = bridge.study_as_drawn(car)
+    study = document.study_as_drawn(car)
     pose = study.conditions.one("door open").rig(study.rig, study.vehicle)["mirror"].pose
     assert pose.position == pytest.approx(tuple(shown), abs=5e-5)
     assert car.frame_current == OPEN_FRAME  # reading shows the frame again that was shown

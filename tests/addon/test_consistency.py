@@ -3,7 +3,7 @@
 import bpy
 import pytest
 
-from blender_addon import bridge, consistency, sensor_cache
+from blender_addon import consistency, document, sensor_cache
 
 
 @pytest.fixture
@@ -16,7 +16,7 @@ def scored(car):
 
 def results(scene):
     """Return what each sensor holds of a result, by name; None where it holds none."""
-    own = {obj.name: bridge.figures_of_sensor(obj) for obj in bridge.sensor_objects(scene)}
+    own = {obj.name: document.figures_of_sensor(obj) for obj in document.sensor_objects(scene)}
     return {name: None if each is None else each.entropy for name, each in own.items()}
 
 

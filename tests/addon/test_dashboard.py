@@ -7,7 +7,7 @@ import re
 import bpy
 import pytest
 
-from blender_addon import bridge, engine_calls
+from blender_addon import document, engine_calls
 from blender_addon.engine import pe, search
 from blender_addon.operators import known_rigs
 from blender_addon.panels import CLASSES, dashboard, layout, main
@@ -101,7 +101,7 @@ def test_a_good_score_is_told_by_the_known_rigs_on_this_body(car):
 
 def test_simple_has_eight_headers_at_most_and_no_terms(car):
     bpy.ops.pe.score()
-    bridge.store_warnings(car.perception_entropy, [])
+    document.store_warnings(car.perception_entropy, [])
     simple = panels(car, roots=True)
     assert len(simple) <= 8
     for cls in panels(car):

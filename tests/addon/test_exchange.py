@@ -5,7 +5,7 @@ import json
 import bpy
 import pytest
 
-from blender_addon import bridge
+from blender_addon import document
 from blender_addon.engine import pe, studies
 from pe_tools.cli.verbs import main
 from tests.addon import scenes
@@ -24,7 +24,7 @@ def wheel(name, x):
 def axled(car):
     place = {"location": (1.5, 0.1, 1.3), "rotation_euler": (0.0, 0.1, 0.2)}
     scenes.add_sensor("eye", "Front 120 deg 8 MP", **place)
-    bridge.put(car.perception_entropy, bridge.REFERENCE, studies.write(AXLE))
+    document.put(car.perception_entropy, document.REFERENCE, studies.write(AXLE))
     return car
 
 
@@ -66,7 +66,7 @@ def test_what_a_file_has_besides_its_rig_stays_in_it(axled, tmp_path, capfd):
     assert bpy.ops.pe.import_rig(filepath=str(objects)) == {"FINISHED"}
     line = "left out: 1 collision sensor (collision)"
     assert line in capfd.readouterr().out
-    assert line in bridge.active_variant(axled).note
+    assert line in document.active_variant(axled).note
     assert {s.name for s in scenes.study().rig} == {"rgb_front", "lidar", "radar_front"}
     study = tmp_path / "study" / "study.toml"
     study.parent.mkdir()

@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import bridge, diagnostics, location_query
+from blender_addon import diagnostics, document, location_query
 from blender_addon.engine import advice
 from tests.addon import scenes
 
@@ -29,7 +29,7 @@ def mend(scene, code):
 
 
 def bounds(scene):
-    return bridge.vehicle_from_collection(
+    return document.vehicle_from_collection(
         scene.perception_entropy.vehicle, scenes.depsgraph()
     ).bounds
 
@@ -136,11 +136,11 @@ def hide_in_renders(layer):
 )
 def test_a_vehicle_that_is_out_of_the_view_is_reported_by_name_and_can_be_shown(car, hide, told):
     layer = bpy.context.view_layer.layer_collection.children["Car"]
-    assert not [each for each in bridge.scene_advice(car) if each.code == "hidden_vehicle"]
+    assert not [each for each in document.scene_advice(car) if each.code == "hidden_vehicle"]
     hide(layer)
     bpy.context.view_layer.update()
-    (advice,) = [each for each in bridge.scene_advice(car) if each.code == "hidden_vehicle"]
+    (advice,) = [each for each in document.scene_advice(car) if each.code == "hidden_vehicle"]
     assert "Car is" in advice.text and told in advice.text
     assert bpy.ops.pe.mend(fix=advice.fix) == {"FINISHED"}
     assert scenes.study().vehicle is not None
-    assert not [each for each in bridge.scene_advice(car) if each.code == "hidden_vehicle"]
+    assert not [each for each in document.scene_advice(car) if each.code == "hidden_vehicle"]

@@ -5,7 +5,7 @@ import math
 import bpy
 import pytest
 
-from blender_addon import bridge
+from blender_addon import document
 from blender_addon.engine import formats, pe
 
 INF = math.inf
@@ -40,7 +40,7 @@ def test_new_row_doubles_the_front_for_all_classes(scene):
     (row,) = scene.perception_entropy.focus
     assert (row.name, row.factor, row.region) == ("Focus 1", 2.0, "front")
     assert row.classes == set(CLASSES)
-    assert bridge.prior_from_scene(scene).focus == (pe.Focus(2.0, x=(0.0, INF)),)
+    assert document.prior_from_scene(scene).focus == (pe.Focus(2.0, x=(0.0, INF)),)
 
 
 @pytest.mark.parametrize("message", IMPOSSIBLE)
@@ -52,7 +52,7 @@ def test_impossible_focus_is_one_line_that_names_it(car, message):
         with pytest.raises(RuntimeError) as refused:
             operator()
         assert str(refused.value).strip() == f"Error: {line}"
-    assert not car.perception_entropy.has_result and bridge.fingerprint(car).text
+    assert not car.perception_entropy.has_result and document.fingerprint(car).text
 
 
 def test_labelled_boxes(scene, labels):
@@ -60,6 +60,6 @@ def test_labelled_boxes(scene, labels):
     settings.prior = "boxes"
     settings.boxes = str(labels)
     add_focus(scene, "front")
-    prior = bridge.prior_from_scene(scene)
+    prior = document.prior_from_scene(scene)
     assert prior == pe.Prior.from_boxes(formats.read_boxes(labels), [pe.Focus(2.0, x=(0.0, INF))])
     assert prior.class_names == ("car", "tram")

@@ -4,7 +4,7 @@ import bpy
 import pytest
 
 import pe_core as pe
-from blender_addon import bridge, diagnostics
+from blender_addon import diagnostics, document
 from pe_core.search import Goals
 from pe_tools.advice import flatness
 from pe_tools.jobs import FrontJob, front_dict
@@ -37,7 +37,7 @@ def test_the_panel_finds_the_front_of_the_job(asked):
     assert settings.front.rows[0].figures == ", ".join(f"{n} {v:.4g}" for n, v in figures.items())
     assert settings.front.told == f"{len(names)} on the front of entropy, height"
     [row] = [each for each in settings.variants if each.key == settings.front.rows[0].key]
-    study = bridge.study_of_variant(asked, row, scenes.depsgraph())
+    study = document.study_of_variant(asked, row, scenes.depsgraph())
     assert study.rig["roof"].pose == job.trade_off.front[0].study.rig["roof"].pose
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import pe_tools as pt
-from blender_addon import bridge, result_staleness
+from blender_addon import document, result_staleness
 from blender_addon.engine import jobs as pe_jobs
 from blender_addon.engine import pe
 from blender_addon.operators import declared, jobs, running_job
@@ -117,7 +117,7 @@ class Window:
 def test_the_best_of_a_stopped_search_is_shown_before_its_result_and_taken_back_to_the_bit(car):
     def seen():
         roof = car.objects["roof"]
-        transform = {k: tuple(getattr(roof, k)) for k in bridge.TRANSFORM}
+        transform = {k: tuple(getattr(roof, k)) for k in document.TRANSFORM}
         matrix = np.array(roof.matrix_world).tolist()
         return transform, matrix, tuple(roof.perception_entropy.placed)
 

@@ -3,7 +3,7 @@
 import bpy
 import pytest
 
-from blender_addon.bridge.own_sensors import add_own_sensor, lens_text, read_line, table_of
+from blender_addon.document.own_sensors import add_own_sensor, lens_text, read_line, table_of
 from blender_addon.engine import catalog
 
 

@@ -3,7 +3,7 @@
 import bpy
 import pytest
 
-from blender_addon import bridge
+from blender_addon import document
 from tests.addon import scenes
 
 
@@ -35,7 +35,7 @@ def test_a_linked_vehicle_is_the_vehicle(car, tmp_path):
     scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(-0.43, 0.0, 1.8))
     assert_same(scenes.study(), expected)
     bpy.ops.pe.score()
-    parts = bridge.figures_of_sensor(scene.objects["roof"]).occluded_by
+    parts = document.figures_of_sensor(scene.objects["roof"]).occluded_by
     assert "cabin [library.blend]" in parts
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import bpy
 import pytest
 
-from blender_addon import bridge, change_events, engine_calls, engine_process, result_staleness
+from blender_addon import change_events, document, engine_calls, engine_process, result_staleness
 from blender_addon.live import (
     AT_REST,
     MOVING,
@@ -129,7 +129,7 @@ def test_a_variant_is_what_it_is_compared_with(live):
 def test_only_what_moved_is_measured_and_the_vehicle_is_not_read(live, monkeypatch):
     for of, name in (
         (DefinedSample, "measure"),  # of cameras
-        (bridge, "vehicle_from_collection"),
+        (document, "vehicle_from_collection"),
         (engine_calls, "make_evaluator"),
     ):
         monkeypatch.setattr(of, name, lambda *_, name=name: pytest.fail(f"{name} again"))
@@ -143,7 +143,7 @@ def test_a_vehicle_that_moves_is_read_once_it_rests(live, monkeypatch):
     before = reading(live)
     with monkeypatch.context() as while_it_moves:
         read = "vehicle_from_collection"
-        while_it_moves.setattr(bridge, read, lambda *_: pytest.fail("read while it moves"))
+        while_it_moves.setattr(document, read, lambda *_: pytest.fail("read while it moves"))
         drag(live.objects["cabin"])
         assert state.live_state(live.name).note == "", "a step of undo or a script moves nothing"
         assert not is_exact(live)

@@ -8,7 +8,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from blender_addon import bridge
+from blender_addon import document
 from blender_addon.engine import studies
 from tests.addon import scenes
 
@@ -30,7 +30,7 @@ IN_SCENE = [
 
 
 def load(study):
-    return bridge.load_into(bpy.context.scene, study)
+    return document.load_into(bpy.context.scene, study)
 
 
 def history(study):
@@ -94,12 +94,12 @@ def test_each_declared_setting_is_held_by_the_scene_as_it_was(scene):
         value = other_value(setting)
         value = setting.rule.checked("test", setting.name, value)
         value = studies.value_in_file(setting.rule, value)
-        setattr(group, name, bridge.property_value(setting, value))
-        found = bridge.value_of_property(setting, getattr(group, name))
+        setattr(group, name, document.property_value(setting, value))
+        found = document.value_of_property(setting, getattr(group, name))
         assert found == value or found == pytest.approx(value, rel=1e-6), (table, name)
         if setting.is_optional:
-            setattr(group, name, bridge.property_value(setting, None))
-            assert bridge.value_of_property(setting, getattr(group, name)) is None, name
+            setattr(group, name, document.property_value(setting, None))
+            assert document.value_of_property(setting, getattr(group, name)) is None, name
 
 
 def test_coordinates_in_double_precision_come_back_to_the_bit(scene):
@@ -107,7 +107,7 @@ def test_coordinates_in_double_precision_come_back_to_the_bit(scene):
     rng = np.random.default_rng(0)
     triangles = rng.uniform(-1.0, 1.0, (50, 3, 3)) @ turn + [0.1, 0.2, 1.0]
     triangles = np.float32(triangles).astype(float) + np.float32(1e-9 * rng.normal(size=(50, 3, 3)))
-    scene.perception_entropy.vehicle = bridge.vehicle.make_body(scene, pe.Vehicle(triangles))
+    scene.perception_entropy.vehicle = document.vehicle.make_body(scene, pe.Vehicle(triangles))
     bpy.context.view_layer.update()
     found = scenes.vehicle(scene.perception_entropy.vehicle)
     assert np.array_equal(found.triangles, triangles)

@@ -4,7 +4,7 @@ import bpy
 import pytest
 from mathutils import Vector
 
-from blender_addon import bridge, consistency
+from blender_addon import consistency, document
 from blender_addon.operators import look_through
 from tests.addon import scenes
 
@@ -20,7 +20,7 @@ def eye(car):
 def look(obj):
     assert bpy.ops.pe.look_through(name=obj.name) == {"FINISHED"}
     bpy.context.view_layer.update()
-    return bridge.view_camera(obj)
+    return document.view_camera(obj)
 
 
 def rendered_at(scene, point):
@@ -36,7 +36,7 @@ def test_blender_s_picture_is_the_sensor_s(car, eye, model):
     """Points fall on the pixels where the pinhole of eq. 3 has them."""
     eye.perception_entropy.model = model
     look(eye)
-    sensor = bridge.sensor_from_object(eye, scenes.depsgraph())
+    sensor = document.sensor_from_object(eye, scenes.depsgraph())
     camera = sensor.model
     turned = sensor.pose.ground_from_sensor
     assert (car.render.resolution_x, car.render.resolution_y) == (camera.width, camera.height)
@@ -87,7 +87,7 @@ def leave_by_operator(_scene, area):
 
 def leave_by_undo(scene, _area):
     """As undo does it: the scene is as before, views are as they are."""
-    bridge.look_back(scene)
+    document.look_back(scene)
     look_through.restore_lost()
 
 
@@ -134,4 +134,4 @@ def test_the_view_is_what_it_was_whatever_way_back(car, eye, leave, orthographic
 
 def test_a_lidar_is_not_looked_through(car):
     assert bpy.ops.pe.look_through(name="roof") == {"CANCELLED"}
-    assert bridge.view_camera(car.objects["roof"]) is None
+    assert document.view_camera(car.objects["roof"]) is None

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import pe_tools as pt
-from blender_addon.bridge.vehicle import drawn_meshes, placed_triangles, triangles_of
+from blender_addon.document.vehicle import drawn_meshes, placed_triangles, triangles_of
 from tests.engine.mesh_files import glb_file, gltf, obj_bytes, ply_ascii, stl_binary
 from tests.engine.test_mesh_elsewhere import AREAS, dae
 from tests.engine.test_mesh_polygons import DART, arches, area

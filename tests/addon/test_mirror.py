@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from blender_addon import bridge, consistency
+from blender_addon import consistency, document
 from tests.addon import scenes
 
 PLACE = {"location": (1.2, 0.7, 0.9), "rotation_euler": (0.1, 0.2, 0.7)}
@@ -80,7 +80,7 @@ def test_radars_and_ultrasonic_sensors_are_linked_pairs_too(car, model):
     ],
 )
 def test_names_by_left_and_right(name, other):
-    assert bridge.mirrored_name(name, "right") == other
+    assert document.mirrored_name(name, "right") == other
 
 
 def test_a_linked_pair_moves_whichever_is_moved(left):

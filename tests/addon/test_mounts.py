@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from blender_addon import bridge
+from blender_addon import document
 from tests.addon import scenes
 
 CAN = "Velodyne VLP-16 Puck"
@@ -52,7 +52,7 @@ def among(triangles, vehicle):
 
 
 def place_of(name):
-    return bridge.pose_of(bpy.data.objects[name], scenes.depsgraph()).position
+    return document.pose_of(bpy.data.objects[name], scenes.depsgraph()).position
 
 
 def test_painted_faces_are_those_whose_corners_all_weigh_more_than_a_half(roof):
@@ -71,7 +71,7 @@ def test_painted_faces_come_with_modifiers_and_instances_and_places(roof):
     cabin.modifiers["finer"].subdivision_type = "SIMPLE"
     cabin.rotation_euler = (0.0, 0.1, 0.0)
     bpy.context.view_layer.update()
-    area = bridge.mount_of_row(
+    area = document.mount_of_row(
         roof, scenes.depsgraph(), roof.perception_entropy.mounts["roof area"]
     ).area
     assert len(area.triangles) == 2 * (16 + 4 * 4)  # the top, and the sides' upper quarters

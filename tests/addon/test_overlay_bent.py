@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from blender_addon.bridge.view_camera import WIDEST, shown_fov
+from blender_addon.document.view_camera import WIDEST, shown_fov
 from pe_core import Camera, FTheta, KannalaBrandt, Pinhole, Pose, Sensor
 from pe_tools.graphics import kinds
 

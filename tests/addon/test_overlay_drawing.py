@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import bpy
 import pytest
 
-from blender_addon import bridge, engine_process, vehicle_cache
+from blender_addon import document, engine_process, vehicle_cache
 from blender_addon.engine import graphics, pe, sight
 from blender_addon.overlay import draw_handler, scheduler, surroundings
 from blender_addon.overlay.layer_cache import shown_of
@@ -79,8 +79,11 @@ def test_nothing_is_read_cast_or_worked_out_while_drawing(window, rig, monkeypat
     scenes.drawn(rig)
     forbidden = "while drawing"
     for owner, name in (
-        *((bridge, each) for each in ("sensor_from_object", "vehicle_from_collection", "pose_of")),
-        *((bridge, each) for each in ("prior_from_scene", "sensor_objects")),
+        *(
+            (document, each)
+            for each in ("sensor_from_object", "vehicle_from_collection", "pose_of")
+        ),
+        *((document, each) for each in ("prior_from_scene", "sensor_objects")),
         *((pe.Vehicle, each) for each in ("first_hit", "seen_from")),
         *((sight.Sight, each) for each in ("ground", "blind", "reach")),
         (vehicle_cache.shared, "read"),

@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import analysis_calls, bridge, engine_process, signals
+from blender_addon import analysis_calls, document, engine_process, signals
 from blender_addon.engine import graphics, sight
 from blender_addon.live import state
 from blender_addon.overlay import draw_handler, ground_layers, layers, scheduler
@@ -94,7 +94,7 @@ def test_nothing_is_worked_out_without_a_change(rig, worked):
 def test_a_moved_sensor_is_worked_out_alone_and_the_vehicle_is_not_read(rig, worked, monkeypatch):
     scenes.drawn(rig)
     worked.clear()
-    monkeypatch.setattr(bridge, "vehicle_from_collection", lambda *_: pytest.fail("read again"))
+    monkeypatch.setattr(document, "vehicle_from_collection", lambda *_: pytest.fail("read again"))
     rig.objects["eye"].location.z += 0.1
     bpy.context.view_layer.update()
     scenes.drawn(rig)

@@ -4,7 +4,7 @@ import itertools
 
 import bpy
 
-from blender_addon import bridge
+from blender_addon import document
 from blender_addon.engine import advice
 from blender_addon.panels import CLASSES, layout, main
 from tests.addon import layouts
@@ -60,7 +60,7 @@ def test_score_live_and_optimize_stand_first_and_late_lines_have_their_room(car)
     shown = drawn_of(car).texts("label")
     assert "Out of date" in shown
     assert {*counts, len(shown)} == {counts[0]}, "as many lines before, after and when it is stale"
-    bridge.store_warnings(settings, [advice.Advice("roof", "clear", {"gap": 0.6})])
+    document.store_warnings(settings, [advice.Advice("roof", "clear", {"gap": 0.6})])
     assert len(drawn_of(car).texts("label")) == counts[0], "warnings move nothing"
     order = [cls.__name__ for cls in CLASSES]
     assert order.index("PE_PT_sensor") < order.index("PE_PT_explain"), "nor the selected sensor"

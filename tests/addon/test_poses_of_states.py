@@ -9,7 +9,7 @@ import math
 import bpy
 import pytest
 
-from blender_addon import bridge
+from blender_addon import document
 from tests.addon import scenes
 from tests.addon.command_line import pe_here, run_here
 from tests.addon.test_conditions import OPEN_FRAME, add_open_state, car
@@ -78,7 +78,7 @@ def test_a_state_is_read_from_however_the_designer_poses(parked, pose):
     parked.frame_set(1)
     bpy.context.view_layer.update()
     add_open_state(parked)
-    (state,) = bridge.conditions_of(parked.perception_entropy).states
+    (state,) = document.conditions_of(parked.perception_entropy).states
     (motion,) = state.motions
     assert motion.parts == ("door",) and motion.sensors == ("mirror",)
     turned = [math.degrees(angle) for angle in motion.rotation]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import pe_tools as pt
-from blender_addon import bridge
+from blender_addon import document
 from pe_core.study import requirement_file
 from tests.addon import scenes
 from tests.addon.command_line import pe_here, run_here
@@ -59,7 +59,7 @@ def vehicle(request, addon, tmp_path):
     """The bus has more parts that presets ask for."""
     if request.param == "bus":
         bpy.ops.wm.open_mainfile(filepath=str(scenes.ASSETS / "bus.blend"))
-        if not bridge.sensor_objects(bpy.context.scene):
+        if not document.sensor_objects(bpy.context.scene):
             scenes.add_sensor("roof", "Pandar64", location=(-0.4, 0.0, 1.8))
     else:
         foreign_glb(tmp_path / "car.glb")
@@ -81,7 +81,7 @@ def test_all_presets_have_the_same_bits_everywhere(vehicle, tmp_path):
     verdicts = {each["preset"]: each for each in found["requirements"]}
     assert bpy.ops.pe.add_row(rows="requirements", kind="ALL") == {"FINISHED"}
     assert bpy.ops.pe.check_requirements() == {"FINISHED"}
-    rows = {bridge.preset_of(r): r for r in bpy.context.scene.perception_entropy.requirements}
+    rows = {document.preset_of(r): r for r in bpy.context.scene.perception_entropy.requirements}
     assert rows.keys() == verdicts.keys()
     assert rows.keys() | found["unchecked"].keys() == requirement_file.presets().keys()
     for preset, row in rows.items():

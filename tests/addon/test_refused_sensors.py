@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from blender_addon import bridge
+from blender_addon import document
 from tests.addon import scenes
 
 
@@ -18,7 +18,7 @@ def refusal(obj):
     """Return the line that a sensor is refused with, nothing where it is not."""
     bpy.context.view_layer.update()
     try:
-        bridge.sensor_from_object(obj, scenes.depsgraph())
+        document.sensor_from_object(obj, scenes.depsgraph())
     except pe.InputError as error:
         return str(error)
     return ""

@@ -42,7 +42,7 @@ weather.Weather = sensors.Weather = Toy
 
 import bpy
 import blender_addon
-from blender_addon import bridge
+from blender_addon import document
 from blender_addon.panels.condition_panel import conditions
 from pe_core import study as studies
 from pe_core.study.study_file import study_bytes
@@ -60,14 +60,14 @@ field = row.bl_rna.properties["hail"]
 assert (field.name, field.description) == ("Hail", "Size of hailstones")
 assert (field.hard_max, field.unit) == (90.0, "LENGTH")
 row.hail = 0.4
-study = bridge.study_as_drawn(scene)
+study = document.study_as_drawn(scene)
 assert study.conditions.weathers == (Toy("storm", hail=0.4),)
 assert b"hail = 0.4" in study_bytes(study)
 again = studies.study_from_dict(studies.study_to_dict(replace(study, vehicle=None, mesh=None)))
 assert again.conditions == study.conditions
 row.hail = 7.0
-assert bridge.load_into(scene, study) == []
-assert bridge.study_as_drawn(scene).conditions == study.conditions
+assert document.load_into(scene, study) == []
+assert document.study_as_drawn(scene).conditions == study.conditions
 assert ("prop", "hail") in layouts.drawn(conditions, **vars(layouts.Window(scene))).notes
 assert "- `hail` ([m], 0–90, `0.0`): Size of hailstones" in settings_page().page()
 print("seen everywhere")
@@ -208,7 +208,7 @@ def test_a_job_ends_with_the_extension(car, monkeypatch):
     assert bpy.ops.pe.score.poll() and bpy.ops.pe.optimize.poll()
 
 
-def test_a_new_setting_is_one_row_seen_in_file_property_bridge_panel_and_docs():
+def test_a_new_setting_is_one_row_seen_in_file_property_scene_panel_and_docs():
     """In a process of its own, before anything has read the declarations."""
     answer = subprocess.run(
         [sys.executable, "-c", TOY], cwd=ROOT, capture_output=True, text=True, timeout=600

@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import bridge
+from blender_addon import document
 from blender_addon.operators import jobs
 from blender_addon.operators import requirements as operators
 from blender_addon.overlay.requirement_zones import MET, NOT_MET
@@ -35,7 +35,7 @@ def rows(scene):
 
 def stored(scene):
     """The last verdicts as the file keeps them: values, or why there is none."""
-    return [bridge.stored_verdict(row) for row in rows(scene)]
+    return [document.stored_verdict(row) for row in rows(scene)]
 
 
 def test_a_preset_is_the_engine_s_and_an_own_one_is_edited_by_fields(held):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from mathutils import Euler, Matrix
 
-from blender_addon import bridge
+from blender_addon import document
 from blender_addon.engine import pe, search
 from tests.addon import scenes
 
@@ -15,7 +15,7 @@ POSES = 200
 
 
 def read(obj) -> pe.Pose:
-    return bridge.pose_of(obj, scenes.depsgraph())
+    return document.pose_of(obj, scenes.depsgraph())
 
 
 def random_poses(count=POSES, pitch_limit=math.pi / 2):
@@ -53,7 +53,7 @@ def test_what_is_placed_is_read_back(car):
     for parent in parents():
         sensor.parent = parent
         for pose in (*random_poses(), *edge_poses()):
-            assert bridge.place_rig(car, rig_of("roof", pose)) == []
+            assert document.place_rig(car, rig_of("roof", pose)) == []
             assert read(sensor) == pose
 
 
@@ -67,7 +67,7 @@ def test_what_is_typed_is_read(car):
 
 
 def test_moved_after_placing_is_read_as_it_stands(car):
-    bridge.place_rig(car, rig_of("roof", pe.Pose((1.0, 2.0, 3.0))))
+    document.place_rig(car, rig_of("roof", pe.Pose((1.0, 2.0, 3.0))))
     car.objects["roof"].location.x = 1.00002
     assert read(car.objects["roof"]).position == (1.00002, 2.0, 3.0)
 
@@ -78,7 +78,7 @@ def test_sensor_on_a_sensor(car):
     poses = [pe.Pose((1.0, 0.0, 2.0)), pe.Pose((-1.0, 0.5, 1.9), (0.0, 0.0, 1.0))]
     lidar = pe.catalog.load("Pandar64")
     rig = pe.Rig([pe.Sensor(n, lidar, p) for n, p in zip(("a_inner", "roof"), poses, strict=True)])
-    bridge.place_rig(car, rig)
+    document.place_rig(car, rig)
     assert read(inner).position == (1.0, 0.0, 2.0)
     assert read(car.objects["roof"]).position == (-1.0, 0.5, 1.9)
 
@@ -87,7 +87,7 @@ def test_quaternion_sensor(car):
     sensor = car.objects["roof"]
     sensor.rotation_mode = "QUATERNION"
     pose = pe.Pose.from_degrees((1.0, 0.0, 2.0), (1.5, 20.0, -35.0))
-    bridge.place_rig(car, rig_of("roof", pose))
+    document.place_rig(car, rig_of("roof", pose))
     assert read(sensor) == pose
 
 
@@ -95,7 +95,7 @@ def test_held_sensor_is_refused(car):
     sensor = car.objects["roof"]
     sensor.constraints.new("LIMIT_LOCATION").use_max_x = True
     with pytest.raises(pe.InputError, match="'roof': placement: expected an object that can be"):
-        bridge.place_rig(car, rig_of("roof", pe.Pose((5.0, 0.0, 1.0))))
+        document.place_rig(car, rig_of("roof", pe.Pose((5.0, 0.0, 1.0))))
 
 
 def test_axes_are_blenders(car):

@@ -10,7 +10,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from blender_addon import bridge
+from blender_addon import document
 from blender_addon.engine import search, studies
 from pe_core.scoring.sampling import FIRST_SAMPLES
 from tests.addon import scenes
@@ -62,7 +62,7 @@ def differences(one, other):
 
 
 def variant_study(scene, row):
-    return bridge.study_of_variant(scene, row, scenes.depsgraph())
+    return document.study_of_variant(scene, row, scenes.depsgraph())
 
 
 def set_what_is_by_default(settings):
@@ -85,7 +85,7 @@ def rich(car):
     settings.limit_width = 2.4
     settings.limit_distance = 0.1
     for key in search.LIMITED:
-        if key != search.REQUIREMENTS and getattr(settings, f"limit_{key}") == bridge.NONE:
+        if key != search.REQUIREMENTS and getattr(settings, f"limit_{key}") == document.NONE:
             setattr(settings, f"limit_{key}", 0)
     settings.clear_housings = True
     assert bpy.ops.pe.add_no_go() == {"FINISHED"}
@@ -121,10 +121,10 @@ def rich(car):
     settings.wheelbase = 2.7
     settings.front_overhang = 0.9
     settings.rear_overhang = 0.6
-    bridge.put(settings, ("time", "noises"), {"car": 1.0})
-    bridge.put(settings, ("time", "rates"), {"camera": 30.0})
-    bridge.put(settings, ("optimize", "tolerance", "draws"), 4)
-    bridge.put(settings, ("selection", "max_of_kind"), {"camera": 5})
+    document.put(settings, ("time", "noises"), {"car": 1.0})
+    document.put(settings, ("time", "rates"), {"camera": 30.0})
+    document.put(settings, ("optimize", "tolerance", "draws"), 4)
+    document.put(settings, ("selection", "max_of_kind"), {"camera": 5})
     settings.time_frames = 5
     settings.time_q = 2.0
     settings.time_rate_hz = 20.0
@@ -146,7 +146,7 @@ def rich(car):
     scenes.add_mount(car, "slots", kind="SLOTS", slots=rack)
     roof = bpy.data.objects["roof"]
     roof.location.y = 0.4
-    bridge.add_edge(car, pe.Edge("seam", [(0.7, -0.8, 1.5), (0.7, 0.8, 1.5)]))
+    document.add_edge(car, pe.Edge("seam", [(0.7, -0.8, 1.5), (0.7, 0.8, 1.5)]))
     roof.perception_entropy.edge_x = "seam"
     bpy.context.view_layer.update()
     assert bpy.ops.pe.mount_sensor(name="roof", mount="painted") == {"FINISHED"}
@@ -192,7 +192,7 @@ def rich(car):
     own.stays = True
     settings.front_objectives = {"entropy", "height"}
     start = {"name": "other", "poses": {"eye": {"position": [2.1, 0.0, 1.1]}}}
-    bridge.put(settings, ("optimize", "start"), [start])
+    document.put(settings, ("optimize", "start"), [start])
     bpy.ops.pe.add_row(rows="states")
     bpy.ops.pe.add_row(rows="weathers", kind="FOG")
     settings.search_conditions = "worst"
@@ -264,14 +264,14 @@ def test_a_variant_s_study_is_that_of_the_scene_once_it_is_applied(rich):
 
 def test_an_imported_study_is_that_of_the_scene_that_holds_it(rich, tmp_path):
     settings = rich.perception_entropy  # of a camera's housing nothing is known
-    settings.limit_protrusion = settings.limit_frontal_area = bridge.NONE
+    settings.limit_protrusion = settings.limit_frontal_area = document.NONE
     exported = scenes.study()
     pt.export_study(exported, tmp_path / "study.toml")
     study = pe.load_study(tmp_path / "study.toml")
     assert differences(exported, study) == []
     study = study.with_rig(pe.Rig([*study.rig][::-1]))  # what is not sorted keeps its order
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    assert bridge.load_into(bpy.context.scene, study) == []
+    assert document.load_into(bpy.context.scene, study) == []
     assert [each.name for each in scenes.study().rig] == [each.name for each in study.rig]
     of_files = [  # names of files, and of an area's parts in them
         "study.mesh",

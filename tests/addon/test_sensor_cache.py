@@ -6,7 +6,7 @@ import bpy
 import pytest
 
 from blender_addon import result_staleness, sensor_cache
-from blender_addon.bridge.rig import sensor_objects
+from blender_addon.document.rig import sensor_objects
 from blender_addon.overlay.snapshot import SnapshotReader
 from blender_addon.sensor_cache import sensors as listed_sensors
 

@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import bridge, consistency
+from blender_addon import consistency, document
 from blender_addon.engine import graphics
 from tests.addon import scenes
 
@@ -16,7 +16,7 @@ TURNED = (0.3, -0.2, 1.0)
 
 def pose(obj):
     bpy.context.view_layer.update()
-    return bridge.pose_of(obj, scenes.depsgraph())
+    return document.pose_of(obj, scenes.depsgraph())
 
 
 @pytest.mark.parametrize("parented", [False, True])
@@ -47,7 +47,7 @@ def colors_of(scene):
     """Return the stored colours by name, once the add-on had its turn."""
     bpy.context.view_layer.update()
     consistency.repair_scenes()
-    return {obj.name: bridge.color_of(obj) for obj in bridge.sensor_objects(scene)}
+    return {obj.name: document.color_of(obj) for obj in document.sensor_objects(scene)}
 
 
 def test_a_sensor_has_one_colour_in_every_layer_the_list_and_the_study(car):

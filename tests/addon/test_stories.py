@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import bridge, consistency, diagnostics, result_staleness
+from blender_addon import consistency, diagnostics, document, result_staleness
 from blender_addon.engine import exchange, jobs, outputs, page, pe, search, studies, text
 from blender_addon.operators import compare_variants
 from blender_addon.panels import main
@@ -94,7 +94,7 @@ def test_place_score_optimize_check_and_export(scene, tmp_path, small_pictures):
     assert bpy.ops.pe.check_requirements() == {"FINISHED"}
     (verdict,) = scenes.study().verdicts()
     (row,) = settings.requirements
-    assert bridge.stored_verdict(row) == verdict.summary
+    assert document.stored_verdict(row) == verdict.summary
 
     # Export: what is written is of this scene, and scores the same.
     study, glb, review = (tmp_path / n for n in ("car.toml", "car.glb", "for <all>.html"))
@@ -118,7 +118,7 @@ def test_import_rigs_and_compare_them(car, tmp_path):
     settings = car.perception_entropy
     place = {"location": (1.5, 0.1, 1.3), "rotation_euler": (0.0, 0.1, 0.2)}
     scenes.add_sensor("eye", "Front 120 deg 8 MP", **place)
-    bridge.put(settings, bridge.REFERENCE, studies.write(pe.Reference(-1.31, 0.33, 2.8)))
+    document.put(settings, document.REFERENCE, studies.write(pe.Reference(-1.31, 0.33, 2.8)))
     before = scenes.study().rig
 
     # A rig leaves for another program and comes back as a variant; what stood here is kept.
@@ -129,7 +129,7 @@ def test_import_rigs_and_compare_them(car, tmp_path):
         chosen = path / row.files[0] if len(row.files) > 1 else path
         assert bpy.ops.pe.import_rig(filepath=str(chosen)) == {"FINISHED"}
         assert settings.variants[0].name == "Unsaved"
-        assert bridge.active_variant(car).note.startswith("Read from")
+        assert document.active_variant(car).note.startswith("Read from")
         theirs = sorted(scenes.study().rig, key=lambda s: s.pose.position)
         for ours, other in zip(sorted(before, key=lambda s: s.pose.position), theirs, strict=True):
             assert other.kind == ours.kind
@@ -251,7 +251,7 @@ def test_undo_save_and_reload(car, tmp_path):
     def count(what) -> int:
         scene = bpy.context.scene
         if what == "sensors":
-            return len(bridge.sensor_objects(scene))
+            return len(document.sensor_objects(scene))
         return len(getattr(scene.perception_entropy, what))
 
     for act, what in acts:
@@ -282,7 +282,7 @@ def test_undo_save_and_reload(car, tmp_path):
     assert poses() == before and pe.study_to_dict(scenes.study()) == table
     assert settings.has_result and settings.result.entropy == entropy
     assert len(pe.catalog.load("My LiDAR").elevations) == 5
-    assert names(settings.variants) == ["Variant"] and bridge.active_variant(scene) is not None
+    assert names(settings.variants) == ["Variant"] and document.active_variant(scene) is not None
     result_staleness.update_result()
     result_staleness.update_variants()
     assert not settings.result_stale and not settings.variant_changed
@@ -317,8 +317,8 @@ def test_rename_duplicate_and_remove_what_others_are_tied_to(car):
     left.select_set(True)
     bpy.ops.object.duplicate()
     turn()
-    copied = next(s for s in bridge.sensor_objects(car) if s.name.startswith("another."))
-    assert copied.perception_entropy.mirror_of == "" and bridge.mirror_of(left, car) == right
+    copied = next(s for s in document.sensor_objects(car) if s.name.startswith("another."))
+    assert copied.perception_entropy.mirror_of == "" and document.mirror_of(left, car) == right
     right.hide_set(True)
     assert scenes.study().search.mounting.pairs == ()
     bpy.data.objects.remove(right)
@@ -343,7 +343,7 @@ def test_rename_duplicate_and_remove_what_others_are_tied_to(car):
     bpy.ops.pe.add_row(rows="own_sensors", kind="lidar")
     roof.perception_entropy.model = "My LiDAR"
     settings.own_sensors[0].name = "Mine"
-    bridge.sync_own_sensors()
+    document.sync_own_sensors()
     assert roof.perception_entropy.model == "Mine"
     bpy.context.view_layer.objects.active = roof
     assert [bpy.ops.pe.add_row(rows="options") for _ in range(2)] == 2 * [{"FINISHED"}]

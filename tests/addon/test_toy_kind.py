@@ -11,7 +11,7 @@ import pytest
 
 import blender_addon
 import pe_core as pe
-from blender_addon import bridge, housing, panels, properties, sensor_kinds
+from blender_addon import document, housing, panels, properties, sensor_kinds
 from blender_addon.engine import advice
 from blender_addon.operators import models, offers
 from pe_core import catalog
@@ -61,18 +61,18 @@ def test_the_operator_scores_it_as_the_engine_does(ring_kind, ring):
     study = scenes.study()
     expected = study.evaluator().score(study.rig)
     assert bpy.ops.pe.score() == {"FINISHED"}
-    own = bridge.figures_of_sensor(ring)
+    own = document.figures_of_sensor(ring)
     assert own.beams == own.occluded == 0
     assert own.entropy == pytest.approx(expected.per_sensor["bumper"].entropy, abs=1e-5)
     assert own.coverage == pytest.approx(expected.per_sensor["bumper"].coverage, abs=1e-6) != 0.0
-    assert own.entropy != bridge.figures_of_sensor(ring_kind.objects["roof"]).entropy
+    assert own.entropy != document.figures_of_sensor(ring_kind.objects["roof"]).entropy
 
 
 def test_the_panel_shows_what_was_stored(ring_kind, ring):
     bpy.ops.pe.score()
     ring_kind.perception_entropy.panels = "ALL"
     layout = Layout()
-    own = bridge.figures_of_sensor(ring)
+    own = document.figures_of_sensor(ring)
     panels.sensor_lists.draw_sensors(layout, Window(ring_kind))
     assert list(filter(None, layout.texts("operator"))) == ["bumper", "roof"]
     shown = layout.texts("label")

@@ -49,7 +49,7 @@ bpy.ops.wm.read_factory_settings(use_empty=True)
 blender_addon.register()
 
 import pe_core as pe
-from blender_addon import bridge
+from blender_addon import document
 from blender_addon.panels.layout import draw_declared
 from pe_core.study import study_from_dict, study_to_dict
 from tests.addon import scenes
@@ -59,10 +59,10 @@ scene = bpy.context.scene
 scenes.add_car(scene)
 roof = scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(-0.43, 0.0, 1.8))
 settings, own = scene.perception_entropy, roof.perception_entropy
-before = bridge.fingerprint(scene)
+before = document.fingerprint(scene)
 assert (settings.space_toy, own.heat) == (0.5, 0.0)
 settings.space_toy, own.heat = 0.25, 7.0
-assert bridge.fingerprint(scene).text != before.text
+assert document.fingerprint(scene).text != before.text
 
 assert '"toy": 0.25' in settings.table and '"heat": 7.0' in own.table
 study = scenes.study()
@@ -74,7 +74,7 @@ assert again.space.toy == 0.25 and again.rig["roof"].sheet.heat == 7.0
 
 assert bpy.ops.pe.save_variant() == {"FINISHED"}
 settings.space_toy, own.heat = 0.5, 3.0
-assert bridge.load_into(scene, study) == []
+assert document.load_into(scene, study) == []
 assert settings.space_toy == 0.25 and own.heat == 7.0
 bpy.ops.pe.switch_variant(key=settings.variants[0].key)
 assert own.heat == 7.0

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import bridge, diagnostics, result_staleness
+from blender_addon import diagnostics, document, result_staleness
 from blender_addon.engine import advice
 from blender_addon.operators import compare_variants
 from tests.addon import scenes
@@ -50,7 +50,7 @@ def remove(scene, name):
 
 def test_switching_brings_every_sensor_back_to_the_bit(ideas):
     before = poses()
-    start = bridge.records_of_scene(ideas)
+    start = document.records_of_scene(ideas)
     bpy.ops.pe.save_variant()
     second = ideas.objects["roof"]
     second.location = (0.123456, 0.2, 1.9)
@@ -63,7 +63,7 @@ def test_switching_brings_every_sensor_back_to_the_bit(ideas):
     for _ in range(3):
         assert switch(ideas, "Variant") == {"FINISHED"}
         assert poses() == before
-        assert bridge.same_sensors(bridge.records_of_scene(ideas), start)
+        assert document.same_sensors(document.records_of_scene(ideas), start)
         assert switch(ideas, "Variant 2") == {"FINISHED"}
         assert poses() == moved
     assert variants(ideas) == ["Variant", "Variant 2"], "nothing was unsaved"
@@ -92,7 +92,7 @@ def test_lacking_sensors_are_made_and_surplus_ones_set_aside(ideas):
     bpy.ops.pe.save_variant()
     switch(ideas, "Variant")
     assert poses() == both
-    assert [obj.name for obj in bridge.sensor_objects(ideas)] == ["eye", "roof"]
+    assert [obj.name for obj in document.sensor_objects(ideas)] == ["eye", "roof"]
     third = ideas.objects["third"]
     assert not third.visible_get() and not third.perception_entropy.is_sensor
     switch(ideas, "Variant 2")
@@ -183,8 +183,8 @@ def test_a_held_sensor_is_reported_and_nothing_is_changed(ideas):
 
 def unknown(variant):
     """Give the first sensor of a variant a model that there is not."""
-    first, *others = bridge.records_of(variant)
-    bridge.write_records(variant, [replace(first, model="no such sensor"), *others])
+    first, *others = document.records_of(variant)
+    document.write_records(variant, [replace(first, model="no such sensor"), *others])
 
 
 def test_a_variant_that_cannot_be_scored_is_reported_and_the_others_are(ideas):
@@ -223,7 +223,7 @@ def test_bars_have_the_largest_difference_first_and_the_longest_is_full(ideas):
         if min(row.values) > 0.0:
             shares = [row.share(k) for k in range(2)]
             assert shares == pytest.approx([value / ends[-1] for value in row.values])
-    pictures = [bridge.picture_of(row) for row in compare_variants.compared_variants(ideas)]
+    pictures = [document.picture_of(row) for row in compare_variants.compared_variants(ideas)]
     assert all(base64.b64decode(each).startswith(b"\x89PNG") for each in pictures)
     assert pictures[0] != pictures[1], "the sensor stands elsewhere"
     ideas.perception_entropy.panels = "SIMPLE"
@@ -253,8 +253,8 @@ def test_what_a_difference_is_worth_is_that_of_the_scenes_study(car):
     car.perception_entropy.prior = "road"
     for axis, (low, high) in zip("xyz", ((-80, 80), (-40, 40), (0, 5)), strict=True):
         setattr(car.perception_entropy, f"space_{axis}", (low, high))
-    found = bridge.worth_of_differences(car, own)
+    found = document.worth_of_differences(car, own)
     assert set(found) == {"entropy", "traffic_ap", "coverage"}
     assert found == advice.worth_rows(scenes.study(), [study.rig] * 2, one_vehicle=True)
     car.perception_entropy.prior = "highway"
-    assert bridge.worth_of_differences(car, own) == {}
+    assert document.worth_of_differences(car, own) == {}

@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import bridge
+from blender_addon import document
 from tests.addon import scenes
 
 BOX_VOLUME = 8.0
@@ -123,7 +123,7 @@ def test_what_is_hidden_in_an_instance_does_not_count(parts, how):
     if how == "object":
         hidden.hide_render = True
     elif how == "surroundings":
-        child[bridge.SURROUNDINGS] = True
+        child[document.SURROUNDINGS] = True
     else:
         (kit if how == "collection" else child).hide_render = True
     left = {"collection": {"body"}, "nested": {"seen", "body"}}.get(how, everything - {"hidden"})
@@ -170,10 +170,10 @@ def test_hidden_children_and_sensors_of_instances_are_told(car):
         own.objects.unlink(sensor)
     kit.objects.link(sensor)
     codes = {"hidden_vehicle", "instanced_sensors"}
-    assert not [each for each in bridge.scene_advice(car) if each.code in codes]
+    assert not [each for each in document.scene_advice(car) if each.code in codes]
     car.perception_entropy.vehicle.objects.link(instance_of(kit, "kit"))
     child.hide_render = True
     bpy.context.view_layer.update()
-    told = {each.code: each.text for each in bridge.scene_advice(car) if each.code in codes}
+    told = {each.code: each.text for each in document.scene_advice(car) if each.code in codes}
     assert "Child is hidden in renders" in told["hidden_vehicle"]
     assert "inside" in told["instanced_sensors"] and "Kit" in told["instanced_sensors"]

@@ -7,7 +7,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from blender_addon import bridge
+from blender_addon import document
 from tests.addon import scenes
 from tests.addon.command_line import run_here
 
@@ -25,7 +25,7 @@ def roof(car):
 
 def position(name="roof"):
     bpy.context.view_layer.update()
-    return bridge.pose_of(bpy.data.objects[name], scenes.depsgraph()).position
+    return document.pose_of(bpy.data.objects[name], scenes.depsgraph()).position
 
 
 def select_in_edit_mode(obj, chosen):
@@ -98,7 +98,7 @@ def test_nothing_that_is_no_edge_is_named(car):
 
 
 def test_a_scene_and_its_study_file_tell_the_same_edges_and_bits(roof, car, tmp_path):
-    bridge.add_edge(car, pe.Edge("seam", [(0.1, -1.0, 1.2), (0.3, 1.0, 1.2)]))
+    document.add_edge(car, pe.Edge("seam", [(0.1, -1.0, 1.2), (0.3, 1.0, 1.2)]))
     bpy.context.view_layer.update()
     roof.edge_x = "seam"
     roof.edge_distances = (0.45, 0.07, 0.0)
@@ -110,7 +110,7 @@ def test_a_scene_and_its_study_file_tell_the_same_edges_and_bits(roof, car, tmp_
     assert again.distances(again.rig["roof"]) == study.distances(study.rig["roof"])
     assert pt.jobs.fingerprint(again) == pt.jobs.fingerprint(study)
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    lines = bridge.load_into(bpy.context.scene, again)
+    lines = document.load_into(bpy.context.scene, again)
     assert lines == []
     held = scenes.study()
     assert held.edges == study.edges

@@ -3,7 +3,7 @@
 import pytest
 from mathutils import Vector
 
-from blender_addon import bridge
+from blender_addon import document
 from blender_addon.engine import catalog
 from blender_addon.operators import camera_pictures, camera_strip, sensor_pictures
 
@@ -14,7 +14,7 @@ def test_points_fall_where_the_camera_has_them(car, model):
     camera = catalog.load(model)
     clip = camera_pictures.projection(camera)
     for ahead, left, up in ((5.0, 0.0, 0.0), (5.0, 1.0, 0.4), (9.0, -2.0, -0.7)):
-        seen = bridge.CAMERA_FROM_SENSOR.inverted() @ Vector((ahead, left, up, 1.0))
+        seen = document.CAMERA_FROM_SENSOR.inverted() @ Vector((ahead, left, up, 1.0))
         x, y, _, w = clip @ seen
         across = (x / w + 1.0) / 2.0 * camera.width
         height = (1.0 - y / w) / 2.0 * camera.height

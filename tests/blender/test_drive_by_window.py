@@ -43,11 +43,11 @@ draw_handler.register()
 """
 FILM = f"""
 from pathlib import Path
-from {NAME} import bridge, film
+from {NAME} import document, film
 window.scene.render.fps = 4
 with bpy.context.temp_override(window=window, area=area, region=region):
-    study = bridge.study_as_drawn(window.scene)
-    story = bridge.story_of(window.scene.perception_entropy.stories[0])
+    study = document.study_as_drawn(window.scene)
+    story = document.story_of(window.scene.perception_entropy.stories[0])
     film.FilmRender(window.scene, study, story, Path({{path!r}}))
 kept["shown"] = window.screen.areas[0].type
 """

@@ -1,4 +1,4 @@
-"""The bridge: the only package that converts Blender's data to the engine's, and back.
+"""The document: the only package that converts Blender's data to the engine's, and back.
 
 What is imported here is what other modules of the add-on take from it.
 """

@@ -54,7 +54,7 @@ result_staleness: document sensor_cache signals vehicle_cache
 diagnostics: analysis_calls document engine engine_process sensor_cache signals vehicle_cache
 location_query: document engine engine_process sensor_cache signals vehicle_cache
 body_query: analysis_calls choices document engine engine_process sensor_cache vehicle_cache
-  viewport
+    viewport
 where_map: document engine signals
 housing: engine sensor_cache sensor_kinds
 library:

@@ -22,8 +22,8 @@ def full_score_of_many() -> Timing:
 
 def time_against_sensors() -> Timing:
     """A full score of eight sensors, against as many times the share that one of two takes."""
-    ours = _study(4, 4)
-    few = _study(1, 1)
+    ours = ring_on_roof(4, 4)
+    few = ring_on_roof(1, 1)
     eight = best_of_processor(_scoring(ours), 2)
     peak = peak_mb()
     two = best_of_processor(_scoring(few), 2)
@@ -32,7 +32,7 @@ def time_against_sensors() -> Timing:
 
 
 def _full(lidars: int, cameras: int) -> Timing:
-    study = _study(lidars, cameras)
+    study = ring_on_roof(lidars, cameras)
     evaluator = study.evaluator(0)
     ours = best_of_processor(lambda: evaluator.score(study.rig), 2)
     peak = peak_mb()
@@ -46,7 +46,7 @@ def _scoring(study: pe.Study) -> Work:
     return lambda: evaluator.score(study.rig)
 
 
-def _study(lidars: int, cameras: int) -> pe.Study:
+def ring_on_roof(lidars: int, cameras: int) -> pe.Study:
     """LiDARs and cameras in two rings on a car's roof."""
     models = [pe.catalog.load(name) for name in ("Pandar40", "Pandar64", "Camera 60 deg")]
     sensors = []

@@ -1,9 +1,8 @@
 """What all drawers in 3D views share: handlers, text and plates in corners, redraw.
 
 The live score, pictures of cameras, legends and labels are written by the functions
-of this module, in pixels of a region. A drawer reserves the box of its plate at each redraw, or
-releases it; a plate that is drawn later in the same redraw is put above it. Boxes are plain numbers
-by region; no object of Blender's is held.
+of this module, in pixels of a region. Where plates go is laid out by `plates`; their boxes are
+plain numbers by region; no object of Blender's is held.
 """
 
 import contextlib
@@ -34,14 +33,14 @@ INK: Rgba = (0.95, 0.95, 0.95, 1.0)
 FAINT: Rgba = (0.74, 0.74, 0.74, 1.0)
 PLATE: Rgba = (0.08, 0.08, 0.08, 0.72)
 
+ELLIPSIS = "\N{HORIZONTAL ELLIPSIS}"
+
 _shaders: dict[str, gpu.types.GPUShader] = {}
 _square: list[gpu.types.GPUBatch] = []
 _gradients: dict[tuple[Rgba, ...], gpu.types.GPUBatch] = {}
 """Uploaded once, in the unit square, and drawn at any place and size."""
-_plates: dict[int, dict[str, PlateBox]] = {}
-STRIP = "strip"
-CAMERAS = "cameras"
-"""Plates along the lower edge, from below: those in the corners stand above them."""
+_plates: dict[int, tuple[PlateBox, ...]] = {}
+"""Boxes of the plates that were drawn last, by the region's pointer."""
 
 
 def redraw_editors() -> None:
@@ -97,6 +96,14 @@ def text_size(text: str, size_px: float) -> tuple[float, float]:
     blf.size(FONT, size_px)
     width, height = blf.dimensions(FONT, typeset(text))
     return width, height
+
+
+def fitted(text: str, size_px: float, widest: float) -> str:
+    """Return a text as much of which as a width has room for [px]: its end is left out."""
+    if text_size(text, size_px)[0] <= widest:
+        return text
+    shorter = (text[:end].rstrip() + ELLIPSIS for end in range(len(text) - 1, 0, -1))
+    return next((each for each in shorter if text_size(each, size_px)[0] <= widest), "")
 
 
 def draw_text(
@@ -218,44 +225,26 @@ def sidebar_left(context: bpy.types.Context) -> float:
     return context.region.width - max(widths, default=0)
 
 
-def above_hud(context: bpy.types.Context, *, over: Sequence[str] = (STRIP, CAMERAS)) -> float:
+def above_hud(context: bpy.types.Context) -> float:
     """Return where a plate begins, from below: clear of the panel of the last operation. A row is
     always left for that panel, so that the plate does not jump with every move."""
     bottom = HUD_ROW * ui_scale()
     for other in context.area.regions:
         if other.type == "HUD" and other.height > 1:
             bottom = max(bottom, other.y + other.height - context.region.y)
-    boxes = _plates.get(context.region.as_pointer(), {})
-    return (
-        max([bottom, *(boxes[name][3] for name in over if name in boxes)])
-        + MARGIN * ui_scale() / 2.0
-    )
+    return bottom + MARGIN * ui_scale() / 2.0
 
 
-def reserve_plate(region: int, plate: str, box: PlateBox | None) -> None:
-    """Note the box of a plate in a region, by the region's pointer; None: it is not drawn."""
-    boxes = _plates.setdefault(region, {})
-    if box is None:
-        boxes.pop(plate, None)
-    else:
-        boxes[plate] = box
+def note_plates(region: int, boxes: Sequence[PlateBox]) -> None:
+    """Note the boxes of the plates that are drawn in a region, by the region's pointer."""
+    _plates[region] = tuple(boxes)
 
 
-def release_plate(plate: str) -> None:
-    """Drop a plate's boxes in all regions."""
-    for boxes in _plates.values():
-        boxes.pop(plate, None)
+def release_plates() -> None:
+    """Forget the boxes of plates in all regions."""
+    _plates.clear()
 
 
 def plate_boxes(region: int) -> tuple[PlateBox, ...]:
     """Return the boxes of the plates in a region."""
-    return tuple(_plates.get(region, {}).values())
-
-
-def free_bottom(region: int, sides: tuple[float, float], bottom: float, gap: float) -> float:
-    """Return where a plate between two sides may begin so that it covers no other one [px]. Without
-    other plates it would begin at `bottom`; `gap` is left free between plates."""
-    left, right = sides
-    boxes = plate_boxes(region)
-    tops = [box[3] + gap for box in boxes if box[0] - gap < right and left < box[2] + gap]
-    return max([bottom, *tops])
+    return _plates.get(region, ())

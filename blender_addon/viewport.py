@@ -7,6 +7,7 @@ plain numbers by region; no object of Blender's is held.
 
 import contextlib
 from collections.abc import Callable, Iterator, Sequence
+from functools import lru_cache
 from typing import Protocol
 
 import blf
@@ -31,7 +32,11 @@ HEADER = 110.0
 """Height of the headers and of Blender's own text, from the top."""
 INK: Rgba = (0.95, 0.95, 0.95, 1.0)
 FAINT: Rgba = (0.74, 0.74, 0.74, 1.0)
-PLATE: Rgba = (0.08, 0.08, 0.08, 0.72)
+PLATE: Rgba = (0.08, 0.08, 0.08, 0.84)
+"""Below all text. It hides so much of what is behind it that text can be read over white, too."""
+MIN_CONTRAST = 4.5
+"""Of text and what is behind it: WCAG 2.2, 1.4.3, level AA."""
+LIGHTER = 0.05
 
 ELLIPSIS = "\N{HORIZONTAL ELLIPSIS}"
 
@@ -106,13 +111,47 @@ def fitted(text: str, size_px: float, widest: float) -> str:
     return next((each for each in shorter if text_size(each, size_px)[0] <= widest), "")
 
 
+def luminance(color: Sequence[float]) -> float:
+    """Return the relative luminance of an sRGB colour, 0 to 1 (WCAG 2.2)."""
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in color[:3]]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(one: Sequence[float], other: Sequence[float]) -> float:
+    """Return the contrast of two sRGB colours, 1 to 21 (WCAG 2.2)."""
+    dark, light = sorted((luminance(one), luminance(other)))
+    return (light + 0.05) / (dark + 0.05)
+
+
+def over(color: Rgba, behind: Sequence[float]) -> tuple[float, ...]:
+    """Return how a colour looks over an opaque one."""
+    share = color[3]
+    return tuple(share * c + (1.0 - share) * b for c, b in zip(color, behind, strict=False))
+
+
+BRIGHTEST = over(PLATE, (1.0, 1.0, 1.0))
+"""A plate over white: the worst that text is read on."""
+
+
+@lru_cache(maxsize=256)
+def readable(color: Rgba) -> Rgba:
+    """Return the colour of text on a plate: opaque, and so much lighter as its contrast needs."""
+    share = 0.0
+    lighter: Rgba = (*color[:3], 1.0)
+    while contrast(lighter, BRIGHTEST) < MIN_CONTRAST and share < 1.0:
+        share += LIGHTER
+        red, green, blue = (c + share * (1.0 - c) for c in color[:3])
+        lighter = (red, green, blue, 1.0)
+    return lighter
+
+
 def draw_text(
     text: str, x: float, y: float, size_px: float, color: Rgba, *, left_of_x: float = 0.0
 ) -> float:
     """Draw a line of text on a baseline; return its width [px].
     `left_of_x` is the share of the text that lies left of `x`: 0 begins there, 1 ends there."""
     width, _ = text_size(text, size_px)
-    blf.color(FONT, *color)
+    blf.color(FONT, *readable(color))
     blf.position(FONT, round(x - left_of_x * width), round(y), 0.0)
     blf.draw(FONT, typeset(text))
     return width

@@ -109,7 +109,7 @@ def _draw_ruler(corner: tuple[float, float], long: float, scale: float) -> None:
     bottom = corner[1] + pad
     right = left + long + 2.0 * pad + viewport.text_size(text, small)[0]
     plate = corner[0], corner[1], right, bottom + small + pad / 2.0
-    viewport.fill_box(plate, sensor_pictures.TITLE_PLATE)
+    viewport.fill_box(plate, viewport.PLATE)
     viewport.fill_box((left, bottom, left + long, bottom + BAR_PX * scale), viewport.INK)
     viewport.draw_text(text, left + long + pad, bottom, small, color=viewport.INK)
 

@@ -19,8 +19,6 @@ WIDTH_SHARE = 0.3
 MAX_HEIGHT_SHARE = 0.4
 MAX_WIDTH_PX = 380.0
 """Largest share of the view's width and height, and largest width at a scale of 1."""
-TITLE_PLATE = (0.08, 0.08, 0.08, 0.78)
-INK = (0.92, 0.92, 0.92, 1.0)
 TAKES_SRGB = bpy.app.version >= (5, 0, 0)
 """Whether textures drawn over a view are taken as they are; before 5.0 they are linear light."""
 EDGE = (0.75, 0.75, 0.75, 1.0)
@@ -121,9 +119,9 @@ def draw_title(
     pad = PAD_PX * scale
     small = viewport.SMALL * scale
     box = left, bottom, right, bottom + TITLE_PX * scale
-    viewport.fill_box(box, TITLE_PLATE)
+    viewport.fill_box(box, viewport.PLATE)
     text = viewport.fitted(title, small, right - left - 2.0 * pad)
-    viewport.draw_text(text, left + pad, bottom + pad, small, color=INK)
+    viewport.draw_text(text, left + pad, bottom + pad, small, color=viewport.INK)
     return box
 
 

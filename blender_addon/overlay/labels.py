@@ -8,7 +8,7 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 from .. import plates, viewport
 from ..engine import graphics
 from ..plates import Plate, PlateSize, Room
-from ..viewport import SMALL, PlateBox
+from ..viewport import FAINT, INK, PLATE, SMALL, PlateBox
 
 STRONG_SIZE = 12.5
 RISE = 10.0
@@ -19,10 +19,6 @@ BAR = 10.0
 ROW = 17.0
 VALUES = 0.8
 """Size of the values below a scale, as a share of its words."""
-INK: graphics.Rgba = (0.92, 0.92, 0.92, 1.0)
-FAINT_INK: graphics.Rgba = (0.72, 0.72, 0.72, 1.0)
-PLATE: graphics.Rgba = (0.10, 0.10, 0.10, 0.78)
-LABEL_PLATE: graphics.Rgba = (0.08, 0.08, 0.08, 0.55)
 
 
 def draw_labels(
@@ -54,7 +50,7 @@ def draw_labels(
         if over:
             continue
         taken.append(box)
-        viewport.fill_box(box, LABEL_PLATE)
+        viewport.fill_box(box, PLATE)
         for number, line in enumerate(reversed(lines)):
             viewport.draw_text(line, x, y + number * row, size, color=label.color)
 
@@ -120,4 +116,4 @@ def _draw_ticks(ticks: Sequence[str], sides: tuple[float, float], y: float, size
     for number, tick in enumerate(ticks):
         share = number / max(len(ticks) - 1, 1)
         x = left + share * (right - left)
-        viewport.draw_text(tick, x, y, size, color=FAINT_INK, left_of_x=share)
+        viewport.draw_text(tick, x, y, size, color=FAINT, left_of_x=share)

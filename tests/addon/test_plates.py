@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from blender_addon import plates
+from blender_addon import plates, viewport
 from blender_addon.engine import graphics
 from blender_addon.live import readout
 from blender_addon.operators import camera_strip, sensor_pictures
@@ -148,3 +148,25 @@ def test_a_readout_too_wide_goes_on_below_and_loses_no_word():
         assert len(found) >= len(rows)
     assert readout.wrapped(rows, 1e4, 1.0) == rows
     assert len(readout.wrapped(rows, 90.0, 1.0)) > len(rows)
+
+
+@pytest.mark.parametrize("behind", [(0.0, 0.0, 0.0), (0.5, 0.5, 0.5), (1.0, 1.0, 1.0)])
+def test_text_on_plates_can_be_read_whatever_is_behind_them(behind):
+    """WCAG's 4.5 to 1: colours of texts, of sensors, of bodies, and any other."""
+    plate = viewport.over(viewport.PLATE, behind)
+    steps = [k / 4.0 for k in range(5)]
+    colors = [viewport.INK, viewport.FAINT, strip.STALE, readout.ALERT]
+    colors += [*readout.SENSE_COLORS.values(), *itertools.product(steps, steps, steps, [0.5, 1.0])]
+    for color in colors:
+        drawn = viewport.readable(color)
+        assert viewport.contrast(drawn, plate) >= 4.5
+    for named in (viewport.INK, viewport.FAINT, strip.STALE, readout.ALERT):
+        assert viewport.readable(named) == named
+
+
+def test_contrast_is_that_of_the_standard():
+    """WCAG 2.2: black on white is 21; #767676 is the darkest grey that is 4.5 on white."""
+    white = (1.0, 1.0, 1.0)
+    assert viewport.contrast((0.0, 0.0, 0.0), white) == pytest.approx(21.0)
+    grey = [0x76 / 255.0] * 3
+    assert viewport.contrast(grey, white) == pytest.approx(4.54, abs=0.01)

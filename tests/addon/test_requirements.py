@@ -120,7 +120,13 @@ def test_verdicts_come_row_by_row_and_esc_keeps_those_that_are_found(held):
 
     told = check_by_hand(held, lambda job: job.stop() if job.verdicts else None)
     assert told.level == "WARNING"
-    assert stored(held) == [whole[0], None, None]
+    first, *others = stored(held)
+    assert first.met == whole[0].met and others == [None, None]
+
+    check_by_hand(held, lambda job: job.stop() if job.margins else None)
+    first, *others = stored(held)
+    assert first == whole[0], "its margin is known"
+    assert [each.met for each in others] == [each.met for each in whole[1:]]
 
 
 class TestZones:

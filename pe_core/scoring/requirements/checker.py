@@ -38,10 +38,12 @@ AWAY_WEIGHT = 0.1
 
 
 class CheckStep(NamedTuple):
-    """A step of a check: the part that is done, 0 to 1, and the verdict that it found, if any."""
+    """A step of a check: the part that is done, 0 to 1, and the verdict that it found, if any.
+    `is_early`: the verdict comes again, once its margin is known."""
 
     fraction: float
     verdict: Verdict | None = None
+    is_early: bool = False
 
 
 class RequirementChecker:
@@ -107,9 +109,12 @@ class RequirementChecker:
         return tuple(step.verdict for step in steps if step.verdict is not None)
 
     def steps(
-        self, rig: Rig, *, preview: bool = False, cases: Sequence[Rig] = ()
+        self, rig: Rig, *, preview: bool = False, cases: Sequence[Rig] = (), early: bool = False
     ) -> Iterator[CheckStep]:
         """Yield the verdicts of `check` one after the other, in its order, with steps in between.
+
+        `early`: First yield whether each requirement on bodies is met, with a margin of at least 0
+        where it is: how far its zone could grow takes several times as long.
 
         Whoever takes no more steps ends the work. Several threads may take steps of one checker:
         what one of them has measured, the others do not measure again.
@@ -120,7 +125,7 @@ class RequirementChecker:
         rig = cautious(rig)
         cases = [] if preview else [cautious(case) for case in cases]
         with self._lock:
-            steps = self._set(PREVIEW if preview else FULL).steps(rig, cases)
+            steps = self._set(PREVIEW if preview else FULL).steps(rig, cases, early)
         while True:
             with self._lock:  # not while others have what was yielded
                 step = next(steps, None)
@@ -181,7 +186,7 @@ class _CheckedSet:
         self._pairs = pairs
         self._bodies = BodyChecks(pairs, model, caches)
 
-    def steps(self, rig: Rig, cases: Sequence[Rig]) -> Iterator[CheckStep]:
+    def steps(self, rig: Rig, cases: Sequence[Rig], early: bool) -> Iterator[CheckStep]:
         """Yield the verdicts on a rig, and steps without one in between."""
         preview = self._which == PREVIEW
         done = 0
@@ -191,12 +196,16 @@ class _CheckedSet:
             done += 1
             yield CheckStep(done / total)
         results = dict(zip(self._numbers, self._bodies.results(rig, cases), strict=True))
-        pairs = dict(zip(self._numbers, self._pairs, strict=True))
-        for number in sorted([*pairs, *self._grounds]):
-            if number in pairs:
-                verdict = body_verdict(
-                    *pairs[number], results[number], rig, vehicle=self._vehicle, preview=preview
-                )
+        verdicts: dict[int, Verdict] = {}
+        for number, pair in zip(self._numbers, self._pairs, strict=True):
+            verdicts[number] = body_verdict(
+                *pair, results[number], rig, vehicle=self._vehicle, preview=preview
+            )
+            if early:
+                yield CheckStep(done / total, verdicts[number], is_early=True)
+        for number in sorted([*verdicts, *self._grounds]):
+            if number in verdicts:
+                verdict = verdicts[number]
                 if verdict.at_least:
                     for grown in self._growths[number].margins(results[number], rig, cases):
                         margin, at_least = grown

@@ -89,6 +89,8 @@ class Room(NamedTuple):
 Drawer = Callable[[bpy.types.Context, Room], Iterable[Plate]]
 """Returns what it would draw into the present region; the most important of a kind first."""
 _drawers: dict[str, Drawer] = {}
+_layouts: dict[int, tuple[object, list[PlacedPlate | None]]] = {}
+"""By the region's pointer, what the last layout was made from, and the layout."""
 
 
 def show(name: str, drawer: Drawer) -> None:
@@ -99,6 +101,7 @@ def show(name: str, drawer: Drawer) -> None:
 def hide(name: str) -> None:
     """Draw them no more; do nothing if they are not."""
     _drawers.pop(name, None)
+    _layouts.clear()
 
 
 def draw(
@@ -116,7 +119,7 @@ def draw(
     plates = [each for shown in drawers for each in shown(context, room)]
     plates.sort(key=lambda plate: plate.kind)
     boxes = []
-    for plate, placed in zip(plates, laid_out(plates, room), strict=True):
+    for plate, placed in zip(plates, _layout_of(context.region, plates, room), strict=True):
         if placed is not None:
             plate.draw(placed.box, placed.step)
             boxes.append(placed.box)
@@ -150,6 +153,17 @@ def room_of(
         vehicle=_box_of(context, vehicle),
         area=MAX_SHARE * max(right, 0.0) * height - sum(map(_area, taken)),
     )
+
+
+def _layout_of(
+    region: bpy.types.Region, plates: Sequence[Plate], room: Room
+) -> list[PlacedPlate | None]:
+    """Return the layout of a region: that of the last redraw while it has the same plates."""
+    key = tuple((plate.kind, plate.sizes) for plate in plates), room
+    known = _layouts.get(region.as_pointer())
+    if known is None or known[0] != key:
+        known = _layouts[region.as_pointer()] = (key, laid_out(plates, room))
+    return known[1]
 
 
 def laid_out(plates: Sequence[Plate], room: Room) -> list[PlacedPlate | None]:

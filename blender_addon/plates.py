@@ -118,13 +118,13 @@ def draw(
     drawers = [*_drawers.values(), drawer]
     plates = [each for shown in drawers for each in shown(context, room)]
     plates.sort(key=lambda plate: plate.kind)
-    boxes = []
+    drawn = []
     for plate, placed in zip(plates, _layout_of(context.region, plates, room), strict=True):
         if placed is not None:
             plate.draw(placed.box, placed.step)
-            boxes.append(placed.box)
-    viewport.note_plates(context.region.as_pointer(), boxes)
-    return [*room.taken, *boxes]
+            drawn.append((plate.kind, placed.box))
+    viewport.note_plates(context.region.as_pointer(), drawn)
+    return [*room.taken, *(box for _, box in drawn)]
 
 
 def room_of(

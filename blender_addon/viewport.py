@@ -44,8 +44,8 @@ _shaders: dict[str, gpu.types.GPUShader] = {}
 _square: list[gpu.types.GPUBatch] = []
 _gradients: dict[tuple[Rgba, ...], gpu.types.GPUBatch] = {}
 """Uploaded once, in the unit square, and drawn at any place and size."""
-_plates: dict[int, tuple[PlateBox, ...]] = {}
-"""Boxes of the plates that were drawn last, by the region's pointer."""
+_plates: dict[int, tuple[tuple[int, PlateBox], ...]] = {}
+"""Kinds and boxes of the plates that were drawn last, by the region's pointer."""
 
 
 def redraw_editors() -> None:
@@ -274,9 +274,9 @@ def above_hud(context: bpy.types.Context) -> float:
     return bottom + MARGIN * ui_scale() / 2.0
 
 
-def note_plates(region: int, boxes: Sequence[PlateBox]) -> None:
-    """Note the boxes of the plates that are drawn in a region, by the region's pointer."""
-    _plates[region] = tuple(boxes)
+def note_plates(region: int, plates: Sequence[tuple[int, PlateBox]]) -> None:
+    """Note kind and box of the plates that are drawn in a region, by the region's pointer."""
+    _plates[region] = tuple(plates)
 
 
 def release_plates() -> None:
@@ -284,6 +284,7 @@ def release_plates() -> None:
     _plates.clear()
 
 
-def plate_boxes(region: int) -> tuple[PlateBox, ...]:
-    """Return the boxes of the plates in a region."""
-    return _plates.get(region, ())
+def plate_boxes(region: int, of_kind: int | None = None) -> tuple[PlateBox, ...]:
+    """Return the boxes of the plates in a region; of one kind, if it is given."""
+    drawn = _plates.get(region, ())
+    return tuple(box for kind, box in drawn if of_kind in (None, kind))

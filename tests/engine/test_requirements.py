@@ -201,8 +201,8 @@ def test_all_verdicts_come_before_the_first_margin_and_stay():
     found = [step for step in steps if step.verdict is not None]
     early = [step.verdict for step in found if step.is_early]
     last = [step.verdict for step in found if not step.is_early]
-    assert [step.is_early for step in found] == [True] * 3 + [False] * 4
-    assert [each.name for each in early] == ["one", "two", "most"]
+    assert [step.is_early for step in found] == [True] * 4 + [False] * 4
+    assert [each.name for each in early] == ["one", "ground", "two", "most"]
     expected = checker.check(rig())
     assert [each.summary for each in last] == [each.summary for each in expected]
     by_name = {each.name: each for each in last}

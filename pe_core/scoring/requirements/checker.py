@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import islice
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -113,8 +114,8 @@ class RequirementChecker:
     ) -> Iterator[CheckStep]:
         """Yield the verdicts of `check` one after the other, in its order, with steps in between.
 
-        `early`: First yield whether each requirement on bodies is met, with a margin of at least 0
-        where it is: how far its zone could grow takes several times as long.
+        `early`: First yield whether each requirement is met, with a margin of at least 0 where it
+        is: how far a zone of bodies could grow takes several times as long.
 
         Whoever takes no more steps ends the work. Several threads may take steps of one checker:
         what one of them has measured, the others do not measure again.
@@ -128,10 +129,12 @@ class RequirementChecker:
             steps = self._set(PREVIEW if preview else FULL).steps(rig, cases, early)
         while True:
             with self._lock:  # not while others have what was yielded
-                step = next(steps, None)
-            if step is None:
+                taken = list(islice(steps, 1))
+                while taken and taken[-1].is_early:  # all at once: no margin of others in between
+                    taken += islice(steps, 1)
+            if not taken:
                 return
-            yield step
+            yield from taken
 
     def shortfalls(self, rig: Rig, cases: Sequence[Rig] = ()) -> tuple[float, ...]:
         """Return for each requirement 0 where it is met, else how far it is off, above 0 to 1.
@@ -196,23 +199,27 @@ class _CheckedSet:
             done += 1
             yield CheckStep(done / total)
         results = dict(zip(self._numbers, self._bodies.results(rig, cases), strict=True))
+        pairs = dict(zip(self._numbers, self._pairs, strict=True))
+        numbers = sorted([*pairs, *self._grounds])
+
+        def verdict_at_once(number: int) -> Verdict:
+            """How far a zone of bodies could grow is not known yet."""
+            if number not in pairs:
+                return self._grounds[number].verdict(rig, preview, cases)
+            own = pairs[number]
+            return body_verdict(*own, results[number], rig, vehicle=self._vehicle, preview=preview)
+
         verdicts: dict[int, Verdict] = {}
-        for number, pair in zip(self._numbers, self._pairs, strict=True):
-            verdicts[number] = body_verdict(
-                *pair, results[number], rig, vehicle=self._vehicle, preview=preview
-            )
-            if early:
-                yield CheckStep(done / total, verdicts[number], is_early=True)
-        for number in sorted([*verdicts, *self._grounds]):
-            if number in verdicts:
-                verdict = verdicts[number]
-                if verdict.at_least:
-                    for grown in self._growths[number].margins(results[number], rig, cases):
-                        margin, at_least = grown
-                        yield CheckStep(done / total)
-                    verdict = replace(verdict, margin=margin, at_least=at_least)
-            else:
-                verdict = self._grounds[number].verdict(rig, preview, cases)
+        for number in numbers if early else ():
+            verdicts[number] = verdict_at_once(number)
+            yield CheckStep(done / total, verdicts[number], is_early=True)
+        for number in numbers:
+            verdict = verdicts.get(number) or verdict_at_once(number)
+            if number in pairs and verdict.at_least:
+                for grown in self._growths[number].margins(results[number], rig, cases):
+                    margin, at_least = grown
+                    yield CheckStep(done / total)
+                verdict = replace(verdict, margin=margin, at_least=at_least)
             done += 1
             yield CheckStep(done / total, verdict)
 

@@ -9,7 +9,7 @@ from . import engine_calls
 from .engine import advice, graphics, pe, sight, text
 from .engine_calls import Problem
 from .overlay.layer_cache import LayerCache
-from .overlay.layers import LAYERS
+from .overlay.layers import LAYERS, ShapeSteps
 from .overlay.request import ViewRequest
 
 _sight: text.RecentCache[sight.Sight] = text.RecentCache()
@@ -60,18 +60,31 @@ _layers: defaultdict[str, LayerCache] = defaultdict(LayerCache)
 
 def layer_shapes(
     request: ViewRequest, layer: str, rough: bool, names: Sequence[str]
-) -> Generator[None, None, list[graphics.LayerShape]]:
+) -> Generator[list[graphics.LayerShape] | None, None, list[graphics.LayerShape]]:
     """Return the shapes of a layer by these names; approximate ones where `rough`. Pause where a
-    shape does."""
+    shape does; yield all of them where the last one has something for the time being."""
     row = next(each for each in LAYERS if each.name == layer)
     request = replace(request, moving=rough)
     shapes = list[graphics.LayerShape]()
     for name in names:
         shape = row.shape(request, _layers[row.lane], name)
         if isinstance(shape, Generator):
-            shape = yield from shape
+            shape = yield from _paused(shape, shapes, is_last=name == names[-1])
         shapes.append(shape)
     return shapes
+
+
+def _paused(
+    steps: ShapeSteps, made: Sequence[graphics.LayerShape], *, is_last: bool
+) -> Generator[list[graphics.LayerShape] | None, None, graphics.LayerShape]:
+    """Return the shape of some steps; pause where these do."""
+    while True:
+        try:
+            early = next(steps)
+        except StopIteration as end:
+            shape: graphics.LayerShape = end.value
+            return shape
+        yield [*made, early] if is_last and early is not None else None
 
 
 def clear() -> None:

@@ -1,13 +1,13 @@
 """What all drawers in 3D views share: handlers, text and plates in corners, redraw.
 
 The live score, pictures of cameras, legends and labels are written by the functions
-of this module, in pixels of a region. A drawer reserves the box of its plate at each redraw, or
-releases it; a plate that is drawn later in the same redraw is put above it. Boxes are plain numbers
-by region; no object of Blender's is held.
+of this module, in pixels of a region. Where plates go is laid out by `plates`; their boxes are
+plain numbers by region; no object of Blender's is held.
 """
 
 import contextlib
 from collections.abc import Callable, Iterator, Sequence
+from functools import lru_cache
 from typing import Protocol
 
 import blf
@@ -32,16 +32,20 @@ HEADER = 110.0
 """Height of the headers and of Blender's own text, from the top."""
 INK: Rgba = (0.95, 0.95, 0.95, 1.0)
 FAINT: Rgba = (0.74, 0.74, 0.74, 1.0)
-PLATE: Rgba = (0.08, 0.08, 0.08, 0.72)
+PLATE: Rgba = (0.08, 0.08, 0.08, 0.84)
+"""Below all text. It hides so much of what is behind it that text can be read over white, too."""
+MIN_CONTRAST = 4.5
+"""Of text and what is behind it: WCAG 2.2, 1.4.3, level AA."""
+LIGHTER = 0.05
+
+ELLIPSIS = "\N{HORIZONTAL ELLIPSIS}"
 
 _shaders: dict[str, gpu.types.GPUShader] = {}
 _square: list[gpu.types.GPUBatch] = []
 _gradients: dict[tuple[Rgba, ...], gpu.types.GPUBatch] = {}
 """Uploaded once, in the unit square, and drawn at any place and size."""
-_plates: dict[int, dict[str, PlateBox]] = {}
-STRIP = "strip"
-CAMERAS = "cameras"
-"""Plates along the lower edge, from below: those in the corners stand above them."""
+_plates: dict[int, tuple[tuple[int, PlateBox], ...]] = {}
+"""Kinds and boxes of the plates that were drawn last, by the region's pointer."""
 
 
 def redraw_editors() -> None:
@@ -99,13 +103,55 @@ def text_size(text: str, size_px: float) -> tuple[float, float]:
     return width, height
 
 
+def fitted(text: str, size_px: float, widest: float) -> str:
+    """Return a text as much of which as a width has room for [px]: its end is left out."""
+    if text_size(text, size_px)[0] <= widest:
+        return text
+    shorter = (text[:end].rstrip() + ELLIPSIS for end in range(len(text) - 1, 0, -1))
+    return next((each for each in shorter if text_size(each, size_px)[0] <= widest), "")
+
+
+def luminance(color: Sequence[float]) -> float:
+    """Return the relative luminance of an sRGB colour, 0 to 1 (WCAG 2.2)."""
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in color[:3]]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(one: Sequence[float], other: Sequence[float]) -> float:
+    """Return the contrast of two sRGB colours, 1 to 21 (WCAG 2.2)."""
+    dark, light = sorted((luminance(one), luminance(other)))
+    return (light + 0.05) / (dark + 0.05)
+
+
+def over(color: Rgba, behind: Sequence[float]) -> tuple[float, ...]:
+    """Return how a colour looks over an opaque one."""
+    share = color[3]
+    return tuple(share * c + (1.0 - share) * b for c, b in zip(color, behind, strict=False))
+
+
+BRIGHTEST = over(PLATE, (1.0, 1.0, 1.0))
+"""A plate over white: the worst that text is read on."""
+
+
+@lru_cache(maxsize=256)
+def readable(color: Rgba) -> Rgba:
+    """Return the colour of text on a plate: opaque, and so much lighter as its contrast needs."""
+    share = 0.0
+    lighter: Rgba = (*color[:3], 1.0)
+    while contrast(lighter, BRIGHTEST) < MIN_CONTRAST and share < 1.0:
+        share += LIGHTER
+        red, green, blue = (c + share * (1.0 - c) for c in color[:3])
+        lighter = (red, green, blue, 1.0)
+    return lighter
+
+
 def draw_text(
     text: str, x: float, y: float, size_px: float, color: Rgba, *, left_of_x: float = 0.0
 ) -> float:
     """Draw a line of text on a baseline; return its width [px].
     `left_of_x` is the share of the text that lies left of `x`: 0 begins there, 1 ends there."""
     width, _ = text_size(text, size_px)
-    blf.color(FONT, *color)
+    blf.color(FONT, *readable(color))
     blf.position(FONT, round(x - left_of_x * width), round(y), 0.0)
     blf.draw(FONT, typeset(text))
     return width
@@ -218,44 +264,27 @@ def sidebar_left(context: bpy.types.Context) -> float:
     return context.region.width - max(widths, default=0)
 
 
-def above_hud(context: bpy.types.Context, *, over: Sequence[str] = (STRIP, CAMERAS)) -> float:
+def above_hud(context: bpy.types.Context) -> float:
     """Return where a plate begins, from below: clear of the panel of the last operation. A row is
     always left for that panel, so that the plate does not jump with every move."""
     bottom = HUD_ROW * ui_scale()
     for other in context.area.regions:
         if other.type == "HUD" and other.height > 1:
             bottom = max(bottom, other.y + other.height - context.region.y)
-    boxes = _plates.get(context.region.as_pointer(), {})
-    return (
-        max([bottom, *(boxes[name][3] for name in over if name in boxes)])
-        + MARGIN * ui_scale() / 2.0
-    )
+    return bottom + MARGIN * ui_scale() / 2.0
 
 
-def reserve_plate(region: int, plate: str, box: PlateBox | None) -> None:
-    """Note the box of a plate in a region, by the region's pointer; None: it is not drawn."""
-    boxes = _plates.setdefault(region, {})
-    if box is None:
-        boxes.pop(plate, None)
-    else:
-        boxes[plate] = box
+def note_plates(region: int, plates: Sequence[tuple[int, PlateBox]]) -> None:
+    """Note kind and box of the plates that are drawn in a region, by the region's pointer."""
+    _plates[region] = tuple(plates)
 
 
-def release_plate(plate: str) -> None:
-    """Drop a plate's boxes in all regions."""
-    for boxes in _plates.values():
-        boxes.pop(plate, None)
+def release_plates() -> None:
+    """Forget the boxes of plates in all regions."""
+    _plates.clear()
 
 
-def plate_boxes(region: int) -> tuple[PlateBox, ...]:
-    """Return the boxes of the plates in a region."""
-    return tuple(_plates.get(region, {}).values())
-
-
-def free_bottom(region: int, sides: tuple[float, float], bottom: float, gap: float) -> float:
-    """Return where a plate between two sides may begin so that it covers no other one [px]. Without
-    other plates it would begin at `bottom`; `gap` is left free between plates."""
-    left, right = sides
-    boxes = plate_boxes(region)
-    tops = [box[3] + gap for box in boxes if box[0] - gap < right and left < box[2] + gap]
-    return max([bottom, *tops])
+def plate_boxes(region: int, of_kind: int | None = None) -> tuple[PlateBox, ...]:
+    """Return the boxes of the plates in a region; of one kind, if it is given."""
+    drawn = _plates.get(region, ())
+    return tuple(box for kind, box in drawn if of_kind in (None, kind))

@@ -10,6 +10,7 @@ readonly python=.venv/bin/python
 readonly output=demo_output
 readonly start=$output/start.blend
 readonly scene=tools/demo_scene.py
+readonly told=$output/optimize.txt # all lines of the search
 # Enough to see it work within a minute; without them a search takes its time.
 readonly OPTIONS=(
     --evaluations 240 --set optimize.samples=32768 --samples 1048576 --seed 0 --output "$output"
@@ -45,10 +46,10 @@ mkdir -p "$output"
 rm -f "$start"
 if blender=$("$python" tools/real_blender.py --host-only 2>/dev/null); then
     echo "demo: better places for a LiDAR and a camera on a sedan, in $blender"
-    in_blender optimize "${OPTIONS[@]}" "$@"
+    in_blender optimize "${OPTIONS[@]}" "$@" >"$told"
 elif "$python" -c 'import bpy' >/dev/null 2>&1; then
     echo "demo: better places for a LiDAR and a camera on a sedan, in bpy"
-    in_bpy optimize "${OPTIONS[@]}" "$@"
+    in_bpy optimize "${OPTIONS[@]}" "$@" >"$told"
 elif "$python" -c 'import importlib.util as util; assert util.find_spec("bpy")' 2>/dev/null; then
     tools/debian_libs.sh || exit 1 # its last line says what to install
     fail "bpy does not start: $("$python" -c 'import bpy' 2>&1 | tail -n 1)"

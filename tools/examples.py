@@ -128,6 +128,7 @@ def figures_of(result: Result) -> Values:
         "stderr": f"{max(score.stderr, 1e-3):.3f}",
         "coverage": f"{100.0 * score.coverage:.1f} %",
         "met": f"{result.met} of {len(result.verdicts)}",
+        "ap": f"{key.values['traffic_ap']:.3f}",
         "blind": f"{math.ceil(10.0 * key.values['blind_ground']) / 10.0:.1f} m²",
         "reach": f"{math.floor(key.reach[CLASS][0])} m",
     }
@@ -160,15 +161,34 @@ def figures(name: str) -> dict[str, Values]:
     for path in studies_of(name):
         result = scored(path)
         made |= {each.name: figures_of(each) for each in (result, *in_states(result))}
+    made[DECIDED.removesuffix(".toml")]["ap_change"] = ap_change(name)
     return made
+
+
+def ap_change(name: str) -> str:
+    """Return by how much what was decided changes the expected AP in traffic, with its error."""
+    paths = tried(name)[-1], FOLDER / name / DECIDED
+    studies = {path.stem: pe.load_study(path) for path in paths}
+    keys = {
+        stem: advice.KeyFigures.of_rig(study.sight(), study.rig) for stem, study in studies.items()
+    }
+    return advice.compare_figures(keys)[0].change_text(1, "±")
 
 
 def table(values: dict[str, Values]) -> str:
     """Return the table of a project's studies."""
-    head = "study", "sensors", "entropy", "coverage", "blind ground", "requirements met"
+    head = (
+        "study",
+        "sensors",
+        "entropy",
+        "coverage",
+        "AP in traffic",
+        "blind ground",
+        "requirements met",
+    )
     rows = [
         (f"`{study}`", own["sensors"], f"{own['entropy']}&nbsp;±&nbsp;{own['stderr']}",
-         own["coverage"], own["blind"], own["met"])
+         own["coverage"], own["ap"], own["blind"], own["met"])
         for study, own in values.items()
     ]  # fmt: skip
     lines = [f"| {' | '.join(cells)} |" for cells in (head, ("---",) * len(head), *rows)]

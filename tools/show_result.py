@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Say in three lines what an optimization moved, what that is worth, and which file to open.
+"""Say in three lines what an optimization moved, gained and cost; then which file has more.
 
 usage: tools/show_result.py FOLDER
 """
@@ -35,14 +35,15 @@ def moved(placements: dict) -> str:
 
 
 def better(result: dict) -> str:
-    """Return how much better the sensors see, and what that costs."""
-    before = result["before"]
-    after = result["after"]
-    unseen = [100.0 * (1.0 - score["coverage"]) for score in (before, after)]
+    """Return how much better the sensors see."""
+    before, after = (result["figures"][which]["values"] for which in ("before", "after"))
+    error = result["change_stderr"]["traffic_ap"]
+    blind = [values["blind_ground"] for values in (before, after)]
+    ap = [values["traffic_ap"] for values in (before, after)]
     return (
-        f"of the places where cars, people and obstacles are expected {unseen[0]:.1f}% were"
-        f" unseen, now {unseen[1]:.1f}%; the score (perception entropy in nats, lower is better)"
-        f" was {before['entropy']:.2f}, now {after['entropy']:.2f}. {result['cost']}."
+        f"blind ground within 10 m of the car was {blind[0]:.0f} m2, now {blind[1]:.0f} m2;"
+        f" expected AP of a detector in traffic was {ap[0]:.3f}, now {ap[1]:.3f}"
+        f" ({ap[1] - ap[0]:+.3f} +- {error:.3f})"
     )
 
 
@@ -50,11 +51,12 @@ def main() -> int:
     """Run the command line."""
     folder = Path(sys.argv[1]).resolve()
     result = json.loads((folder / RESULT).read_text("utf-8"))
-    print(f"Moved:   {moved(result['placements'])}")
-    print(f"Better:  {better(result)}")
     files = {PAGE: "in a browser", SCENE: "in Blender", RESULT: "in an editor"}
     made = [f"{folder / name} {where}" for name, where in files.items() if (folder / name).exists()]
-    print(f"Open:    {'; '.join(made[:2])}")
+    print(f"Moved:   {moved(result['placements'])}")
+    print(f"Better:  {better(result)}")
+    print(f"Cost:    {result['cost'].removeprefix('It cost ')}")
+    print(f"More:    {'; '.join(made[:2])}")
     return 0
 
 

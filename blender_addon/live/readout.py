@@ -5,13 +5,15 @@ the top.
 """
 
 import textwrap
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import bpy
 
-from .. import engine_process, viewport
+from .. import engine_process, plates, viewport
 from ..panel_text import is_simple, plain, typeset
-from ..viewport import FAINT, INK, PLATE, SMALL, Rgba
+from ..plates import Plate, PlateSize, Room
+from ..viewport import FAINT, INK, PLATE, SMALL, PlateBox, Rgba
 from .readout_text import BETTER, WORSE, ReadoutLine, TextPiece, readout_of, state_of
 from .shown import ShownScore, for_drawing
 from .state import live_state
@@ -41,39 +43,45 @@ class TextRow(NamedTuple):
     gap: float = 1.0
 
 
-_handlers = viewport.DrawHandlers()
-
-
 def register() -> None:
     """Start drawing."""
-    _handlers.show((draw, "POST_PIXEL"))
+    plates.show(PLATE_NAME, plates_of)
 
 
 def unregister() -> None:
     """Stop drawing."""
-    _handlers.hide()
-    viewport.release_plate(PLATE_NAME)
+    plates.hide(PLATE_NAME)
     viewport.redraw_editors()
 
 
-def draw() -> None:
-    """Draw into the current 3D view, if it shows overlays; Blender calls this at each redraw."""
-    context = bpy.context
+def plates_of(context: bpy.types.Context, room: Room) -> Iterator[Plate]:
+    """Yield the read-out, if the view shows overlays; folded, it is the score and its change."""
     space = context.space_data
     scene = context.scene
     overlays = space is None or space.type != "VIEW_3D" or space.overlay.show_overlays
-    box = None
-    if scene.perception_entropy.live.on and overlays and viewport.is_lower_left(context):
-        shown = for_drawing(scene)
-        is_late = engine_process.busy(engine_process.OVERLAY)
-        rows = rows_of(shown, live_state(scene.name).note, view_outdated=is_late)
-        if is_simple(scene):
-            rows = [row._replace(words=tuple((plain(t), c) for t, c in row.words)) for row in rows]
-        scale = viewport.ui_scale()
-        left = viewport.beside_toolbar(context)
-        widest = max(MIN_WIDTH * scale, MAX_SHARE * (viewport.sidebar_left(context) - left))
-        box = draw_rows(wrapped(rows, widest, scale), left, viewport.above_hud(context), scale)
-    viewport.reserve_plate(context.region.as_pointer(), PLATE_NAME, box)
+    if not (scene.perception_entropy.live.on and overlays and viewport.is_lower_left(context)):
+        return
+    shown = for_drawing(scene)
+    is_late = engine_process.busy(engine_process.OVERLAY)
+    rows = rows_of(shown, live_state(scene.name).note, view_outdated=is_late)
+    if is_simple(scene):
+        rows = [row._replace(words=tuple((plain(t), c) for t, c in row.words)) for row in rows]
+    yield plate_of(rows, room)
+
+
+def plate_of(rows: list[TextRow], room: Room) -> Plate:
+    """Return the plate of rows, and of the first one where it is folded."""
+    scale = room.scale
+    share = MAX_SHARE * (room.width + viewport.MARGIN * scale)
+    widest = min(max(MIN_WIDTH * scale, share), room.width - 2.0 * PAD * scale)
+    whole = wrapped(rows, widest, scale)
+    folded = wrapped(rows[:1], widest, scale)
+    sizes = (size_of(whole, MIN_WIDTH, scale), size_of(folded, 0.0, scale))
+
+    def draw(box: PlateBox, step: int) -> None:
+        draw_rows((whole, folded)[step], box, scale)
+
+    return Plate(plates.READOUT, sizes, draw)
 
 
 def row_of(line: ReadoutLine, color: Rgba = INK) -> TextRow:
@@ -134,21 +142,24 @@ def _parts_of(row: TextRow, widest: float, scale: float) -> list[TextRow]:
     return parts
 
 
-def draw_rows(rows: list[TextRow], left: float, bottom: float, scale: float) -> viewport.PlateBox:
-    """Draw rows on a dark plate with that lower left corner [px]; return its box."""
-    width = max(MIN_WIDTH * scale, *(_width(row, scale) for row in rows))
+def size_of(rows: list[TextRow], least: float, scale: float) -> PlateSize:
+    """Return the size of the plate of rows that is so wide at least, at a scale of 1 [px]."""
+    width = max(least * scale, *(_width(row, scale) for row in rows))
     height = sum(_height(row) for row in rows) * scale
-    pad = PAD * scale
-    box = left, bottom, left + width + 2.0 * pad, bottom + height + 2.0 * pad
+    return PlateSize(width + 2.0 * PAD * scale, height + 2.0 * PAD * scale)
+
+
+def draw_rows(rows: list[TextRow], box: PlateBox, scale: float) -> None:
+    """Draw rows on a dark plate."""
+    left, _, _, top = box
     viewport.fill_box(box, PLATE)
-    y = bottom + pad + height
+    y = top - PAD * scale
     for row in rows:
         y -= _height(row) * scale
-        x = left + pad
+        x = left + PAD * scale
         size = row.size * scale
         for text, color in row.words:
             x += viewport.draw_text(text, x, y + 0.3 * size, size, color=color) + row.gap * size
-    return box
 
 
 def _width(row: TextRow, scale: float) -> float:

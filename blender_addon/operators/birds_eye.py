@@ -12,15 +12,17 @@ import numpy as np
 from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix
 
-from .. import document, viewport
+from .. import document, plates, viewport
 from ..engine import pe
 from ..overlay import scheduler
 from ..overlay.batches import Batches
 from ..overlay.birds_eye import FROM_ABOVE, BirdsEye
 from ..overlay.layer_cache import shown_of
 from ..overlay.layers import BIRDS_EYE, WHOLE_RIG
+from ..plates import Plate, PlateSize, Room
 from . import camera_pictures, sensor_pictures
 from .camera_pictures import NEAR_M, Exposure
+from .sensor_pictures import PictureSize
 
 PLATE_NAME = "bird's-eye view"
 UNSEEN: viewport.Rgba = (0.05, 0.05, 0.05, 0.9)
@@ -32,8 +34,8 @@ below the ground pictures reach."""
 RAISED_M = 0.009
 """The drawn road is raised to below that of *Surroundings*: what lies lower is shown farther out,
 less from a higher camera, and would not fit at seams."""
-LEAST_SHARE = 0.3
-"""How far a plate shrinks below the headers, before it folds into its title."""
+SHARES = (1.0, 0.8, 0.6, 0.45, 0.3)
+"""How far the picture shrinks where there is less room, before it folds into its title."""
 BAR_M = 5.0
 BAR_PX = 2.0
 LINE_PX = 1.4
@@ -48,41 +50,46 @@ def clear() -> None:
     _uploaded.clear()
 
 
-def draw(context: bpy.types.Context) -> None:
-    """Draw the plate, if it is switched on and the engine has said who sees what."""
+def plates_of(context: bpy.types.Context, room: Room) -> list[Plate]:
+    """Return the plate, if it is switched on and the engine has said who sees what."""
     region = context.region.as_pointer()
     scene = context.scene
-    viewport.reserve_plate(region, PLATE_NAME, None)
     item = shown_of(scene.name, BIRDS_EYE).get(WHOLE_RIG)
     is_on = scene.perception_entropy.view.show_birds_eye and sensor_pictures.has_room(context)
     if item is None or not is_on:
         camera_pictures.keep_only(region, PLATE_NAME, ())
-        return
+        return []
     shape = item.shape
-    scale = viewport.ui_scale()
     assert isinstance(shape, BirdsEye)
-    proportions = shape.y[1] - shape.y[0], shape.x[1] - shape.x[0]
-    size = sensor_pictures.size_in(context, proportions)
-    left, bottom = sensor_pictures.corner(context, PLATE_NAME, size)
     title = title_of(shape)
     if scheduler.is_preview(scene.name, BIRDS_EYE, WHOLE_RIG, item):
         title += " (preview)"
-    room = context.region.height - viewport.HEADER * scale - bottom
-    share = (room - sensor_pictures.TITLE_PX * scale) / size.height
-    if share < LEAST_SHARE:
-        camera_pictures.keep_only(region, PLATE_NAME, ())
-        if room >= sensor_pictures.TITLE_PX * scale:
-            folded = sensor_pictures.draw_title((left, bottom), title, scale)
-            viewport.reserve_plate(region, PLATE_NAME, folded)
-        return
-    if share < 1.0:
-        size = sensor_pictures.size_in(context, proportions, share)
-    box = left, bottom, left + size.width, bottom + size.height
-    viewport.fill_box(box, UNSEEN)
-    _draw_ground(context, shape, size, box)
-    frame = sensor_pictures.draw_frame((left, bottom), size, title, scale)
-    _draw_ruler((left, bottom), size.width * BAR_M / proportions[0], scale)
-    viewport.reserve_plate(region, PLATE_NAME, frame)
+    proportions = shape.y[1] - shape.y[0], shape.x[1] - shape.x[0]
+    largest = sensor_pictures.size_in(context.region, proportions, room)
+    folded = sensor_pictures.title_size(title, room)
+    pictures = [
+        PictureSize(max(int(share * largest.width), 2), max(int(share * largest.height), 2))
+        for share in SHARES
+    ]
+    sizes = [
+        PlateSize(max(size.width, folded.width), size.height + folded.height) for size in pictures
+    ]
+
+    def draw(box: viewport.PlateBox, step: int) -> None:
+        left, bottom, right, top = box
+        scale = room.scale
+        sensor_pictures.draw_title((left, top - folded.height), title, scale, right)
+        if step == len(pictures):
+            camera_pictures.keep_only(region, PLATE_NAME, ())
+            return
+        size = pictures[step]
+        picture = left, bottom, left + size.width, bottom + size.height
+        viewport.fill_box(picture, UNSEEN)
+        _draw_ground(context, shape, size, picture)
+        viewport.draw_outline(picture, sensor_pictures.EDGE)
+        _draw_ruler((left, bottom), size.width * BAR_M / proportions[0], scale)
+
+    return [Plate(plates.BIRDS_EYE, (*sizes, folded), draw)]
 
 
 def title_of(shape: BirdsEye) -> str:
@@ -102,7 +109,7 @@ def _draw_ruler(corner: tuple[float, float], long: float, scale: float) -> None:
     bottom = corner[1] + pad
     right = left + long + 2.0 * pad + viewport.text_size(text, small)[0]
     plate = corner[0], corner[1], right, bottom + small + pad / 2.0
-    viewport.fill_box(plate, sensor_pictures.TITLE_PLATE)
+    viewport.fill_box(plate, viewport.PLATE)
     viewport.fill_box((left, bottom, left + long, bottom + BAR_PX * scale), viewport.INK)
     viewport.draw_text(text, left + long + pad, bottom, small, color=viewport.INK)
 

@@ -1,12 +1,15 @@
 """The pictures of all cameras along the lower edge of the 3D view, in a strip that takes clicks."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import bpy
 
-from .. import sensor_cache, viewport
+from .. import plates, sensor_cache, viewport
 from ..engine import pe
+from ..plates import Plate, PlateSize, Room
 from ..sensor_kinds import row_of
+from ..viewport import DrawRegion
 from . import camera_pictures, sensor_pictures
 from .declared import declared
 from .sensor_pictures import PictureSize, has_room, sensor_of
@@ -16,6 +19,10 @@ GAP_PX = 6.0
 """Height of the pictures of the strip and the gaps between them, at a scale of 1."""
 MAX_SHARE = 0.14
 """Of the view's height that the pictures take at most, at any scale."""
+SHARES = (1.0, 0.7, 0.5)
+LEAST_PX = 24.0
+"""Heights of the pictures where there is less room, and the least that shows anything."""
+PLATE_NAME = "cameras"
 _in_strip: dict[int, list[tuple[str, viewport.PlateBox]]] = {}
 """Sensors and their pictures in the strip, by the region's pointer."""
 
@@ -35,34 +42,64 @@ def shown_cameras(context: bpy.types.Context) -> list[tuple[pe.Sensor, pe.Camera
     return [(sensor, camera_of(sensor.model)) for sensor, camera_of in rows if camera_of]
 
 
-def draw(context: bpy.types.Context) -> None:
-    """Draw the pictures of all cameras in a row, and note where they are."""
+def plates_of(context: bpy.types.Context, room: Room) -> list[Plate]:
+    """Return the plate of all cameras' pictures in a row; folded, it is their number."""
     region = context.region.as_pointer()
-    scale = viewport.ui_scale()
-    viewport.reserve_plate(region, viewport.CAMERAS, None)
+    scale = room.scale
     _in_strip.pop(region, None)
     cameras = shown_cameras(context)
-    drawn = []
-    camera_pictures.keep_only(region, viewport.CAMERAS, {sensor.name for sensor, _ in cameras})
+    camera_pictures.keep_only(region, PLATE_NAME, {sensor.name for sensor, _ in cameras})
     if not cameras:
-        return
-    left = viewport.beside_toolbar(context)
-    bottom = viewport.above_hud(context, over=(viewport.STRIP,))
-    width = viewport.sidebar_left(context) - viewport.MARGIN * scale - left
-    highest = min(STRIP_PX * scale, MAX_SHARE * context.region.height)
-    sizes = strip_sizes(width, highest, [(each.width, each.height) for _, each in cameras], scale)
+        return []
+    rows = rows_in(context.region, [(each.width, each.height) for _, each in cameras], room)
+    title = f"{len(cameras)} cameras" if len(cameras) > 1 else cameras[0][0].name
+    sizes = [size_of_row(row, scale) for row in rows]
+
+    def draw(box: viewport.PlateBox, step: int) -> None:
+        if step == len(rows):
+            camera_pictures.keep_only(region, PLATE_NAME, ())
+            sensor_pictures.draw_title((box[0], box[1]), title, scale, box[2])
+        else:
+            _in_strip[region] = draw_row(context, (box[0], box[1]), cameras, rows[step])
+
+    return [Plate(plates.CAMERAS, (*sizes, sensor_pictures.title_size(title, room)), draw)]
+
+
+def draw_row(
+    context: bpy.types.Context,
+    corner: tuple[float, float],
+    cameras: Sequence[tuple[pe.Sensor, pe.Camera]],
+    sizes: Sequence[PictureSize],
+) -> list[tuple[str, viewport.PlateBox]]:
+    """Draw the pictures of cameras from a corner on [px]; return their names and boxes."""
+    scale = viewport.ui_scale()
+    left, bottom = corner
+    drawn = []
     for (sensor, model), size in zip(cameras, sizes, strict=True):
         look = camera_pictures.look_of(sensor.pose, model)
-        camera = camera_pictures.picture(context, viewport.CAMERAS, sensor.name, look, size=size)
+        camera = camera_pictures.picture(context, PLATE_NAME, sensor.name, look, size=size)
         if camera is not None:
             sensor_pictures.draw_picture(camera.texture, (left, bottom), size)
         box = sensor_pictures.draw_frame((left, bottom), size, sensor.name, scale)
         drawn.append((sensor.name, box))
         left += size.width + GAP_PX * scale
-    boxes = [box for _, box in drawn]
-    outer = boxes[0][0], bottom, boxes[-1][2], max(box[3] for box in boxes)
-    viewport.reserve_plate(region, viewport.CAMERAS, outer)
-    _in_strip[region] = drawn
+    return drawn
+
+
+def size_of_row(row: Sequence[PictureSize], scale: float) -> PlateSize:
+    """Return the size of a row of pictures with their titles [px]."""
+    width = sum(size.width for size in row) + GAP_PX * scale * (len(row) - 1)
+    return PlateSize(width, row[0].height + sensor_pictures.TITLE_PX * scale)
+
+
+def rows_in(
+    region: DrawRegion, pictures: list[tuple[int, int]], room: Room
+) -> list[list[PictureSize]]:
+    """Return the sizes of pictures of these proportions in a row, from the largest row to the
+    smallest that shows anything."""
+    highest = min(STRIP_PX * room.scale, MAX_SHARE * region.height)
+    rows = [strip_sizes(room.width, share * highest, pictures, room.scale) for share in SHARES]
+    return [row for row in rows if row[0].height >= LEAST_PX * room.scale]
 
 
 def strip_sizes(

@@ -350,11 +350,9 @@ def check_task(scene: bpy.types.Scene, study: pe.Study, taken: document.Fingerpr
     tables = {*document.requirements_key(scene.perception_entropy)}
     signatures = document.story_signatures(scene.perception_entropy, taken.text)
     document.store_verdicts(scene.perception_entropy, ())
-    count = 0
+    known = (0, 0)
 
     def store(scene: bpy.types.Scene, found: jobs.CheckJob | jobs.Checked) -> None:
-        nonlocal count
-        count = len(found.verdicts)
         settings = scene.perception_entropy
         same = {name for name, _ in tables & {*document.requirements_key(settings)}}
         kept = [each for each in found.verdicts if each.name in same]
@@ -362,7 +360,9 @@ def check_task(scene: bpy.types.Scene, study: pe.Study, taken: document.Fingerpr
         document.store_driven(settings, found.driven, signatures)
 
     def progressed(scene: bpy.types.Scene, job: jobs.CheckJob) -> None:
-        if len(job.verdicts) > count:
+        nonlocal known
+        if known != (now := (len(job.verdicts), job.margins)):
+            known = now
             store(scene, job)
 
     def finish(scene: bpy.types.Scene, found: jobs.Checked) -> Told:

@@ -16,7 +16,6 @@ PAD_PX = 6
 TEXT_GAP = 1.5
 TEXT_AT = (26, -12)
 """Text beside the mouse: its size, the room around it, its rows, and where it begins."""
-TEXT_PLATE = (0.08, 0.08, 0.08, 0.78)
 OF_VIEW = (
     "NUMPAD_",
     "MIDDLEMOUSE",
@@ -109,7 +108,7 @@ def draw_at_mouse(mouse: tuple[int, int], lines: Iterable[str]) -> None:
     width = max((viewport.text_size(line, size)[0] for line in texts), default=0.0)
     low = top - row * (len(texts) - 1) - pad
     left = min(left, viewport.sidebar_left(bpy.context) - width - 2.0 * pad)
-    viewport.fill_box((left - pad, low, left + width + pad, top + row), TEXT_PLATE)
+    viewport.fill_box((left - pad, low, left + width + pad, top + row), viewport.PLATE)
     for number, line in enumerate(texts):
         viewport.draw_text(line, left, top - number * row, size, color=viewport.INK)
 

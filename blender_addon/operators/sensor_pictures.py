@@ -11,6 +11,7 @@ from mathutils import Matrix
 
 from .. import document, viewport
 from ..engine import catalog, pe
+from ..plates import PlateSize, Room
 
 TITLE_PX = 20.0
 PAD_PX = 6.0
@@ -18,8 +19,6 @@ WIDTH_SHARE = 0.3
 MAX_HEIGHT_SHARE = 0.4
 MAX_WIDTH_PX = 380.0
 """Largest share of the view's width and height, and largest width at a scale of 1."""
-TITLE_PLATE = (0.08, 0.08, 0.08, 0.78)
-INK = (0.92, 0.92, 0.92, 1.0)
 TAKES_SRGB = bpy.app.version >= (5, 0, 0)
 """Whether textures drawn over a view are taken as they are; before 5.0 they are linear light."""
 EDGE = (0.75, 0.75, 0.75, 1.0)
@@ -99,7 +98,7 @@ def draw_picture(
 
 
 def draw_frame(
-    corner: tuple[float, float], size: tuple[int, int], title: str, scale: float
+    corner: tuple[float, float], size: tuple[float, float], title: str, scale: float
 ) -> viewport.PlateBox:
     """Draw a frame round a picture and its title on top; return the box of all of it."""
     left, bottom = corner
@@ -112,17 +111,25 @@ def draw_frame(
 
 
 def draw_title(
-    corner: tuple[float, float], title: str, scale: float, right: float = 0.0
+    corner: tuple[float, float], title: str, scale: float, right: float
 ) -> viewport.PlateBox:
-    """Draw a title on a plate that goes to `right` at least [px]; return the plate's box."""
+    """Draw a title on a plate that goes to `right` [px], as much of it as there is room for; return
+    the plate's box."""
     left, bottom = corner
     pad = PAD_PX * scale
     small = viewport.SMALL * scale
-    end = max(right, left + viewport.text_size(title, small)[0] + 2.0 * pad)
-    box = left, bottom, end, bottom + TITLE_PX * scale
-    viewport.fill_box(box, TITLE_PLATE)
-    viewport.draw_text(title, left + pad, bottom + pad, small, color=INK)
+    box = left, bottom, right, bottom + TITLE_PX * scale
+    viewport.fill_box(box, viewport.PLATE)
+    text = viewport.fitted(title, small, right - left - 2.0 * pad)
+    viewport.draw_text(text, left + pad, bottom + pad, small, color=viewport.INK)
     return box
+
+
+def title_size(title: str, room: Room) -> PlateSize:
+    """Return the size of the plate of a title, in a room [px]."""
+    scale = room.scale
+    width = viewport.text_size(title, viewport.SMALL * scale)[0] + 2.0 * PAD_PX * scale
+    return PlateSize(min(width, room.width), TITLE_PX * scale)
 
 
 def has_room(context: bpy.types.Context) -> bool:
@@ -141,16 +148,10 @@ def sensor_of(obj: bpy.types.Object) -> pe.Sensor | None:
         return None
 
 
-def size_in(
-    context: bpy.types.Context, picture: tuple[float, float], share: float = 1.0
-) -> PictureSize:
-    """Return the size of a picture of these proportions in a region, between toolbar and sidebar
-    [px]; its height is at most that `share` of the largest one."""
-    region = context.region
-    scale = viewport.ui_scale()
-    free = viewport.sidebar_left(context) - viewport.beside_toolbar(context)
-    wide = min(region.width, (free - viewport.MARGIN * scale) / WIDTH_SHARE)
-    return size_of((wide, region.height * share), picture, scale)
+def size_in(region: viewport.DrawRegion, picture: tuple[float, float], room: Room) -> PictureSize:
+    """Return the largest size of a picture of these proportions in a region [px]."""
+    wide = min(region.width, room.width / WIDTH_SHARE)
+    return size_of((wide, region.height), picture, room.scale)
 
 
 def size_of(region: tuple[float, float], picture: tuple[float, float], scale: float) -> PictureSize:
@@ -158,12 +159,3 @@ def size_of(region: tuple[float, float], picture: tuple[float, float], scale: fl
     ratio = picture[1] / picture[0]
     width = min(WIDTH_SHARE * region[0], MAX_WIDTH_PX * scale, MAX_HEIGHT_SHARE * region[1] / ratio)
     return PictureSize(max(int(width), 2), max(int(width * ratio), 2))
-
-
-def corner(context: bpy.types.Context, plate: str, size: tuple[int, int]) -> tuple[float, float]:
-    """Return the lower left corner of a picture in the region [px]: above the other plates."""
-    margin = viewport.MARGIN * viewport.ui_scale()
-    left = viewport.beside_toolbar(context)
-    pointer = context.region.as_pointer()
-    viewport.reserve_plate(pointer, plate, None)
-    return left, viewport.free_bottom(pointer, (left, left + size[0]), margin, margin)

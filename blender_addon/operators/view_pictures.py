@@ -2,30 +2,28 @@
 
 import bpy
 
-from .. import viewport
+from .. import plates
+from ..plates import Plate, Room
 from . import birds_eye, camera_pictures, camera_strip
 
-_handlers = viewport.DrawHandlers()
+PLATE_NAME = "pictures"
 
 
 def register() -> None:
     """Start drawing, where there is a window."""
     if not bpy.app.background:
-        _handlers.show((draw, "POST_PIXEL"))
+        plates.show(PLATE_NAME, plates_of)
 
 
 def unregister() -> None:
     """Stop drawing, and release all pictures."""
-    _handlers.hide()
+    plates.hide(PLATE_NAME)
     for kept in (camera_pictures, camera_strip, birds_eye):
         kept.clear()
-    for plate in (viewport.CAMERAS, birds_eye.PLATE_NAME):
-        viewport.release_plate(plate)
 
 
-def draw() -> None:
-    """Draw into the current 3D view what is switched on; Blender calls this at each redraw."""
-    context = bpy.context
-    if not camera_pictures.is_rendering() and context.region is not None:
-        camera_strip.draw(context)
-        birds_eye.draw(context)
+def plates_of(context: bpy.types.Context, room: Room) -> list[Plate]:
+    """Return what is switched on of the pictures."""
+    if camera_pictures.is_rendering() or context.region is None:
+        return []
+    return [*camera_strip.plates_of(context, room), *birds_eye.plates_of(context, room)]

@@ -4,7 +4,7 @@ Nothing is read, cast or computed here: a redraw takes what is ready.
 """
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import bpy
@@ -12,7 +12,7 @@ import gpu
 import numpy as np
 from mathutils import Matrix
 
-from .. import body_query, document, engine_process, vehicle_cache, viewport
+from .. import body_query, document, engine_process, plates, vehicle_cache, viewport
 from ..engine import graphics, pe
 from ..panel_text import is_simple, plain
 from . import labels, scheduler, strip, surroundings, wipe
@@ -50,6 +50,7 @@ def offset_matrix(view_from_world: Matrix, perspective: bool) -> Matrix:
     return Matrix.Translation(eye) @ Matrix.Scale(1.0 - OFFSET_SHARE, 4) @ Matrix.Translation(-eye)
 
 
+ShownName = tuple[str, str]  # Of a layer, and of a sensor or of the whole rig
 _batches: dict[tuple[str, str, str], Batches] = {}
 """By scene, layer and sensor."""
 _handlers = viewport.DrawHandlers()
@@ -68,6 +69,7 @@ def unregister() -> None:
         scheduler.unregister()
     _handlers.hide()
     clear()
+    viewport.release_plates()
     viewport.release_gpu()
 
 
@@ -127,47 +129,78 @@ def _by_side(
 
 
 def draw_text() -> None:
-    """Draw labels and legends over the current 3D view; Blender calls this at each redraw."""
+    """Draw plates and labels over the current 3D view; Blender calls this at each redraw."""
     context = bpy.context
-    region = context.region.as_pointer()
-    viewport.reserve_plate(region, viewport.STRIP, None)
-    if not _overlays_shown(context):
-        return
-    scene = context.scene.name
-    now = _seconds(context.scene)
-    visible = [(layer.name, name) for layer, names in _visible(context) for name in names]
-    written: list[graphics.Tag] = []
-    wiped = {layer for layer, name in visible if name == OTHER_RIG}
+    scene = context.scene
+    is_shown = _overlays_shown(context)
+    visible: list[ShownName] = []
+    if is_shown:
+        visible = [(layer.name, name) for layer, names in _visible(context) for name in names]
     line = 0.0
-    if wiped:
+    names_of_both: list[viewport.PlateBox] = []
+    if any(name == OTHER_RIG for _, name in visible):
         line = wipe.line_px(context)
-        wipe.draw_line(context, line, _names_of_both(context.scene))
-    if context.scene.perception_entropy.view.show_bodies:
-        written += body_query.labels(context.scene, context.active_object)
+        names_of_both = wipe.draw_line(context, line, _names_of_both(scene))
+    vehicle = vehicle_cache.shared.last_read(scene.name)
+    taken = plates.draw(
+        context,
+        lambda context, room: plates_of(context, visible, room),
+        vehicle=None if vehicle is None or _eye(context) is not None else vehicle.bounds,
+        taken=names_of_both,
+    )
+    if not is_shown:
+        return
+    written = _labels_of(context, visible, line)
+    if is_simple(scene):
+        written = [replace(tag, text=plain(tag.text)) for tag in written]
+    labels.draw_labels(context, written, taken)
+
+
+def _labels_of(
+    context: bpy.types.Context, visible: Sequence[ShownName], line: float
+) -> list[graphics.Tag]:
+    """Return the labels of what is visible; those of two variants on their side of the line."""
+    scene = context.scene
+    now = _seconds(scene)
+    wiped = {layer for layer, name in visible if name == OTHER_RIG}
+    found: list[graphics.Tag] = []
+    if scene.perception_entropy.view.show_bodies:
+        found += body_query.labels(scene, context.active_object)
     for layer, name in visible:
-        item = shown_of(scene, layer)[name]
-        tags = item.shape.at(now).labels
-        written += wipe.on_side(context, tags, line, name) if layer in wiped else tags
+        tags = shown_of(scene.name, layer)[name].shape.at(now).labels
+        found += wipe.on_side(context, tags, line, name) if layer in wiped else tags
+    return found
+
+
+def plates_of(
+    context: bpy.types.Context, visible: Sequence[ShownName], room: plates.Room
+) -> list[plates.Plate]:
+    """Return the strips of drive-bys and the legends of what is visible."""
+    scene = context.scene
+    found = []
+    for layer, name in visible:
+        item = shown_of(scene.name, layer)[name]
         below = getattr(item.shape, "strip", None)
         if below is not None and viewport.is_lower_left(context):
-            old = scheduler.is_preview(scene, layer, name, item)
-            drawn = strip.draw_strip(context, below, now, OUT_OF_DATE if old else "")
-            viewport.reserve_plate(region, viewport.STRIP, drawn)
-    if is_simple(context.scene):
-        written = [replace(tag, text=plain(tag.text)) for tag in written]
-    eye = _eye(context)
-    taken: list[viewport.PlateBox] = []
-    if context.scene.perception_entropy.view.show_legend:
-        found = (legend_of(scene, layer, name) for layer, name in visible)
-        legends = list(dict.fromkeys(each for each in found if each is not None))
-        if is_simple(context.scene):
-            legends = [
-                replace(k, title=plain(k.title), values=(*map(plain, k.values),)) for k in legends
-            ]
-        vehicle = vehicle_cache.shared.last_read(scene)
-        bounds = None if vehicle is None or eye is not None else vehicle.bounds
-        taken = labels.draw_legends(context, legends, bounds)
-    labels.draw_labels(context, written, taken)
+            note = OUT_OF_DATE if scheduler.is_preview(scene.name, layer, name, item) else ""
+            found.append(strip.strip_plate(below, room, seconds=_seconds(scene), note=note))
+    return [*found, *labels.legend_plates(_legends(context, visible), room)]
+
+
+def _legends(context: bpy.types.Context, visible: Sequence[ShownName]) -> list[graphics.ColorKey]:
+    """Return the legends of what is visible, each once; in a quad view, of the one that turns."""
+    scene = context.scene
+    space = context.space_data
+    is_fixed = space and len(space.region_quadviews) and context.region_data != space.region_3d
+    if is_fixed or not scene.perception_entropy.view.show_legend:
+        return []
+    found = (legend_of(scene.name, layer, name) for layer, name in visible)
+    legends = list(dict.fromkeys(each for each in found if each is not None))
+    if is_simple(scene):
+        legends = [
+            replace(k, title=plain(k.title), values=(*map(plain, k.values),)) for k in legends
+        ]
+    return legends
 
 
 def _names_of_both(scene: bpy.types.Scene) -> tuple[str, str]:

@@ -8,7 +8,7 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from ..engine import advice, engine_process, graphics, kinds, motion, pe
+from ..engine import advice, engine_process, graphics, kinds, motion, pe, requirements
 from ..view_settings import ALL, BY_CHANNEL, BY_SENSOR, RIG, ViewSettings
 from . import ground_layers, heatmap, regions
 from .annotations import (
@@ -45,9 +45,9 @@ IDLE_SAMPLES = 65_536
 """Voxels of the best way while something moves, and of an idle scene."""
 
 LayerKeys = Callable[[ViewRequest], dict[str, Hashable]]
-ShapeSteps = Generator[None, None, graphics.LayerShape]
+ShapeSteps = Generator[graphics.LayerShape | None, None, graphics.LayerShape]
 LayerMaker = Callable[[ViewRequest, LayerCache, str], graphics.LayerShape | ShapeSteps]
-"""What makes a shape, at once or in steps."""
+"""What makes a shape, at once or in steps; a step may have a shape for the time being."""
 ZONES: dict[str, Any] = {"on_ground": True, "edged": True}
 
 
@@ -376,9 +376,19 @@ def _requirement_keys(request: ViewRequest) -> dict[str, Hashable]:
     return {name: (key, request.prior_key, chosen) for name, key in keys.items()}
 
 
-def _requirements(request: ViewRequest, cache: LayerCache, _name: str) -> graphics.LayerShape:
+def _requirements(request: ViewRequest, cache: LayerCache, _name: str) -> ShapeSteps:
+    """Pause after each step of the check; the zones are there before the margins."""
     checker, unplaced = cache.checker(request)
-    verdicts = checker.check(_counted_rig(request), preview=request.moving)
+    early: list[requirements.Verdict] = []
+    verdicts: list[requirements.Verdict] = []
+    is_told = False
+    steps = checker.steps(_counted_rig(request), preview=request.moving, early=not request.moving)
+    for step in steps:
+        if step.verdict is not None:
+            (early if step.is_early else verdicts).append(step.verdict)
+        is_early = bool(early) and not (step.is_early or is_told)
+        is_told = is_told or is_early
+        yield requirement_zones(early, request.requirement, None, unplaced) if is_early else None
     before = cache.met_before(request, verdicts)
     return requirement_zones(verdicts, request.requirement, before, unplaced)
 

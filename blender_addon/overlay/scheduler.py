@@ -133,11 +133,19 @@ def _request(scene: str, layer: Layer, request: ViewRequest) -> None:
     _requested[scene, layer.name] = keys, rough
     missing = [name for name in keys if name not in wanted]
 
-    def deliver(shapes: list[graphics.LayerShape]) -> None:
+    def show(shapes: list[graphics.LayerShape], is_rough: bool) -> None:
         made = dict(zip(missing, shapes, strict=True))
-        items = {n: wanted.get(n) or ShownLayer(key, made[n], rough) for n, key in keys.items()}
+        items = {n: wanted.get(n) or ShownLayer(key, made[n], is_rough) for n, key in keys.items()}
         shown[scene, layer.name] = items
+
+    def deliver(shapes: list[graphics.LayerShape]) -> None:
+        show(shapes, rough)
         _redraw_together()
+
+    def deliver_early(shapes: list[graphics.LayerShape] | None) -> None:
+        if shapes is not None:
+            show(shapes, True)
+            viewport.redraw_editors()
 
     def fail(problem: Exception) -> None:
         shown.pop((scene, layer.name), None)
@@ -150,7 +158,13 @@ def _request(scene: str, layer: Layer, request: ViewRequest) -> None:
     if rough and not was_rough and layer.lane != engine_process.BEHIND:
         engine_process.drop(topic)  # the fine shape would keep the first rough one waiting
     engine_process.ask(
-        topic, analysis_calls.layer_shapes, given, deliver, fail=fail, lane=layer.lane
+        topic,
+        analysis_calls.layer_shapes,
+        given,
+        deliver,
+        fail=fail,
+        step=deliver_early,
+        lane=layer.lane,
     )
 
 

@@ -48,17 +48,23 @@ def on_side(
     return found
 
 
-def draw_line(context: bpy.types.Context, line: float, names: tuple[str, str]) -> None:
-    """Draw the line, with the variant's name on its left and the scene's on its right."""
+def draw_line(
+    context: bpy.types.Context, line: float, names: tuple[str, str]
+) -> list[viewport.PlateBox]:
+    """Draw the line, with the variant's name on its left and the scene's on its right; return the
+    boxes of the names."""
     scale = viewport.ui_scale()
     height = context.region.height
     size = viewport.SMALL * scale
     gap = 8.0 * scale
     viewport.fill_box((line - scale, 0.0, line + scale, height), viewport.INK)
+    boxes = []
     for text, share, end in zip(names, (1.0, 0.0), (line - gap, line + gap), strict=True):
         width, _ = viewport.text_size(text, size)
         left = end - share * width
         y = height - DROP * scale
         box = (left - gap / 2.0, y - gap / 2.0, left + width + gap / 2.0, y + size + gap / 2.0)
+        boxes.append(box)
         viewport.fill_box(box, viewport.PLATE)
         viewport.draw_text(text, end, y, size, color=viewport.INK, left_of_x=share)
+    return boxes

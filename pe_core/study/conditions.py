@@ -173,10 +173,12 @@ class ConditionedChecker(RequirementChecker):
         return self._again, ()
 
     def steps(
-        self, rig: Rig, *, preview: bool = False, cases: Sequence[Rig] = ()
+        self, rig: Rig, *, preview: bool = False, cases: Sequence[Rig] = (), early: bool = False
     ) -> Iterator[CheckStep]:
-        """Yield the worst verdict on each requirement under its conditions, with steps between."""
-        drawn = self._as_drawn.steps(rig, preview=preview, cases=cases)
+        """Yield the worst verdict on each requirement under its conditions, with steps between. Of
+        a requirement under conditions none is early."""
+        drawn = self._as_drawn.steps(rig, preview=preview, cases=cases, early=early)
+        conditioned = {self.requirements[n].name for _, numbers, _ in self._parts for n in numbers}
         parts = []
         for condition, numbers, checker in self._parts:
             moved = self._under(condition, rig)
@@ -186,6 +188,10 @@ class ConditionedChecker(RequirementChecker):
         for step in drawn:
             if step.verdict is None:
                 yield step
+                continue
+            if step.is_early:
+                is_whole = step.verdict.name not in conditioned
+                yield step if is_whole else CheckStep(step.fraction)
                 continue
             found = [step.verdict]
             for condition, numbers, steps in parts:

@@ -429,15 +429,20 @@ class Study(Tabular):
         return tuple(step.verdict for step in steps if step.verdict is not None)
 
     def check_steps(
-        self, checker: RequirementChecker | None = None, rig: Rig | None = None
+        self,
+        checker: RequirementChecker | None = None,
+        rig: Rig | None = None,
+        *,
+        early: bool = False,
     ) -> Iterator[CheckStep]:
-        """Yield the verdicts on a rig, the study's by default, one by one, with steps between."""
+        """Yield the verdicts on a rig, the study's by default, one by one, with steps between.
+        `early`: as of `RequirementChecker.steps`."""
         if not self.requirements:
             return
         rig = self.rig if rig is None else rig
         search = self.search
         cases = mounting_cases(self.requirements, rig, search.tolerance, search.seed)
-        yield from (checker or self.checker()).steps(rig, cases=cases)
+        yield from (checker or self.checker()).steps(rig, cases=cases, early=early)
 
     def under(self, condition: StateInWeather) -> "Study":
         """Return the study under a condition, without conditions. What stands on the ground, such

@@ -27,16 +27,18 @@ class Checked(NamedTuple):
 class CheckJob(Job):
     """Holds the rig of a study to requirements, with mounting errors, to its stories and limits.
     `limits` are the figures that have a number to keep; `pe score` has the same. A job
-    that is stopped keeps the `verdicts` that it has found, in the order of the requirements. With
-    `fitting`, requirements that the rig cannot be held to are left out instead of raising
-    `InputError`: `unchecked` has the reason of each by name; limits are left to the dashboard."""
+    that is stopped keeps the `verdicts` that it has found, in the order of the requirements; they
+    come before their margins, `margins` is how many have theirs. With `fitting`, requirements that
+    the rig cannot be held to are left out instead of raising `InputError`: `unchecked` has the
+    reason of each by name; limits are left to the dashboard."""
 
-    shown = ("verdicts", "unchecked", "driven")
+    shown = ("verdicts", "margins", "unchecked", "driven")
 
     def __init__(self, study: Study, *, fitting: bool = False) -> None:
         super().__init__(study)
         self._fitting = fitting
         self.verdicts: list[Verdict] = []
+        self.margins = 0
         self.unchecked: dict[str, str] = {}
         self.driven: list[DriveBy] = []
         self.limits: tuple[Reading, ...] = ()
@@ -66,11 +68,18 @@ class CheckJob(Job):
         ):
             self._progress = Progress("checking", step.fraction)
             if step.verdict is not None:
-                self.verdicts.append(step.verdict)
+                self._note(step.verdict, is_early=step.is_early)
             yield self._progress
         if not (self._fitting or self.stopped):
             yield from self._look_at_limits()
         yield Progress("done", 1.0)
+
+    def _note(self, verdict: Verdict, *, is_early: bool) -> None:
+        """Add a verdict, or have it in place of that without its margin."""
+        self.margins += not is_early
+        names = [each.name for each in self.study.requirements]
+        others = [each for each in self.verdicts if each.name != verdict.name]
+        self.verdicts = sorted([*others, verdict], key=lambda each: names.index(each.name))
 
     def _look_at_limits(self) -> Iterator[Progress]:
         """Read the figures that have a limit; only entropy and AP need a score."""
@@ -98,7 +107,7 @@ class CheckJob(Job):
                 study.requirements, study.rig, study.vehicle, study.reference, space=study.space
             )
             study = replace(study, requirements=fitting)
-        yield from self._check_steps(study)
+        yield from self._check_steps(study, early=True)
 
 
 class SuggestJob(Job):

@@ -546,9 +546,11 @@ class Job:
 
         return (yield from self._beside(work, replace(waiting, fraction=0.0), to_the_end))
 
-    def _check_steps(self, study: Study) -> Iterator[CheckStep]:
-        """Yield the verdicts on a study one by one, with steps in between."""
-        yield from study.check_steps(study.checker(self.as_drawn and self.as_drawn(study)))
+    def _check_steps(self, study: Study, *, early: bool = False) -> Iterator[CheckStep]:
+        """Yield the verdicts on a study one by one, with steps in between. `early`: as of
+        `RequirementChecker.steps`."""
+        checker = study.checker(self.as_drawn and self.as_drawn(study))
+        yield from study.check_steps(checker, early=early)
 
     def _conditions(
         self, study: Study, waiting: Progress, to_the_end: bool = True

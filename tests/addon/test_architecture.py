@@ -50,6 +50,7 @@ vehicle_cache: document engine
 change_events: sensor_cache signals vehicle_cache
 consistency: document sensor_cache
 viewport: panel_text
+plates: engine viewport
 result_staleness: document sensor_cache signals vehicle_cache
 diagnostics: analysis_calls document engine engine_process sensor_cache signals vehicle_cache
 location_query: document engine engine_process sensor_cache signals vehicle_cache
@@ -61,21 +62,22 @@ library:
 verification: engine engine_process signals
 preferences_panel: library own_catalog panel_text properties signals verification
 live: analysis_calls document change_events choices engine engine_calls engine_process panel_text
-    sensor_cache signals vehicle_cache viewport
+    plates sensor_cache signals vehicle_cache viewport
 best_so_far: engine
 variant_pictures:
-overlay: choices engine engine_calls view_settings viewport
+overlay: choices engine engine_calls plates view_settings viewport
 overlay.snapshot: best_so_far document choices engine engine_calls live location_query overlay
     sensor_cache vehicle_cache view_settings where_map
 overlay.scheduler: analysis_calls engine engine_process overlay overlay.snapshot sensor_cache
     viewport
 overlay.surroundings: engine overlay viewport
 overlay.draw_handler: body_query document engine engine_process overlay overlay.scheduler
-    overlay.surroundings panel_text vehicle_cache viewport
+    overlay.surroundings panel_text plates vehicle_cache viewport
 operators: best_so_far body_query document choices diagnostics engine engine_calls engine_process
     english film housing library live location_query overlay overlay.scheduler
-    overlay.surroundings own_jobs panel_text properties result_staleness sensor_cache sensor_kinds
-    signals variant_pictures vehicle_cache verification view_settings viewport where_map
+    overlay.surroundings own_jobs panel_text plates properties result_staleness sensor_cache
+    sensor_kinds signals variant_pictures vehicle_cache verification view_settings viewport
+    where_map
 panels: body_query document choices diagnostics engine live location_query operators panel_text
     properties sensor_cache sensor_kinds where_map
 commands: document engine film result_staleness

@@ -106,7 +106,9 @@ def test_the_demo_searches_by_default_for_a_lidar_and_a_camera(addon, tmp_path):
     assert result["method"] == search.DEFAULT_METHOD
     (tmp_path / "review.html").touch()
     command = [sys.executable, TOOLS / "show_result.py", tmp_path]
-    moved, better, opened = subprocess.check_output(command, text=True).splitlines()
+    moved, better, cost, more = subprocess.check_output(command, text=True).splitlines()
     assert all(sensor.name in moved for sensor in rig)
-    assert result["cost"] in better
-    assert opened.split()[1] == str(tmp_path / "review.html")
+    for values in (result["figures"][which]["values"] for which in ("before", "after")):
+        assert f"{values['traffic_ap']:.3f}" in better and f"{values['blind_ground']:.0f}" in better
+    assert result["cost"].endswith(cost.split(maxsplit=1)[1])
+    assert more.split()[1] == str(tmp_path / "review.html")

@@ -42,9 +42,13 @@ class Gpu:
     def draw_labels(self, _context, labels, _taken):
         self.written += [label.text for label in labels]
 
-    def draw_legends(self, _context, legends, _vehicle):
+    def legend_plates(self, legends, _room):
         self.written += [text for legend in legends for text in (legend.title, *legend.values)]
         return []
+
+    def draw_plates(self, context, drawer, *, vehicle, taken):
+        drawer(context, None)
+        return list(taken)
 
 
 @pytest.fixture
@@ -53,6 +57,7 @@ def window(rig, monkeypatch):
     card = Gpu()
     overlay = SimpleNamespace(show_overlays=True)
     space = SimpleNamespace(type="VIEW_3D", overlay=overlay, local_view=None, camera=None)
+    space.region_quadviews = ()
     look = SimpleNamespace(view_perspective="PERSP")
     region = SimpleNamespace(as_pointer=lambda: 1)
     monkeypatch.setattr(draw_handler.viewport, "is_lower_left", lambda _context: False)
@@ -62,6 +67,7 @@ def window(rig, monkeypatch):
     monkeypatch.setattr(draw_handler, "gpu", card)
     monkeypatch.setattr(draw_handler, "Batches", card)
     monkeypatch.setattr(draw_handler, "labels", card)
+    monkeypatch.setattr(draw_handler.plates, "draw", card.draw_plates)
     monkeypatch.setattr(surroundings, "gpu", card)
     monkeypatch.setattr(surroundings, "Batches", card)
     monkeypatch.setattr(draw_handler, "depth_offset", lambda *_: contextlib.nullcontext())

@@ -4,10 +4,11 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import document
+from blender_addon import analysis_calls, document
 from blender_addon.operators import jobs
 from blender_addon.operators import requirements as operators
 from blender_addon.overlay.requirement_zones import MET, NOT_MET
+from blender_addon.overlay.snapshot import SnapshotReader
 from pe_core.study import requirement_file
 from tests.addon import scenes
 
@@ -120,7 +121,13 @@ def test_verdicts_come_row_by_row_and_esc_keeps_those_that_are_found(held):
 
     told = check_by_hand(held, lambda job: job.stop() if job.verdicts else None)
     assert told.level == "WARNING"
-    assert stored(held) == [whole[0], None, None]
+    first, *others = stored(held)
+    assert first.met == whole[0].met and others == [None, None]
+
+    check_by_hand(held, lambda job: job.stop() if job.margins else None)
+    first, *others = stored(held)
+    assert first == whole[0], "its margin is known"
+    assert [each.met for each in others] == [each.met for each in whole[1:]]
 
 
 class TestZones:
@@ -136,6 +143,23 @@ class TestZones:
         assert [v.to_dict() for v in shape.verdicts] == [v.to_dict() for v in verdicts]
         met = sum(verdict.met for verdict in verdicts)
         assert shape.legend.title == f"{met} of 3 requirements met"
+
+    def test_zones_are_there_before_the_margins(self, held):
+        """One shape for the time being: every requirement on bodies, met or not as at the end."""
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        request = SnapshotReader().request(held, depsgraph, False)
+        names = list(scenes.drawn(held)["requirements"])
+        steps = analysis_calls.layer_shapes(request, "requirements", False, names)
+        early = []
+        with pytest.raises(StopIteration) as end:
+            while True:
+                early += [step] if (step := next(steps)) is not None else []
+        ((first,),) = early
+        (last,) = end.value.value
+        met = {verdict.name: verdict.met for verdict in last.verdicts}
+        assert first.verdicts
+        assert all(verdict.met == met[verdict.name] for verdict in first.verdicts)
+        assert len(last.verdicts) == 3
 
     def test_samples_are_filled_where_met_and_hatched_where_not(self, held):
         """Squares of the passing samples cover the chosen zone, hatching those that fail."""

@@ -16,9 +16,9 @@ STRIP = OURS.format("operators.camera_strip")
 GROUND = OURS.format("overlay.layer_cache") + ".shown_of(window.scene.name, 'birds_eye')"
 BOX = f"""
 name = {OURS.format("operators.birds_eye")}.PLATE_NAME
-(found,) = [boxes for boxes in {OURS.format("viewport")}._plates.values() if name in boxes]
 main = next(each for each in area.regions if each.type == "WINDOW")
-left, bottom, right, top = found[name]
+kind = {OURS.format("plates")}.BIRDS_EYE
+((left, bottom, right, top),) = {OURS.format("viewport")}.plate_boxes(main.as_pointer(), kind)
 kept["box"] = [main.x + left, window.height - main.y - top, right - left, top - bottom]
 kept["taken"] = sorted(key.name for key in {PICTURES}._pictures if key.plate == name)
 """

@@ -83,8 +83,8 @@ def test_ctrl_c_keeps_the_verdicts_that_were_found(study, tmp_path, monkeypatch,
     steps = pe.Study.check_steps
     ended = threading.Event()
 
-    def interrupted(self, checker):
-        for step in steps(self, checker):
+    def interrupted(self, checker, **options):
+        for step in steps(self, checker, **options):
             yield step
             if step.verdict is not None:
                 os.kill(os.getpid(), signal.SIGINT)

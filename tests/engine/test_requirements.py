@@ -188,6 +188,33 @@ def test_margins_are_those_of_all_sensors_on_all_the_ground_round_a_zone(name, m
     assert max(margins) > 0.0
 
 
+def test_all_verdicts_come_before_the_first_margin_and_stay():
+    """Early ones are those of the check, but for how far a zone could grow."""
+    zone = Zone(x=("front + 3", "front + 3.6"), y=(-0.3, 0.3), step=0.3)
+    wanted = [
+        Requirement(name, zone, (BODIES["adult"],), **GROWN[name])
+        for name in ("one", "two", "most")
+    ]
+    wanted.insert(1, Requirement("ground", MIDDLE, criterion=Criterion(blind_m2=1.0)))
+    checker = RequirementChecker(wanted, van())
+    steps = list(checker.steps(rig(), early=True))
+    found = [step for step in steps if step.verdict is not None]
+    early = [step.verdict for step in found if step.is_early]
+    last = [step.verdict for step in found if not step.is_early]
+    assert [step.is_early for step in found] == [True] * 4 + [False] * 4
+    assert [each.name for each in early] == ["one", "ground", "two", "most"]
+    expected = checker.check(rig())
+    assert [each.summary for each in last] == [each.summary for each in expected]
+    by_name = {each.name: each for each in last}
+    for each in early:
+        assert each.met == by_name[each.name].met
+        assert each.margin == by_name[each.name].margin or each.at_least
+        assert each.margin is None or each.margin <= by_name[each.name].margin
+    assert any(each.margin < by_name[each.name].margin for each in early)
+    with_margins = [step.fraction for step in steps]
+    assert with_margins == sorted(with_margins) and with_margins[-1] == 1.0
+
+
 def _plain_margin(own, one, cases):
     """`margin_of` all samples of rings that are grown as far as the zone does not fail."""
     placed = own.zone.placed(van(), None, own.name)

@@ -13,7 +13,8 @@ PATIENCE_S = 300
 
 
 def found(camera: Camera) -> None:
-    """The patch on the roof, and in the sidebar how far the sensor may go."""
+    """The patch on the roof, and in the sidebar how far the sensor may go: from where it was before
+    the search, which took it to the end of its bounds."""
     stage = camera.stage
     stage.do("bpy.context.preferences.view.ui_scale = 1.15")
     stage.do(LOOK.format(center=(-0.35, 0.1, 1.35), distance=3.1, rotation=(0.95, 0.0, 2.35)))
@@ -27,7 +28,8 @@ def found(camera: Camera) -> None:
             setattr(settings.view, f"show_{name}", False)
         for obj in objects:
             obj.select_set(obj.name == "roof_lidar")
-        objects.active = objects["roof_lidar"]
+        objects.active = lidar = objects["roof_lidar"]
+        lidar.location, lidar.rotation_euler = (-0.43, 0.0, 1.62), (0.0, 0.0, 0.0)
     """)
     stage.do("bpy.ops.pe.score()")
     stage.rest()

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import islice
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -38,10 +39,12 @@ AWAY_WEIGHT = 0.1
 
 
 class CheckStep(NamedTuple):
-    """A step of a check: the part that is done, 0 to 1, and the verdict that it found, if any."""
+    """A step of a check: the part that is done, 0 to 1, and the verdict that it found, if any.
+    `is_early`: the verdict comes again, once its margin is known."""
 
     fraction: float
     verdict: Verdict | None = None
+    is_early: bool = False
 
 
 class RequirementChecker:
@@ -107,9 +110,12 @@ class RequirementChecker:
         return tuple(step.verdict for step in steps if step.verdict is not None)
 
     def steps(
-        self, rig: Rig, *, preview: bool = False, cases: Sequence[Rig] = ()
+        self, rig: Rig, *, preview: bool = False, cases: Sequence[Rig] = (), early: bool = False
     ) -> Iterator[CheckStep]:
         """Yield the verdicts of `check` one after the other, in its order, with steps in between.
+
+        `early`: First yield whether each requirement is met, with a margin of at least 0 where it
+        is: how far a zone of bodies could grow takes several times as long.
 
         Whoever takes no more steps ends the work. Several threads may take steps of one checker:
         what one of them has measured, the others do not measure again.
@@ -120,13 +126,15 @@ class RequirementChecker:
         rig = cautious(rig)
         cases = [] if preview else [cautious(case) for case in cases]
         with self._lock:
-            steps = self._set(PREVIEW if preview else FULL).steps(rig, cases)
+            steps = self._set(PREVIEW if preview else FULL).steps(rig, cases, early)
         while True:
             with self._lock:  # not while others have what was yielded
-                step = next(steps, None)
-            if step is None:
+                taken = list(islice(steps, 1))
+                while taken and taken[-1].is_early:  # all at once: no margin of others in between
+                    taken += islice(steps, 1)
+            if not taken:
                 return
-            yield step
+            yield from taken
 
     def shortfalls(self, rig: Rig, cases: Sequence[Rig] = ()) -> tuple[float, ...]:
         """Return for each requirement 0 where it is met, else how far it is off, above 0 to 1.
@@ -181,7 +189,7 @@ class _CheckedSet:
         self._pairs = pairs
         self._bodies = BodyChecks(pairs, model, caches)
 
-    def steps(self, rig: Rig, cases: Sequence[Rig]) -> Iterator[CheckStep]:
+    def steps(self, rig: Rig, cases: Sequence[Rig], early: bool) -> Iterator[CheckStep]:
         """Yield the verdicts on a rig, and steps without one in between."""
         preview = self._which == PREVIEW
         done = 0
@@ -192,18 +200,26 @@ class _CheckedSet:
             yield CheckStep(done / total)
         results = dict(zip(self._numbers, self._bodies.results(rig, cases), strict=True))
         pairs = dict(zip(self._numbers, self._pairs, strict=True))
-        for number in sorted([*pairs, *self._grounds]):
-            if number in pairs:
-                verdict = body_verdict(
-                    *pairs[number], results[number], rig, vehicle=self._vehicle, preview=preview
-                )
-                if verdict.at_least:
-                    for grown in self._growths[number].margins(results[number], rig, cases):
-                        margin, at_least = grown
-                        yield CheckStep(done / total)
-                    verdict = replace(verdict, margin=margin, at_least=at_least)
-            else:
-                verdict = self._grounds[number].verdict(rig, preview, cases)
+        numbers = sorted([*pairs, *self._grounds])
+
+        def verdict_at_once(number: int) -> Verdict:
+            """How far a zone of bodies could grow is not known yet."""
+            if number not in pairs:
+                return self._grounds[number].verdict(rig, preview, cases)
+            own = pairs[number]
+            return body_verdict(*own, results[number], rig, vehicle=self._vehicle, preview=preview)
+
+        verdicts: dict[int, Verdict] = {}
+        for number in numbers if early else ():
+            verdicts[number] = verdict_at_once(number)
+            yield CheckStep(done / total, verdicts[number], is_early=True)
+        for number in numbers:
+            verdict = verdicts.get(number) or verdict_at_once(number)
+            if number in pairs and verdict.at_least:
+                for grown in self._growths[number].margins(results[number], rig, cases):
+                    margin, at_least = grown
+                    yield CheckStep(done / total)
+                verdict = replace(verdict, margin=margin, at_least=at_least)
             done += 1
             yield CheckStep(done / total, verdict)
 

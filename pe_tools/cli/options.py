@@ -1,5 +1,5 @@
 """All options of the command line, a row each. A verb names the rows that it takes; what repeats a
-key of the study is no option: ``--set`` changes every key, and four keys have short names."""
+key of the study is no option: ``--set`` changes every key, and some keys have short names."""
 
 import argparse
 from collections.abc import Callable

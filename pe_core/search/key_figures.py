@@ -31,6 +31,13 @@ if TYPE_CHECKING:
     from ..scoring.sight import Sight
 
 
+def shown_figures(named: Collection[str], limits: FigureLimits) -> tuple[str, ...]:
+    """Return the names of the figures that are named and of those with a limit, in the order of
+    `FIGURES`."""
+    asked = {*named, *(key for key, _ in limits)}
+    return tuple(key for key in FIGURES if key in asked)
+
+
 @dataclass(frozen=True, slots=True)
 class KeyFigures:
     """What a rig is decided by beside its entropy: expected AP in traffic, and what is blind. What

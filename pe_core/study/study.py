@@ -60,7 +60,7 @@ from ..search import (
     checked_method,
     rig_on_mounts,
 )
-from ..search.key_figures import KeyFigures
+from ..search.key_figures import KeyFigures, shown_figures
 from ..search.placement import housings_of
 from ..sensors import PerceptionModel
 from ..sensors.lidar import ALL, RETURNS
@@ -314,8 +314,7 @@ class Study(Tabular):
     @cached_property
     def shown_figures(self) -> tuple[str, ...]:
         """The names of the `figures` and of those with a limit, in the order of `FIGURES`."""
-        asked = {*self.figures, *(key for key, _ in self.limits)}
-        return tuple(key for key in FIGURES if key in asked)
+        return shown_figures(self.figures, self.limits)
 
     def distances(self, sensor: Sensor) -> tuple[str, ...]:
         """Return where a sensor is, from the edges that its position is told from: "0.35 m behind

@@ -242,8 +242,8 @@ def compare(scores: Mapping[str, Score]) -> tuple[ComparedRow, ...]:
 
 def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...]:
     """Compare key figures: expected AP in traffic, blind sectors, blind ground, and reach ahead, as
-    far as they were computed. Differences refer to the first. The error of a difference of AP is paired where rigs share the
-    scenes, and that of independent samples where they do not."""
+    far as they were computed. Differences refer to the first. The error of a difference of AP is
+    paired where rigs share the scenes, and that of independent samples where they do not."""
     columns = list(figures.values())
     if not columns:
         return ()

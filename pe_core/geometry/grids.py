@@ -175,8 +175,8 @@ def _candidates(triangles: Floats, space: PerceptionSpace) -> tuple[NDArray, NDA
 
 
 def _rectangles(triangles: Floats, space: PerceptionSpace) -> tuple[list[NDArray], list[NDArray]]:
-    """Return the first column of each triangle's bounding rectangle, and its number of columns, (F,)
-    along x and y each."""
+    """Return the first column of each triangle's bounding rectangle, and its number of columns,
+    (F,) along x and y each."""
     first = []
     count = []
     for axis in (0, 1):

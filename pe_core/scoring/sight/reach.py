@@ -95,32 +95,32 @@ class SpokeColumns:
     inside: Flags
     quantile: Floats
 
-    @classmethod
-    @lru_cache(2)
-    def of(cls, space: PerceptionSpace, bearings: int) -> "SpokeColumns":
-        """Choose columns round the origin."""
-        angles = np.array([2.0 * math.pi * b / bearings for b in range(bearings)])
-        limit = np.array([_edge(space, angle) for angle in angles.tolist()])
-        rings = max(1, math.ceil(limit.max() / RING_M))
-        u = scrambled_sobol(bearings * rings * VOXELS, CENTERED).reshape(bearings, rings, VOXELS, 3)
-        distance = (np.arange(rings)[:, None] + u[..., 0]) * RING_M
-        half = math.tan(min(math.pi / bearings, BESIDE_RAD / 2.0))
-        aside = (2.0 * u[..., 1] - 1.0) * half
-        inside = np.ones(u.shape[:3], bool)
-        places = []
-        for axis, w in enumerate(_turned(angles, aside, distance)):
-            place = np.floor((w - space.origin[axis]) / space.interval).astype(np.int64)
-            inside &= (place >= 0) & (place < space.shape[axis])
-            places.append(place)
-        i, j = (np.where(inside, place, 0).ravel() for place in places)
-        return cls(
-            read_only(angles),
-            read_only(limit),
-            i=read_only(i),
-            j=read_only(j),
-            inside=read_only(inside.ravel()),
-            quantile=read_only(u[..., 2].ravel()),
-        )
+
+@lru_cache(2)
+def spoke_columns(space: PerceptionSpace, bearings: int) -> SpokeColumns:
+    """Choose columns round the origin."""
+    angles = np.array([2.0 * math.pi * b / bearings for b in range(bearings)])
+    limit = np.array([_edge(space, angle) for angle in angles.tolist()])
+    rings = max(1, math.ceil(limit.max() / RING_M))
+    u = scrambled_sobol(bearings * rings * VOXELS, CENTERED).reshape(bearings, rings, VOXELS, 3)
+    distance = (np.arange(rings)[:, None] + u[..., 0]) * RING_M
+    half = math.tan(min(math.pi / bearings, BESIDE_RAD / 2.0))
+    aside = (2.0 * u[..., 1] - 1.0) * half
+    inside = np.ones(u.shape[:3], bool)
+    places = []
+    for axis, w in enumerate(_turned(angles, aside, distance)):
+        place = np.floor((w - space.origin[axis]) / space.interval).astype(np.int64)
+        inside &= (place >= 0) & (place < space.shape[axis])
+        places.append(place)
+    i, j = (np.where(inside, place, 0).ravel() for place in places)
+    return SpokeColumns(
+        read_only(angles),
+        read_only(limit),
+        i=read_only(i),
+        j=read_only(j),
+        inside=read_only(inside.ravel()),
+        quantile=read_only(u[..., 2].ravel()),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +140,7 @@ class Spokes:
         cls, space: PerceptionSpace, tops: Floats | None, density: ClassDensity, bearings: int
     ) -> "Spokes":
         """Choose voxels for a class, round the origin."""
-        columns = SpokeColumns.of(space, bearings)
+        columns = spoke_columns(space, bearings)
         layer = np.searchsorted(np.cumsum(density.profile), columns.quantile, side="right")
         layer = np.minimum(layer, space.shape[2] - 1)
         inside = columns.inside.copy()

@@ -16,8 +16,10 @@ _sight: text.RecentCache[sight.Sight] = text.RecentCache()
 """By the problem's key."""
 
 
-def key_figures(problem: Problem, rigs: Sequence[pe.Rig]) -> list[advice.KeyFigures]:
-    """Return expected AP in traffic, blind sectors, blind ground and reach of rigs."""
+def key_figures(
+    problem: Problem, rigs: Sequence[pe.Rig], names: Sequence[str]
+) -> list[advice.KeyFigures]:
+    """Return those key figures of rigs that are named."""
     how = (problem.model, problem.targets)
     look = _sight.made(
         problem.key,
@@ -25,7 +27,7 @@ def key_figures(problem: Problem, rigs: Sequence[pe.Rig]) -> list[advice.KeyFigu
             problem.space, problem.prior, problem.vehicle, model=how[0], targets=how[1]
         ),
     )
-    return [advice.KeyFigures.of_rig(look, rig) for rig in rigs]
+    return [advice.KeyFigures.of_rig(look, rig, names) for rig in rigs]
 
 
 def warnings(

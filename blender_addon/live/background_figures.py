@@ -8,8 +8,8 @@ from functools import partial
 
 import bpy
 
-from .. import analysis_calls, engine_process, signals
-from ..engine import advice, pe, text
+from .. import analysis_calls, document, engine_process, signals
+from ..engine import advice, pe, search, text
 from ..engine_calls import Problem, ScoreRequest, rig_key
 from .state import Baseline, live_state, states
 
@@ -25,12 +25,13 @@ def request(scene: bpy.types.Scene, score: ScoreRequest, baseline: Baseline | No
     live_state(name).figures = problem if is_wanted else None
     if not is_wanted:
         return
+    names = _shown(scene)
     rigs = [score.rig, *([baseline.rig] if baseline is not None and baseline.rig else [])]
-    if missing := [rig for rig in rigs if figure_cache.get(_key(problem, rig)) is None]:
-        deliver = partial(_keep, problem, missing)
+    if missing := [rig for rig in rigs if figure_cache.get(_key(problem, rig, names)) is None]:
+        deliver = partial(_keep, problem, missing, names)
         topic = f"live figures of {name}"
         engine_process.ask(
-            topic, analysis_calls.key_figures, (problem, missing), deliver, fail=_failed
+            topic, analysis_calls.key_figures, (problem, missing, names), deliver, fail=_failed
         )
 
 
@@ -42,11 +43,12 @@ def figures_of(scene: bpy.types.Scene) -> list[advice.KeyFigures]:
     problem = state.figures
     if problem is None or score is None:
         return []
-    now = figure_cache.get(_key(problem, score.rig))
+    names = _shown(scene)
+    now = figure_cache.get(_key(problem, score.rig, names))
     if now is None or score is not state.score:
         return state.shown_figures[-1:]
     rig = None if score.baseline is None else score.baseline.rig
-    before = None if rig is None else figure_cache.get(_key(problem, rig))
+    before = None if rig is None else figure_cache.get(_key(problem, rig, names))
     state.shown_figures = [now] if before is None else [before, now]
     return state.shown_figures
 
@@ -63,13 +65,20 @@ def clear() -> None:
     figure_cache.clear()
 
 
-def _key(problem: Problem, rig: pe.Rig) -> Hashable:
-    return problem.key, rig_key(rig)
+def _shown(scene: bpy.types.Scene) -> tuple[str, ...]:
+    settings = scene.perception_entropy
+    return search.shown_figures(settings.figures, document.limits_of(settings))
 
 
-def _keep(problem: Problem, rigs: list[pe.Rig], figures: list[advice.KeyFigures]) -> None:
+def _key(problem: Problem, rig: pe.Rig, names: tuple[str, ...]) -> Hashable:
+    return problem.key, rig_key(rig), names
+
+
+def _keep(
+    problem: Problem, rigs: list[pe.Rig], names: tuple[str, ...], figures: list[advice.KeyFigures]
+) -> None:
     for rig, found in zip(rigs, figures, strict=True):
-        figure_cache.put(_key(problem, rig), found)
+        figure_cache.put(_key(problem, rig, names), found)
     signals.live_score_changed.emit()
 
 

@@ -77,6 +77,7 @@ def draw_dashboard(layout: UILayout, context: Context) -> None:
         entropies[-1] if entropies else None,
         met,
         limits_of(settings),
+        names=settings.figures,
     )
     judged = [row.met for row in rows if row.met is not None]
     draw_label(wanted, f"{sum(judged)} of {len(judged)} met" if judged else "Wanted")

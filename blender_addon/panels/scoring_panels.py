@@ -5,6 +5,7 @@ from typing import Any
 from bpy.types import Context, PropertyGroup, UILayout
 
 from ..choices import CUSTOM, FROM_BOXES, OBJECTS, REGIONS
+from ..engine import search
 from ..panel_text import draw_label
 from ..sensor_kinds import kind_label, row_of
 from .layout import (
@@ -36,7 +37,11 @@ def scoring(layout: UILayout, settings: PropertyGroup, _context: Context) -> Non
     boxes = ("boxes",) if settings.prior == FROM_BOXES else ()
     draw_properties(layout, settings, ("prior", *boxes))
     draw_declared(layout, settings, "metric")
-    draw_declared(layout, settings, "ap" if settings.targets == OBJECTS else "")
+    draw_declared(layout, settings, "ap" if settings.targets == OBJECTS else "", ("figures",))
+    shown = len(settings.figures)
+    inside = section(layout, "figures", "Figures", count=f"{shown} of {len(search.SHOWN)}")
+    if inside is not None:
+        inside.column(align=True).prop(settings, "figures")
     inside = section(layout, "focus", "Focus", count=str(len(settings.focus) or ""))
     if inside is not None:
         draw_focus(inside, settings)

@@ -12,7 +12,7 @@ from collections.abc import Collection, Iterable
 from dataclasses import MISSING, dataclass, field, fields
 from typing import Annotated, Any, Protocol, TypeVar
 
-from .errors import InputError, shown
+from .errors import InputError, one_of, shown
 from .values import A_NAME, Angle, Name, Number, choice, degrees_in_file, listed, pair, vector
 
 T = TypeVar("T")
@@ -99,7 +99,7 @@ class Several:
             raise InputError(source, field, expected, shown(value))
         for item in items:
             if item not in self.among:
-                raise InputError(source, field, expected, shown(item))
+                raise InputError(source, field, one_of(self.among, item), shown(item))
         return tuple(items)
 
 

@@ -155,19 +155,35 @@ def top_heights(triangles: Floats, space: PerceptionSpace) -> Floats:
     return heights.reshape(nx, ny)
 
 
+def in_chunks(triangles: Floats, space: PerceptionSpace, columns: int) -> list[Floats]:
+    """Return triangles (F, 3, 3) in parts, of which each but for its last triangle has at most so
+    many columns in bounding rectangles: `top_heights` of a part takes little memory."""
+    _, (wide, high) = _rectangles(triangles, space)
+    before = np.cumsum(wide * high) // columns
+    return np.split(triangles, np.flatnonzero(np.diff(before)) + 1)
+
+
 def _candidates(triangles: Floats, space: PerceptionSpace) -> tuple[NDArray, NDArray]:
     """(triangle, column) pairs whose column centre lies in the triangle's bounding rectangle."""
-    first = []
-    last = []
-    for axis in (0, 1):
-        w = (triangles[:, :, axis] - space.origin[axis]) / space.interval - 0.5
-        limit = space.shape[axis] - 1
-        first.append(np.clip(np.ceil(w.min(axis=1)), 0, limit + 1).astype(int))
-        last.append(np.clip(np.floor(w.max(axis=1)), -1, limit).astype(int))
-    wide, high = (np.maximum(hi - lo + 1, 0) for lo, hi in zip(first, last, strict=True))
+    first, (wide, high) = _rectangles(triangles, space)
     n = wide * high
     step = count_up(n)
     rows = np.repeat(np.maximum(high, 1), n)
     i = np.repeat(first[0], n) + step // rows
     j = np.repeat(first[1], n) + step % rows
     return np.repeat(np.arange(len(triangles)), n), i * space.shape[1] + j
+
+
+def _rectangles(triangles: Floats, space: PerceptionSpace) -> tuple[list[NDArray], list[NDArray]]:
+    """Return the first column of each triangle's bounding rectangle, and its number of columns,
+    (F,) along x and y each."""
+    first = []
+    count = []
+    for axis in (0, 1):
+        w = (triangles[:, :, axis] - space.origin[axis]) / space.interval - 0.5
+        limit = space.shape[axis] - 1
+        low = np.clip(np.ceil(w.min(axis=1)), 0, limit + 1).astype(int)
+        high = np.clip(np.floor(w.max(axis=1)), -1, limit).astype(int)
+        first.append(low)
+        count.append(np.maximum(high - low + 1, 0))
+    return first, count

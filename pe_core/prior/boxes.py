@@ -297,7 +297,7 @@ def _class_counts(boxes: _Footprints, space: PerceptionSpace) -> tuple[Shape, in
     np.subtract.at(rises, last, columns)
     ground = np.cumsum(steps, axis=1)[:, :-1]
     profile = np.cumsum(rises)[:-1]
-    shape = normed(ground, profile)
+    shape = normed(ground.astype(float), profile)
     for values in shape:
         read_only(values)  # the caller gets the cached arrays
     return shape, int(((columns > 0) & (layers > 0)).sum())

@@ -273,10 +273,13 @@ def _inverted(masses: Floats, bounds: tuple[float, float], u: Floats) -> Floats:
 
 
 def normed(ground: NDArray[Any], profile: NDArray[Any]) -> Shape:
-    """Scale both to sum 1. A class without mass in the space gets a ground of zeros."""
-    if not (ground.sum() > 0 and profile.sum() > 0):
+    """Scale both to sum 1, the ground in place. A class without mass in the space gets a ground of
+    zeros."""
+    whole = ground.sum()
+    if not (whole > 0 and profile.sum() > 0):
         return np.zeros(ground.shape), np.full(profile.shape, 1.0 / len(profile))
-    return ground / ground.sum(), profile / profile.sum()
+    ground /= whole
+    return ground, profile / profile.sum()
 
 
 def _blurred(mass: Callable[[float], float], centers: Floats, size: float) -> Floats:

@@ -287,17 +287,24 @@ class Prior(ShortRepr):
         names = self.class_names
         shapes = self._shapes(space)
         grounds = [
-            ground * self._weights(name, space)
+            ground * self._weights(name, space) if self.focus or self._is_measured else ground
             for name, (ground, _) in zip(names, shapes, strict=True)
         ]
         total = sum(float(g.sum()) for g in grounds)
         if not 0.0 < total < math.inf:
             found = "infinitely much" if total else "none"
             raise InputError("prior", "focus", "some weight left in the space", found)
+        for ground in grounds:
+            ground /= total  # they are large
         return [
-            ClassDensity(name, read_only(ground / total), read_only(profile))
+            ClassDensity(name, read_only(ground), read_only(profile))
             for name, ground, (_, profile) in zip(names, grounds, shapes, strict=True)
         ]
+
+    @property
+    def _is_measured(self) -> bool:
+        """Whether its shapes are those of data, which others share."""
+        return self.boxes is not None or self.grid is not None
 
     def _shapes(self, space: PerceptionSpace) -> Sequence[Shape]:
         """Density of each class, which sums to its share of the prior."""
@@ -306,7 +313,10 @@ class Prior(ShortRepr):
         if self.grid is not None:
             return self.grid.shapes(space)
         shapes = ((c.share, class_shape(c, space)) for c in self.classes)
-        weighted = [(share * ground, profile) for share, (ground, profile) in shapes]
+        weighted = []
+        for share, (ground, profile) in shapes:
+            ground *= share
+            weighted.append((ground, profile))
         return weighted or [uniform_shape(space)]
 
     def _weights(self, name: str, space: PerceptionSpace) -> Floats:

@@ -10,7 +10,7 @@ The vehicle's own volume carries no weight in eq. 9.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, reduce
 from typing import Any
 
 import numpy as np
@@ -175,7 +175,7 @@ def draw(
     """
     count = SAMPLES.checked("evaluator", "samples", count)
     u = scrambled_sobol(count, shift)
-    ground = np.sum([d.ground for d in densities], axis=0)
+    ground = reduce(np.add, (d.ground for d in densities))
     i, j = _draw_column(ground, space, u[:, RING], u[:, AZIMUTH])
     k, classes = _draw_height(densities, i, j, u[:, HEIGHT])
     x = space.centers(0)[i]
@@ -215,7 +215,9 @@ def _rings(space: PerceptionSpace) -> tuple[Ints, Ints]:
     # y on the unit square sorts like the azimuth, and has the same bits on every system.
     around = y / np.maximum(np.abs(x) + np.abs(y), np.finfo(float).tiny)
     around = np.where(x >= 0.0, around, np.where(y >= 0.0, 2.0, -2.0) - around)
-    order = np.lexsort((around, ring))
+    by_azimuth = np.argsort(around, kind="stable")
+    short = ring.astype(np.min_scalar_type(ring.max()))  # numbers of 16 bits are sorted by digits
+    order = by_azimuth[np.argsort(short[by_azimuth], kind="stable")]
     return read_only(ring[order]), read_only(order)
 
 

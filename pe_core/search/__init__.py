@@ -18,10 +18,10 @@ with lazy_face(__name__):
         standoff_point,
     )
     from .figure import HIGHER, LOWER, NO_FIGURE, Figure
-    from .figures import AP_RINGS, ENTROPY, FIGURES, KEPT, ON_FRONT, REQUIREMENTS, figure_of
+    from .figures import AP_RINGS, ENTROPY, FIGURES, KEPT, ON_FRONT, REQUIREMENTS, SHOWN, figure_of
     from .goals import Front, Goals, Start, Stop
     from .journal import EvaluatedRig, Journal, checked_entries
-    from .key_figures import KeyFigures, Reading, ReadingRow, dashboard
+    from .key_figures import KeyFigures, Reading, ReadingRow, dashboard, shown_figures
     from .limit import Limit, LimitRule
     from .limits import LIMITED, NUMBERED, Limits
     from .methods import DEFAULT_METHOD, METHODS, SCHEDULED_METHOD, Method, checked_method

@@ -19,7 +19,7 @@ from ..base.arrays import Flags, Floats
 from ..base.errors import InputError
 from ..base.plugins import shipped
 from ..base.values import Number
-from ..geometry.grids import PerceptionSpace, top_heights
+from ..geometry.grids import PerceptionSpace, in_chunks, top_heights
 from ..geometry.poses import Pose, dot
 from ..scene.data_sheet import DataSheet
 from ..scene.rig import Sensor, SensorModel
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 CELL_M = 0.01  # Side of the squares in which a frontal area is counted [m]
 AROUND_M = 2.0  # So far round the body housings are seen from the front [m]
-CHUNKS = 300  # The body is drawn in at most so many parts, each in little memory
+CHUNK = 1 << 18  # The body is drawn in parts of about so many cells, each in little memory
 TURNS = 360
 LAYERS = 36
 """Azimuths and elevations of the cells of a field of view."""
@@ -103,7 +103,7 @@ def _seen_from_front(vehicle: Vehicle) -> tuple[PerceptionSpace, Flags]:
     grid = PerceptionSpace((left, right), (0.0, top), (0.0, CELL_M), CELL_M)
     turned = vehicle.triangles[:, :, [1, 2, 0]]
     body = np.zeros(grid.shape[:2], bool)
-    for some in np.array_split(turned, min(CHUNKS, len(turned))):
+    for some in in_chunks(turned, grid, CHUNK):
         body |= np.isfinite(top_heights(some, grid))
     return grid, body
 

@@ -174,6 +174,10 @@ class FigureNames(Collection[str]):
         return any(name == key for key in self)
 
 
+SHOWN = FigureNames(
+    lambda row: row.is_seen or row.key in BUILD_FIGURES or row.key in (REQUIREMENTS, ENTROPY)
+)
+"""Figures that a score can show, and computes where it does."""
 KEPT = FigureNames(lambda row: row.is_seen)
 """Figures that a search may keep."""
 ON_FRONT = FigureNames(lambda row: row.on_front)

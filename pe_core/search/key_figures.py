@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +13,17 @@ from ..scoring.score import TrafficAp
 from ..scoring.sight.blind_ground import WITHIN_M, BlindSector
 from .build_figures import BUILD_FIGURES
 from .figure import Figure
-from .figures import AP, AP_RINGS, ENTROPY, FIGURES, REQUIREMENTS, on_dashboard
+from .figures import (
+    AP,
+    AP_RINGS,
+    BLIND_SECTOR,
+    ENTROPY,
+    FIGURES,
+    REACH,
+    REQUIREMENTS,
+    SHOWN,
+    on_dashboard,
+)
 from .limit import FigureLimits
 from .rig_view import RigView, blind_height
 
@@ -21,9 +31,17 @@ if TYPE_CHECKING:
     from ..scoring.sight import Sight
 
 
+def shown_figures(named: Collection[str], limits: FigureLimits) -> tuple[str, ...]:
+    """Return the names of the figures that are named and of those with a limit, in the order of
+    `FIGURES`."""
+    asked = {*named, *(key for key, _ in limits)}
+    return tuple(key for key in FIGURES if key in asked)
+
+
 @dataclass(frozen=True, slots=True)
 class KeyFigures:
-    """What a rig is decided by beside its entropy: expected AP in traffic, and what is blind.
+    """What a rig is decided by beside its entropy: expected AP in traffic, and what is blind. What
+    was not asked for is as what is not known.
 
     `traffic`: None where the prior's objects have no room, or a sensor has a curve of its own.
     `sectors`: The widest blind sector for bodies of each height.
@@ -50,19 +68,22 @@ class KeyFigures:
     unknown: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @classmethod
-    def of_rig(cls, sight: Sight, rig: Rig) -> KeyFigures:
-        """Return the key figures of a rig; `InputError` where the ground is not in the space."""
+    def of_rig(cls, sight: Sight, rig: Rig, names: Collection[str] = SHOWN) -> KeyFigures:
+        """Return those key figures of a rig that are named, of `SHOWN`; nothing else is computed.
+        `InputError` where blind ground is named and the ground is not in the space."""
         view = RigView(sight, rig)
-        found = {key: row.worst(row.values(view)) for key, row in FIGURES.items()}
-        unknown = {key: tuple(row.lacking(view.placement)) for key, row in BUILD_FIGURES.items()}
+        rows = {key: row for key, row in FIGURES.items() if key in names}
+        found = {key: row.worst(row.values(view)) for key, row in rows.items()}
+        built = (key for key in BUILD_FIGURES if key in names)
+        unknown = {key: tuple(BUILD_FIGURES[key].lacking(view.placement)) for key in built}
         return cls(
-            view.traffic,
-            view.sectors,
+            view.traffic if AP_RINGS.keys() & rows.keys() else None,
+            view.sectors if BLIND_SECTOR in rows else (),
             height=blind_height(sight),
             within=WITHIN_M,
             values={key: rounded(value) for key, value in found.items() if value is not None},
-            reach=view.reach,
-            over_frames=sight.over_frames(rig),
+            reach=view.reach if REACH in rows else {},
+            over_frames=sight.over_frames(rig) if ENTROPY in rows else None,
             unknown={key: lacking for key, lacking in unknown.items() if lacking},
         )
 
@@ -153,12 +174,15 @@ def dashboard(
     met: Sequence[bool] = (),
     limits: FigureLimits | None = None,
     ap: float | None = None,
+    *,
+    names: Collection[str] = SHOWN,
 ) -> tuple[Reading, ...]:
-    """Return the rows for a rig: what every rig is decided by, and what else has a limit. `met`
-    tells of each requirement whether it is met; `ap` is the expected AP of the score."""
+    """Return the rows for a rig: what every rig is decided by, as far as it is named, and what else
+    has a limit. `met` tells of each requirement whether it is met; `ap` is the expected AP of the
+    score."""
     limits = limits or FigureLimits()
     of_score = {ENTROPY: entropy, AP: ap, REQUIREMENTS: float(sum(met)) if met else None}
-    rows = on_dashboard()
+    rows = [row for row in on_dashboard() if row.key in names]
     rows += [row for key, _ in limits if (row := FIGURES[key]) not in rows]
     return tuple(
         Reading(

@@ -184,6 +184,7 @@ class Document:
     """A study file."""
 
     samples: int = same_setting(Study, "samples")
+    figures: tuple[str, ...] = same_setting(Study, "figures")
     space: PerceptionSpace = field(default_factory=PerceptionSpace)
     prior: Prior = field(default_factory=Prior.road)
     metric: TargetRule = field(default_factory=TargetRule)
@@ -207,6 +208,7 @@ class Document:
         """Return the document of a study."""
         return cls(
             samples=study.samples,
+            figures=study.figures,
             space=study.space,
             prior=study.prior,
             metric=study.targets,
@@ -253,6 +255,7 @@ class Document:
             model=self.perception,
             search=self._search(node),
             samples=self.samples,
+            figures=self.figures,
             reference=self.reference,
             selection=self.selection,
             targets=self.metric,

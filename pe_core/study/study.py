@@ -14,7 +14,7 @@ from .. import catalog
 from ..base.arrays import ReadOnlyDict
 from ..base.errors import InputError, require_kind, shown
 from ..base.notebook import ShortRepr, Tabular
-from ..base.setting import OneOf, Panel, Part, check_settings, setting
+from ..base.setting import OneOf, Panel, Part, Several, check_settings, setting
 from ..base.values import A_NAME, A_PATH, Whole
 from ..geometry.grids import PerceptionSpace
 from ..metric.frames import Frames
@@ -39,9 +39,11 @@ from ..scoring.sight import Sight
 from ..scoring.targets import ObjectEvaluator, TargetRule
 from ..search import (
     AXES,
+    FIGURES,
     METHODS,
     PAPER_FREE,
     SCHEDULED_METHOD,
+    SHOWN,
     DesignSpace,
     Goals,
     Limits,
@@ -58,7 +60,7 @@ from ..search import (
     checked_method,
     rig_on_mounts,
 )
-from ..search.key_figures import KeyFigures
+from ..search.key_figures import KeyFigures, shown_figures
 from ..search.placement import housings_of
 from ..sensors import PerceptionModel
 from ..sensors.lidar import ALL, RETURNS
@@ -208,7 +210,8 @@ class Study(Tabular):
     `conditions` the states of the vehicle and the weathers that count, `returns` which beams of the
     rig's LiDARs return. `frames` are those that the entropy over frames is of, `confirmation` says
     when a track is confirmed, in `stories` of what moves. `edges` are those of the vehicle that
-    have names of their own, beside those that `vehicle_edges` finds.
+    have names of their own, beside those that `vehicle_edges` finds. `figures` are the key figures
+    that a score shows: it computes no others, but those that have a limit.
 
     `InputError` when a field is not of its type, or the samples are too few.
     """
@@ -254,6 +257,17 @@ class Study(Tabular):
     confirmation: Confirmation = field(default_factory=Confirmation)
     stories: tuple[Story, ...] = ()
     edges: tuple[Edge, ...] = ()
+    figures: tuple[str, ...] = setting(
+        tuple(SHOWN),
+        Several(SHOWN),
+        "Key figures that a score computes and shows; one with a limit is computed all the same",
+        Panel(
+            "figures",
+            "Figures",
+            menu=tuple((FIGURES[name].label, FIGURES[name].about) for name in SHOWN),
+        ),
+        scored=True,
+    )
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "requirements", checked_requirements(self.requirements))
@@ -296,6 +310,11 @@ class Study(Tabular):
     def vehicle_edges(self) -> VehicleEdges:
         """The edges of the vehicle by name: positions are told as distances from them."""
         return VehicleEdges(self.vehicle, self.edges, self.reference)
+
+    @cached_property
+    def shown_figures(self) -> tuple[str, ...]:
+        """The names of the `figures` and of those with a limit, in the order of `FIGURES`."""
+        return shown_figures(self.figures, self.limits)
 
     def distances(self, sensor: Sensor) -> tuple[str, ...]:
         """Return where a sensor is, from the edges that its position is told from: "0.35 m behind
@@ -375,7 +394,9 @@ class Study(Tabular):
         `known` are those without margins, where a score has them already.
         """
         margins = {story.name: self.drive_by(story).margin_s for story in self.stories}
-        found = KeyFigures.of_rig(self.sight(), self.rig) if known is None else known
+        found = known
+        if found is None:
+            found = KeyFigures.of_rig(self.sight(), self.rig, self.shown_figures)
         return replace(found, margins=margins)
 
     def drive_by(self, story: Story, rig: Rig | None = None) -> DriveBy:

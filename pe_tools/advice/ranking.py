@@ -109,7 +109,8 @@ def search_cost(before: Score, after: Score, start: KeyFigures, result: KeyFigur
     losses += _zone_losses(before, after)
     if losses:
         return f"It cost {joined(losses)}"
-    return f"{NOTHING}: key figures, coverage and all zones are no worse beyond their errors"
+    told = ["key figures"] if start.values and result.values else []
+    return f"{NOTHING}: {joined([*told, 'coverage', 'all zones'])} are no worse beyond their errors"
 
 
 def _figure_losses(start: KeyFigures, result: KeyFigures) -> Iterator[str]:

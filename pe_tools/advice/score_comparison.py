@@ -241,19 +241,19 @@ def compare(scores: Mapping[str, Score]) -> tuple[ComparedRow, ...]:
 
 
 def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...]:
-    """Compare key figures: expected AP in traffic, blind sectors, blind ground, and reach ahead.
-    Differences refer to the first. The error of a difference of AP is paired where rigs share the
-    scenes, and that of independent samples where they do not."""
+    """Compare key figures: expected AP in traffic, blind sectors, blind ground, and reach ahead, as
+    far as they were computed. Differences refer to the first. The error of a difference of AP is
+    paired where rigs share the scenes, and that of independent samples where they do not."""
     columns = list(figures.values())
     if not columns:
         return ()
     rows = [*_traffic_rows([figures.traffic for figures in columns])]
     none = ((0.0,) * len(columns),) * len(columns)
-    for sectors in zip(*(figures.sectors for figures in columns), strict=True):
-        tall = f"{sectors[0].height:g} m tall, at {SECTOR_RADIUS_M:g} m"
-        rows.append(
-            ComparedRow("rig", tall, BLIND_SECTOR, tuple(s.width for s in sectors), errors=none)
-        )
+    widths = [{sector.height: sector.width for sector in own.sectors} for own in columns]
+    for height in dict.fromkeys(height for own in widths for height in own):
+        tall = f"{height:g} m tall, at {SECTOR_RADIUS_M:g} m"
+        wide = tuple(own.get(height) for own in widths)
+        rows.append(ComparedRow("rig", tall, BLIND_SECTOR, wide, errors=none))
     over_frames = tuple(f.over_frames for f in columns)
     if any(value is not None for value in over_frames):
         rows.append(ComparedRow("rig", "over frames", ENTROPY, over_frames, errors=none))
@@ -267,8 +267,9 @@ def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...
     detailed = {BLIND_SECTOR, REACH, *AP_RINGS}
     for key in (key for key, row in FIGURES.items() if row.is_seen and key not in detailed):
         values = tuple(f.values.get(key) for f in columns)
-        rows.append(ComparedRow("rig", apart.get(key, ""), key, values, errors=none))
-    for name in columns[0].reach:
+        if any(value is not None for value in values):
+            rows.append(ComparedRow("rig", apart.get(key, ""), key, values, errors=none))
+    for name in dict.fromkeys(name for own in columns for name in own.reach):
         ahead = tuple(f.reach[name][0] if name in f.reach else None for f in columns)
         rows.append(ComparedRow("class", name, REACH, ahead, errors=none))
     return tuple(rows)

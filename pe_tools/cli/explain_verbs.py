@@ -12,7 +12,7 @@ from pe_core import catalog
 from pe_core.base.errors import InputError, one_of, require_name, shown
 from pe_core.base.values import error_text
 from pe_core.scene import Vehicle
-from pe_core.search import FIGURES, POSITION_AXES
+from pe_core.search import FIGURES, POSITION_AXES, SHOWN
 from pe_core.study import Study
 
 from .. import advice
@@ -172,7 +172,7 @@ def compare(source: StudyFiles, args: argparse.Namespace) -> Answer:
     """Score studies by name, and print a table that compares them."""
     studies: Mapping[str, Study] = source.studies(args)
     refuse_different(studies)
-    studies = {**studies, **_beside(studies, args.beside)}
+    studies = _showing_alike({**studies, **_beside(studies, args.beside)})
     outcomes = {name: scored(study, args.workers) for name, study in studies.items()}
     scores = {name: outcome.after for name, outcome in outcomes.items()}
     figures = {n: each.key_figures(outcomes[n].figures_after) for n, each in studies.items()}
@@ -206,6 +206,13 @@ def compare(source: StudyFiles, args: argparse.Namespace) -> Answer:
         words=tuple(said),
     )
     return answered(args, data, [*lines, *notes]), DONE
+
+
+def _showing_alike(studies: Mapping[str, Study]) -> dict[str, Study]:
+    """Return the studies, each with the figures that any of them shows."""
+    asked = {key for study in studies.values() for key in study.shown_figures}
+    figures = tuple(key for key in SHOWN if key in asked)
+    return {name: replace(study, figures=figures) for name, study in studies.items()}
 
 
 def _beside(studies: Mapping[str, Study], key: str | None) -> dict[str, Study]:

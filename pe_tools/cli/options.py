@@ -1,9 +1,10 @@
 """All options of the command line, a row each. A verb names the rows that it takes; what repeats a
-key of the study is no option: ``--set`` changes every key, and four keys have short names."""
+key of the study is no option: ``--set`` changes every key, and some keys have short names."""
 
 import argparse
+import json
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 from pe_core.base.files import quoted
@@ -17,13 +18,21 @@ LINE = "line"
 PLACEMENTS = ("published", "stretched", "places")
 """How a known rig stands on another vehicle: as published, about the vehicle's centre; its box
 stretched onto the vehicle's; or each sensor on the nearest named place."""
+A_LIST = "NAME,..."
 SHORT = {
     "samples": ("samples", "N", "voxels that a score evaluates (0: all)"),
+    "figures": ("figures", A_LIST, "key figures that are computed and shown"),
     "evaluations": ("optimize.evaluations", "N", "most placements to evaluate (0: the method's)"),
     "seed": ("optimize.seed", "N", "seed of the search"),
     "method": ("optimize.method", "NAME", "how to search: portfolio or random"),
 }
 """Keys of the study with an option of their own: key, form of the value, meaning."""
+
+
+def as_change(key: str, form: str, text: str) -> str:
+    """Return the value of an option in `SHORT` as it is typed with ``--set``."""
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    return f"{key}={json.dumps(names) if form == A_LIST else text}"
 
 
 class LastOfKey(argparse.Action):
@@ -140,8 +149,8 @@ def _of_studies() -> dict[str, OptionRow]:
         "snap": switch("--snap", snap),
     }
     for name, (key, form, about) in SHORT.items():
-        meant = f"{about}; as --set {key}={form}"
-        typed = f"{key}={{}}".format
+        meant = f"{about}; as --set {key}={f'[{form}]' if form == A_LIST else form}"
+        typed = partial(as_change, key, form)
         rows[name] = row(
             f"--{name}",
             about=meant,

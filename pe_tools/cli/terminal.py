@@ -202,7 +202,7 @@ def figure_lines(outcome: Outcome) -> list[str]:
             text = f"{figure.name} {' -> '.join([*before, row.text])}"
             if row.wanted is not None or any(each is not None for each in values):
                 (plain if row.wanted is None else lines).append(text)
-    return [f"key figures  {', '.join(plain)}", *lines] if told else lines
+    return [f"key figures  {', '.join(plain)}", *lines] if plain and told else lines
 
 
 def warned(outcome: Outcome) -> list[str]:

@@ -213,7 +213,7 @@ VERBS = (
         SCORE,
         "score a study's rig",
         ONE,
-        options=f"{COMMON} workers folder",
+        options=f"{COMMON} figures workers folder",
         function="run_study",
         prints="ResultRecord",
     ),
@@ -240,7 +240,7 @@ VERBS = (
         SCORE,
         "score several studies and put them side by side, or a built rig and its design",
         SOME,
-        options=f"beside built from rear_axle origin {COMMON} workers",
+        options=f"beside built from rear_axle origin {COMMON} figures workers",
         function="compare_all",
         prints="CompareAnswer BuiltAnswer",
     ),
@@ -267,7 +267,7 @@ VERBS = (
         PLACE,
         "search for a better placement",
         PERHAPS,
-        options=f"{COMMON} {SEARCH} start snap workers executor folder|resume no_review",
+        options=f"{COMMON} figures {SEARCH} start snap workers executor folder|resume no_review",
         function="run_study",
         prints="ResultRecord FrontRecord",
     ),
@@ -276,8 +276,8 @@ VERBS = (
         PLACE,
         "run many studies, or one with many changes",
         FILES,
-        options="try samples condition evaluations seed method optimize part workers executor "
-        "required_folder",
+        options="try samples figures condition evaluations seed method optimize part workers "
+        "executor required_folder",
         function="sweep",
         prints="SweepAnswer",
     ),
@@ -286,7 +286,7 @@ VERBS = (
         SHOW,
         "write an HTML page that shows a rig and what its sensors see",
         SOME,
-        options=f"title author date revision regions built from rear_axle origin {COMMON} "
+        options=f"title author date revision regions built from rear_axle origin {COMMON} figures "
         "workers required_folder replace",
         function="review",
         prints="FilesAnswer",

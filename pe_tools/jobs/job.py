@@ -21,7 +21,14 @@ from pe_core.scoring.sampling import CENTERED, SEARCHED, Shift
 from pe_core.scoring.score import NO_DIFFERENCE, ObjectScore, Score, ScoreStopped, is_noise
 from pe_core.scoring.sight import Sight
 from pe_core.search import EvaluatedRig, KeyFigures, Reading, Robustness, Value, dashboard
-from pe_core.search.figures import BLIND_GROUND, BLIND_SECTOR, ENTROPY, FIGURES, TRAFFIC_AP
+from pe_core.search.figures import (
+    BLIND_GROUND,
+    BLIND_SECTOR,
+    ENTROPY,
+    FIGURES,
+    REQUIREMENTS,
+    TRAFFIC_AP,
+)
 from pe_core.study.condition_table import (
     ConditionTable,
     condition_table,
@@ -216,6 +223,7 @@ class Outcome(Tabular):
             met,
             limits=self.study.limits,
             ap=None if objects is None else objects.ap,
+            names=self.study.figures,
         )
 
     def _rows(self) -> list[dict[str, Any]]:
@@ -268,9 +276,9 @@ class Outcome(Tabular):
 
 
 def _beside(figures: KeyFigures) -> dict[str, Any]:
-    """Return the figures beside the entropy, as a table has them."""
+    """Return the figures beside the entropy that are known, as a table has them."""
     rows = (FIGURES[key] for key in (TRAFFIC_AP, BLIND_SECTOR, BLIND_GROUND))
-    return {row.title: row.value(figures) for row in rows}
+    return {row.title: figures.values[row.key] for row in rows if row.key in figures.values}
 
 
 @dataclass(frozen=True, slots=True)
@@ -519,15 +527,25 @@ class Job:
     def _figures(
         self, rigs: Sequence[Rig], waiting: Progress
     ) -> ProgressSteps[tuple[KeyFigures, ...]]:
-        """Return the key figures of rigs on the study's vehicle; none where it has no ground."""
+        """Return the key figures of rigs on the study's vehicle that it shows; none where blind
+        ground is one of them and it has no ground."""
         sight = self.evaluators.sight
+        names = self.study.shown_figures
 
         def work(_: Watch) -> tuple[KeyFigures, ...]:
             with suppress(InputError):
-                return tuple(KeyFigures.of_rig(sight, rig) for rig in rigs)
+                return tuple(KeyFigures.of_rig(sight, rig, names) for rig in rigs)
             return ()
 
         return (yield from self._beside(work, waiting, to_the_end=True))
+
+    def _shown_verdicts(
+        self, study: Study, waiting: Progress, to_the_end: bool = True
+    ) -> ProgressSteps[tuple[Verdict, ...]]:
+        """Return the verdicts of `_verdicts` where the study shows them, else none."""
+        if REQUIREMENTS not in study.shown_figures:
+            return ()
+        return (yield from self._verdicts(study, waiting, to_the_end))
 
     def _verdicts(
         self, study: Study, waiting: Progress, to_the_end: bool = True

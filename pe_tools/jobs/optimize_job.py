@@ -241,7 +241,7 @@ class OptimizeJob(Job):
         found = None
         if self._own is None:
             found = yield from self._beside(lambda _: self._robustness(best), analysing)
-        verdicts = (yield from self._verdicts(best, analysing, to_the_end=False)) or ()
+        verdicts = (yield from self._shown_verdicts(best, analysing, to_the_end=False)) or ()
         against: tuple[Advice, ...] | None = ()
         if best.limits.keeps_requirements and not all(verdict.met for verdict in verdicts):
             against = yield from self._beside(lambda _: unmet(suggestions(best)), analysing)

@@ -19,7 +19,7 @@ class ScoreJob(Job):
         warnings = yield from self._warnings(self.study, score, Progress("scoring", 1.0, value))
         seeing = Progress("looking at the ground", 1.0, value)
         figures = yield from self._figures([self.study.rig], seeing)
-        verdicts = yield from self._verdicts(self.study, Progress("checking", 1.0, value))
+        verdicts = yield from self._shown_verdicts(self.study, Progress("checking", 1.0, value))
         table = yield from self._conditions(self.study, Progress("conditions", 0.0, value))
         if self.dropped:
             return

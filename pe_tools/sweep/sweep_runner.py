@@ -1,15 +1,18 @@
 """The runs of a sweep: tasks for the workers of any executor, and checkpoints of their searches."""
 
 import os
+import pickle
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import closing, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from pe_core import catalog
 from pe_core.base.errors import InputError
 from pe_core.base.lazy_threads import threads
+from pe_core.scene.rig import Rig, SensorModel
 from pe_core.search import Call, WorkerDied, run_tasks, start_processes
 from pe_core.study import Study
 from pe_core.version import __version__
@@ -18,6 +21,9 @@ from ..jobs import Checkpoint, OptimizeJob, Outcome, ScoreJob, read_search
 
 WAIT_S = 0.2  # How often it is checked whether the sweep continues, while no result arrives
 RunResult = Outcome | InputError
+_last_scores: list[ScoreJob] = []
+"""This worker's last score, or none: a task that begins takes it out, so that no two threads use
+the same evaluators."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,13 +57,17 @@ def run_task(task: RunTask) -> RunResult:
     threads().keep_freed_memory()
     save: Callable[[], object] | None = None
     try:
-        kind = OptimizeJob if task.optimize else ScoreJob
-        job: ScoreJob | OptimizeJob = kind(task.study, task.threads)
-        if isinstance(job, OptimizeJob) and task.folder is not None:
-            save = _begun(job, task.folder)
+        job: ScoreJob | OptimizeJob
+        if not task.optimize:
+            job = _score_job(task)
+        else:
+            job = OptimizeJob(task.study, task.threads)
+            save = None if task.folder is None else _begun(job, task.folder)
         for _ in job:
             if save is not None:
                 save()
+        if isinstance(job, ScoreJob):
+            _last_scores[:] = [job]
     except InputError as error:
         return error
     except Exception as error:  # some executors lose a worker's exception, and wait forever
@@ -65,6 +75,34 @@ def run_task(task: RunTask) -> RunResult:
         return InputError("worker", "run", "to complete", message)
     assert job.outcome is not None
     return job.outcome
+
+
+def _score_job(task: RunTask) -> ScoreJob:
+    """Return the score of a task, with the evaluators of the last one where only the rig has
+    changed since: what has not moved is not measured again."""
+    job = ScoreJob(task.study, task.threads)
+    with suppress(IndexError):
+        last = _last_scores.pop()
+        job = ScoreJob(_sharing_parts(task.study, last.study), task.threads)
+        if last.evaluators.key == job.evaluators.key:
+            job.evaluators = last.evaluators
+    job.as_drawn = job.evaluators.as_drawn
+    return job
+
+
+def _sharing_parts(study: Study, last: Study) -> Study:
+    """Return a study with the vehicle and the models of another one where they have the same
+    content: caches know these by identity, and each task comes with copies of its own."""
+    is_same = pickle.dumps(study.vehicle) == pickle.dumps(last.vehicle)
+    models = [sensor.model for sensor in last.rig]
+    rig = Rig([replace(each, model=_first_alike(each.model, models)) for each in study.rig])
+    return replace(study, vehicle=last.vehicle if is_same else study.vehicle, rig=rig)
+
+
+def _first_alike(own: SensorModel, others: Sequence[SensorModel]) -> SensorModel:
+    """Return the first of other models that is the same as a model, else the model itself."""
+    alike = (e for e in others if e.name == own.name and catalog.same_model(e, own))
+    return next(alike, own)
 
 
 def _begun(job: OptimizeJob, folder: Path) -> Callable[[], None]:

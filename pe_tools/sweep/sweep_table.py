@@ -9,7 +9,7 @@ from pe_core.base.errors import InputError
 from pe_core.base.files import csv_text, read_bytes
 from pe_core.base.input_files import not_noting_inputs
 from pe_core.base.table_reader import dump_json, finite, parse_json
-from pe_core.search import FIGURES, KEPT, NO_FIGURE, REQUIREMENTS, KeyFigures
+from pe_core.search import FIGURES, KEPT, NO_FIGURE, REQUIREMENTS, SHOWN, KeyFigures
 from pe_core.study import RESULT
 from pe_core.study.study import EXPECTED_AP
 from pe_core.version import __version__
@@ -30,6 +30,8 @@ BEFORE = "_before"
 """Ends the name of a column of the given study, beside that of the result."""
 OVER_FRAMES = "entropy_over_frames"
 CHECKED = "requirements_checked"
+ALL = tuple(SHOWN)
+"""The figures of a study that chooses none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,11 +148,7 @@ def table_lines(rows: Sequence[SweepRow], kind: str) -> list[str]:
     highest = max((r.ap for r in rows if r.ap is not None), default=None)
     texts = len(heads) - 2 - (kind != "score")
     heads += ["start", "expected AP"] * (highest is not None)
-    known = [
-        key
-        for key in KEPT
-        if any(FIGURES[key].value(row.figures_after) is not None for row in rows)
-    ]
+    known = _columns(rows)
     checked = any(row.met for row in rows)
     heads += [FIGURES[key].name for key in known] + [REQUIREMENTS] * checked
     table = [heads]
@@ -168,6 +166,19 @@ def table_lines(rows: Sequence[SweepRow], kind: str) -> list[str]:
     return aligned(table, range(texts, len(table[0])))
 
 
+def _columns(rows: Sequence[SweepRow]) -> list[str]:
+    """Return the key figures that have a column in the terminal: those of the dashboard, and what
+    can be built where a study chooses its figures."""
+    studies = [row.run.study for row in rows]
+    chosen = {k for study in studies if study.figures != ALL for k in study.shown_figures}
+    return [
+        key
+        for key, figure in FIGURES.items()
+        if (key in KEPT or key in chosen)
+        and any(figure.value(row.figures_after) is not None for row in rows)
+    ]
+
+
 def _figure(value: float | None) -> str:
     return "-" if value is None else f"{value:.3f}"
 
@@ -183,7 +194,7 @@ def _keys(rows: Sequence[SweepRow]) -> list[str]:
 
 
 def _key_figures(figures: KeyFigures | None) -> dict[str, float | None]:
-    """Return the figures by the names of their columns;"""
+    """Return the figures by the names of their columns."""
     over = {OVER_FRAMES: None if figures is None else figures.over_frames}
     return {key: row.value(figures) for key, row in FIGURES.items()} | over
 

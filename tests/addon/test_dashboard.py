@@ -8,7 +8,7 @@ import bpy
 import pytest
 
 from blender_addon import document, engine_calls
-from blender_addon.engine import pe, search
+from blender_addon.engine import jobs, pe, search
 from blender_addon.operators import known_rigs
 from blender_addon.panels import CLASSES, dashboard, layout, main
 from tests.addon import layouts, scenes
@@ -72,6 +72,27 @@ def test_what_is_wanted_is_met_or_not_and_is_the_study_s(car):
     assert row["met"] and not row["kept"]
     settings.limit_blind_ground = -100.0  # no limit: a lower number is none, 0 may be one
     assert scenes.study().limits == search.Limits(blind_sector=True, ap_near=True)
+
+
+def test_only_the_figures_that_are_chosen_are_computed_and_shown(car):
+    """What has a limit stays; the study, and a score without a window, have the same."""
+    settings = car.perception_entropy
+    assert settings.figures == set(search.SHOWN)
+    settings.figures = {"reach", "height", "entropy"}
+    bpy.ops.pe.score()
+    result = settings.result
+    limited = {key for key, _ in scenes.study().limits}
+    assert limited
+    assert {row["figure"] for row in result.data["dashboard"]} == {"reach", "entropy", *limited}
+    values = result.data["figures"]["after"]["values"]
+    assert values.keys() == {"reach", "height", *limited}
+    assert scenes.study().figures == ("reach", "entropy", "height")
+    assert values == jobs.ScoreJob(scenes.study()).run().figures_after.values
+    texts = shown(car).texts("label")
+    hidden = set(search.KEPT) - {"reach", *limited}
+    assert search.FIGURES["reach"].label in texts
+    assert hidden
+    assert not {search.FIGURES[key].label for key in hidden} & set(texts)
 
 
 def test_a_good_score_is_told_by_the_known_rigs_on_this_body(car):

@@ -13,6 +13,7 @@ score reports (`targets.object_metric`), so that maps, views and tables show the
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -82,6 +83,47 @@ class Reach(ShortRepr):
 
 
 @dataclass(frozen=True, slots=True)
+class SpokeColumns:
+    """Columns of voxels along bearings, the same for all classes: `i` and `j` (N,) of each, 0 where
+    it is beyond the space, that is not `inside` (N,), and the `quantile` (N,) of a class's height
+    profile at which its voxel is chosen. There are `VOXELS` for each ring of each bearing."""
+
+    bearings: Floats
+    limit: Floats
+    i: Ints
+    j: Ints
+    inside: Flags
+    quantile: Floats
+
+
+@lru_cache(2)
+def spoke_columns(space: PerceptionSpace, bearings: int) -> SpokeColumns:
+    """Choose columns round the origin."""
+    angles = np.array([2.0 * math.pi * b / bearings for b in range(bearings)])
+    limit = np.array([_edge(space, angle) for angle in angles.tolist()])
+    rings = max(1, math.ceil(limit.max() / RING_M))
+    u = scrambled_sobol(bearings * rings * VOXELS, CENTERED).reshape(bearings, rings, VOXELS, 3)
+    distance = (np.arange(rings)[:, None] + u[..., 0]) * RING_M
+    half = math.tan(min(math.pi / bearings, BESIDE_RAD / 2.0))
+    aside = (2.0 * u[..., 1] - 1.0) * half
+    inside = np.ones(u.shape[:3], bool)
+    places = []
+    for axis, w in enumerate(_turned(angles, aside, distance)):
+        place = np.floor((w - space.origin[axis]) / space.interval).astype(np.int64)
+        inside &= (place >= 0) & (place < space.shape[axis])
+        places.append(place)
+    i, j = (np.where(inside, place, 0).ravel() for place in places)
+    return SpokeColumns(
+        read_only(angles),
+        read_only(limit),
+        i=read_only(i),
+        j=read_only(j),
+        inside=read_only(inside.ravel()),
+        quantile=read_only(u[..., 2].ravel()),
+    )
+
+
+@dataclass(frozen=True, slots=True)
 class Spokes:
     """Voxels along bearings: `index` (V, 3), and the `ring` (V,) of each, R rings a bearing. None
     is in the vehicle or beyond the space. `limit` (B,) is where the space ends; `mass` (B, R) are
@@ -98,25 +140,24 @@ class Spokes:
         cls, space: PerceptionSpace, tops: Floats | None, density: ClassDensity, bearings: int
     ) -> "Spokes":
         """Choose voxels for a class, round the origin."""
-        angles = np.array([2.0 * math.pi * b / bearings for b in range(bearings)])
-        limit = np.array([_edge(space, angle) for angle in angles.tolist()])
-        rings = max(1, math.ceil(limit.max() / RING_M))
-        u = scrambled_sobol(bearings * rings * VOXELS, CENTERED).reshape(bearings, rings, VOXELS, 3)
-        distance = (np.arange(rings)[:, None] + u[..., 0]) * RING_M
-        half = math.tan(min(math.pi / bearings, BESIDE_RAD / 2.0))
-        aside = (2.0 * u[..., 1] - 1.0) * half
-        x, y = _turned(angles, aside, distance)
-        k = np.searchsorted(np.cumsum(density.profile), u[..., 2], side="right")
-        k = np.minimum(k, space.shape[2] - 1)
-        points = np.stack([x, y, space.centers(2)[k]], axis=-1)
-        index = np.floor((points - space.origin) / space.interval).astype(np.int64)
-        inside = ((index >= 0) & (index < space.shape)).all(axis=-1)
+        columns = spoke_columns(space, bearings)
+        layer = np.searchsorted(np.cumsum(density.profile), columns.quantile, side="right")
+        layer = np.minimum(layer, space.shape[2] - 1)
+        inside = columns.inside.copy()
         if tops is not None:
-            i, j, k = np.moveaxis(np.where(inside[..., None], index, 0), -1, 0)
-            inside &= space.centers(2)[k] >= tops[i, j]
-        ring = np.flatnonzero(inside) // VOXELS
-        mass = _smoothed(inside.sum(axis=2, dtype=float))
-        return cls(read_only(angles), read_only(limit), index[inside], ring, mass=mass)
+            heights = space.centers(2)[layer]
+            inside &= heights >= tops[columns.i, columns.j]
+        chosen = np.flatnonzero(inside)
+        index = np.stack([each[chosen] for each in (columns.i, columns.j, layer)], axis=1)
+        rings = len(inside) // (bearings * VOXELS)
+        counts = inside.reshape(bearings, rings, VOXELS).sum(axis=2, dtype=float)
+        return cls(
+            columns.bearings,
+            columns.limit,
+            index=index,
+            ring=chosen // VOXELS,
+            mass=_smoothed(counts),
+        )
 
     @property
     def ahead(self) -> "Spokes":

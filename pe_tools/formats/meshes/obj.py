@@ -38,7 +38,10 @@ def read_obj(path: Path, data: bytes) -> Mesh:
     if b"\0" in data:
         raise InputError(source, "file", "OBJ text", "binary data")
     lines = _statements(data)
-    is_vertex, is_face = (_begin_with(lines, word) for word in (VERTEX, FACE))
+    heads = np.array([line[: len(VERTEX)] for line in lines], f"S{len(VERTEX)}")
+    is_vertex = heads == VERTEX
+    is_face = heads == FACE
+    others = np.flatnonzero(~(is_vertex | is_face)).tolist()
     points = _points(source, [lines[k] for k in np.flatnonzero(is_vertex)])
     faces = [lines[k] for k in np.flatnonzero(is_face)]
     corners, counts = _numbers(source, faces, np.dtype(np.int64), "f with vertex indices")
@@ -51,8 +54,9 @@ def read_obj(path: Path, data: bytes) -> Mesh:
         raise InputError(source, "faces", expected, _quote(face))
     require_room(source, triangle_count(counts))
     found = triangulate(source, points[corners], counts)
-    names, labels = _labels(path.stem, lines, is_face)
-    skipped = Counter(SKIPPED[word] for word in _other_words(lines) if word in SKIPPED)
+    names, labels = _labels(path.stem, lines, others, is_face)
+    words = _other_words([lines[row] for row in others])
+    skipped = Counter(SKIPPED[word] for word in words if word in SKIPPED)
     notes = mesh_notes(skipped, counts, found.crossing)
     return make_mesh(source, found.triangles, labels[found.polygons], names, notes=notes)
 
@@ -72,10 +76,6 @@ def _statements(data: bytes) -> list[bytes]:
     return lines
 
 
-def _begin_with(lines: list[bytes], word: bytes) -> NDArray[np.bool_]:
-    return np.fromiter((line.startswith(word) for line in lines), np.bool_, len(lines))
-
-
 def _points(source: str, lines: list[bytes]) -> NDArray[np.float64]:
     """The points (N, 3); further numbers of a line, its colour or weight, are ignored."""
     expected = "v with three numbers"
@@ -92,7 +92,7 @@ def _numbers(
     source: str, lines: list[bytes], dtype: np.dtype[Any], expected: str
 ) -> tuple[NDArray[Any], NDArray[np.int64]]:
     """The numbers of all lines in one list, and how many each line has."""
-    counts = np.fromiter((len(line.split()) - 1 for line in lines), np.int64, len(lines))
+    counts = np.array([len(line.split()) for line in lines], np.int64) - 1
     text = b" ".join([line[len(VERTEX) :] for line in lines])
     if b"/" in text:
         text = AFTER_SLASH.sub(b"", text)
@@ -118,11 +118,13 @@ def _is_numeric(line: bytes, dtype: np.dtype[Any]) -> bool:
 
 
 def _labels(
-    stem: str, lines: list[bytes], is_face: NDArray[np.bool_]
+    stem: str, lines: list[bytes], others: list[int], is_face: NDArray[np.bool_]
 ) -> tuple[list[str], NDArray[np.int32]]:
-    """Names of the parts, and the part of each face."""
+    """Names of the parts, and the part of each face. `others` are the rows that are neither a
+    vertex nor a face."""
     rows: dict[bytes, list[int]] = {OBJECT: [], GROUP: []}
-    for row, line in enumerate(lines):
+    for row in others:
+        line = lines[row]
         if line[:1] in rows and line[1:2] in (b" ", b""):
             rows[line[:1]].append(row)
     begins = rows[OBJECT] or rows[GROUP]

@@ -64,8 +64,21 @@ class _PlyBody:
             raise InputError(self.source, "file", "a whole .ply file", "an end in its elements")
         if not self.order:
             return self.values[starts]
+        if len(starts) > 1 and (np.diff(starts) == starts[1] - starts[0]).all():
+            return self._evenly_spaced(type_name, starts)
         items = self.values[starts[:, None] + np.arange(size)]
         return np.ascontiguousarray(items).view(self.order + type_name)[:, 0]
+
+    def _evenly_spaced(self, type_name: str, starts: NDArray[np.int64]) -> NDArray[Any]:
+        """Values of a type that begin at items of equal distances."""
+        spaced: NDArray[Any] = np.ndarray(
+            shape=(len(starts),),
+            dtype=self.order + type_name,
+            buffer=self.values,
+            offset=int(starts[0]),
+            strides=(int(starts[1] - starts[0]),),
+        )
+        return np.array(spaced)
 
     def length(self, type_name: str, start: int) -> int:
         """The length of a list that begins at an item."""
@@ -221,10 +234,19 @@ def _polygons(
         return np.zeros(0, np.int64), np.zeros(0, np.int64)
     of, starts = columns[name]
     counts = body.lengths(of.length_type, starts)
+    if len(counts) and (counts == counts[0]).all():
+        first = starts + body.size(of.length_type)
+        steps = range(int(counts[0]))
+        apart = [body.take(of.type, first + step * body.size(of.type)) for step in steps]
+        return _whole(body, np.stack(apart, axis=1).ravel()) if apart else counts[:0], counts
     within = np.arange(int(counts.sum())) - np.repeat(np.cumsum(counts) - counts, counts)
     firsts = np.repeat(starts + body.size(of.length_type), counts)
     corners = body.take(of.type, firsts + within * body.size(of.type))
-    whole = corners.astype(np.int64)
+    return _whole(body, corners), counts
+
+
+def _whole(body: _PlyBody, corners: NDArray[Any]) -> NDArray[np.int64]:
+    whole: NDArray[np.int64] = corners.astype(np.int64)
     if (whole != corners).any():
         raise InputError(body.source, "faces", "whole numbers", float(corners[whole != corners][0]))
-    return whole, counts
+    return whole

@@ -58,6 +58,8 @@ def triangulate(source: str, corners: Floats, counts: NDArray[np.integer]) -> Tr
         A polygon that is not convex has more than `MAX_CONCAVE_CORNERS` corners.
     """
     sizes = counts.astype(np.int64)
+    if (sizes == 3).all():  # the usual case
+        return Triangulation(corners.reshape(-1, 3, 3), np.arange(len(sizes)), 0)
     positions, polygons = _fans(sizes)
     starts = np.cumsum(sizes) - sizes
     firsts = np.cumsum(np.maximum(sizes - 2, 0)) - np.maximum(sizes - 2, 0)
@@ -138,8 +140,6 @@ def _is_within(before: Floats, corner: Floats, after: Floats, point: Floats) -> 
 
 def _fans(sizes: Corners) -> tuple[Corners, Corners]:
     """Positions (T, 3) of the corners of each polygon's fan of triangles, and the polygon (T,)."""
-    if (sizes == 3).all():  # the usual case
-        return np.arange(3 * len(sizes)).reshape(-1, 3), np.arange(len(sizes))
     triangles = np.maximum(sizes - 2, 0)
     polygons = np.repeat(np.arange(len(sizes)), triangles)
     step = np.arange(len(polygons)) - np.repeat(np.cumsum(triangles) - triangles, triangles)

@@ -23,7 +23,7 @@ from sensor_previews import PIXELS, Studio  # noqa: E402
 
 import blender_addon  # noqa: E402
 import pe_core as pe  # noqa: E402
-from blender_addon.housing import housing_mesh  # noqa: E402
+from blender_addon.view.housing import housing_mesh  # noqa: E402
 
 FOLDER = HERE.parent / "blender_addon" / "assets"
 BLEND = "sensors.blend"

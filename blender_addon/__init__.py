@@ -2,29 +2,14 @@
 
 import bpy
 
-from . import (
-    best_so_far,
-    body_query,
-    change_events,
-    commands,
-    consistency,
-    diagnostics,
-    engine_process,
-    library,
-    live,
-    location_query,
-    operators,
-    panels,
-    preferences_panel,
-    properties,
-    sensor_cache,
-    variant_pictures,
-    vehicle_cache,
-    where_map,
-    wiring,
-)
-from .english import keep_english
+from . import commands, library, live, operators, panels, properties, wiring
+from .caches import change_events, consistency, sensor_cache, vehicle_cache
 from .overlay import draw_handler as overlay
+from .preferences import preferences_panel
+from .preferences.english import keep_english
+from .processes import engine_process
+from .queries import body_query, diagnostics, location_query, where_map
+from .view import best_so_far, variant_pictures
 
 CLASSES = (*preferences_panel.CLASSES, *properties.CLASSES, *operators.CLASSES, *panels.CLASSES)
 

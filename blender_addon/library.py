@@ -4,6 +4,8 @@ from pathlib import Path
 
 import bpy
 
+ADDON = __package__
+"""The extension in Blender's preferences."""
 NAME = "Perception Entropy"
 FOLDER = Path(__file__).resolve().parent / "assets"
 EXAMPLES = (FOLDER / "examples", FOLDER.parents[1] / "blend_assets")
@@ -13,7 +15,7 @@ EXAMPLE = "sedan.blend"
 
 def stored() -> bpy.types.AddonPreferences | None:
     """Return the preferences; None where the add-on is not enabled in Blender's own."""
-    addon = bpy.context.preferences.addons.get(__package__)
+    addon = bpy.context.preferences.addons.get(ADDON)
     return None if addon is None else addon.preferences
 
 

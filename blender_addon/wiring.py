@@ -11,26 +11,14 @@ from collections.abc import Callable
 import bpy
 from bpy.app.handlers import persistent
 
-from . import (
-    body_query,
-    change_events,
-    consistency,
-    diagnostics,
-    document,
-    engine_process,
-    housing,
-    location_query,
-    result_staleness,
-    sensor_cache,
-    signals,
-    variant_pictures,
-    vehicle_cache,
-    viewport,
-    where_map,
-)
+from . import document, signals
+from .caches import change_events, consistency, result_staleness, sensor_cache, vehicle_cache
 from .live import session
 from .operators import camera_pictures, look_through, upright
 from .overlay import draw_handler, scheduler
+from .processes import engine_process
+from .queries import body_query, diagnostics, location_query, where_map
+from .view import housing, variant_pictures, viewport
 
 Function = Callable[..., None]
 

@@ -11,7 +11,8 @@ from typing import TextIO
 
 import bpy
 
-from .. import document, result_staleness
+from .. import document
+from ..caches import result_staleness
 from ..engine import app, jobs, pe, studies, text
 
 OPTIMIZED = studies.OPTIMIZED

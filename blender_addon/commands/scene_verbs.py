@@ -5,8 +5,10 @@ from pathlib import Path
 
 import bpy
 
-from .. import document, film, result_staleness
+from .. import document
+from ..caches import result_staleness
 from ..engine import app, pe, text
+from ..view import film
 from .open_file import from_file, opened_scene, quiet_blender
 from .scene_source import SceneStudies
 

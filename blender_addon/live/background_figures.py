@@ -8,9 +8,10 @@ from functools import partial
 
 import bpy
 
-from .. import analysis_calls, document, engine_process, signals
+from .. import document, signals
 from ..engine import advice, pe, search, text
-from ..engine_calls import Problem, ScoreRequest, rig_key
+from ..processes import analysis_calls, engine_process
+from ..processes.engine_calls import Problem, ScoreRequest, rig_key
 from .state import Baseline, live_state, states
 
 figure_cache: text.RecentCache[advice.KeyFigures] = text.RecentCache(24)

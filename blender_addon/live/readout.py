@@ -10,10 +10,11 @@ from typing import NamedTuple
 
 import bpy
 
-from .. import engine_process, plates, viewport
 from ..panel_text import is_simple, plain, typeset
-from ..plates import Plate, PlateSize, Room
-from ..viewport import FAINT, INK, PLATE, SMALL, PlateBox, Rgba
+from ..processes import engine_process
+from ..view import plates, viewport
+from ..view.plates import Plate, PlateSize, Room
+from ..view.viewport import FAINT, INK, PLATE, SMALL, PlateBox, Rgba
 from .readout_text import BETTER, WORSE, ReadoutLine, TextPiece, readout_of, state_of
 from .shown import ShownScore, for_drawing
 from .state import live_state

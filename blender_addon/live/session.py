@@ -9,19 +9,13 @@ from functools import partial
 
 import bpy
 
-from .. import (
-    change_events,
-    document,
-    engine_calls,
-    engine_process,
-    sensor_cache,
-    signals,
-    vehicle_cache,
-    viewport,
-)
+from .. import document, signals
+from ..caches import change_events, sensor_cache, vehicle_cache
 from ..choices import BEFORE_MOVE
 from ..engine import pe
-from ..engine_calls import Problem, ScoredRig, ScoreRequest, rig_key
+from ..processes import engine_calls, engine_process
+from ..processes.engine_calls import Problem, ScoredRig, ScoreRequest, rig_key
+from ..view import viewport
 from . import background_figures
 from .state import Baseline, LastRead, LiveScore, LiveState, live_state, states
 

@@ -11,9 +11,10 @@ from typing import NamedTuple
 
 import bpy
 
-from .. import document, viewport
+from .. import document
 from ..choices import BEFORE_MOVE
 from ..engine import advice, pe
+from ..view import viewport
 from . import background_figures
 from .state import Baseline, LiveState, live_state
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from ..engine import advice, pe
-from ..engine_calls import Problem
+from ..processes.engine_calls import Problem
 
 
 @dataclass(slots=True, eq=False)

@@ -11,9 +11,9 @@ from mathutils import Vector
 
 from .. import document
 from ..engine import catalog, kinds, pe
-from ..housing import measured_housing
 from ..properties import DEFAULT_MODEL, model_suggestions
 from ..sensor_kinds import Mount, mount_of
+from ..view.housing import measured_housing
 from .declared import INTERNAL, OperatorResult, operator
 from .surface_pose import is_part
 

@@ -12,14 +12,15 @@ import numpy as np
 from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix
 
-from .. import document, plates, viewport
+from .. import document
 from ..engine import pe
 from ..overlay import scheduler
 from ..overlay.batches import Batches
 from ..overlay.birds_eye import FROM_ABOVE, BirdsEye
 from ..overlay.layer_cache import shown_of
 from ..overlay.layers import BIRDS_EYE, WHOLE_RIG
-from ..plates import Plate, PlateSize, Room
+from ..view import plates, viewport
+from ..view.plates import Plate, PlateSize, Room
 from . import camera_pictures, sensor_pictures
 from .camera_pictures import NEAR_M, Exposure
 from .sensor_pictures import PictureSize

@@ -6,8 +6,9 @@ import bpy
 from bpy.props import EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from .. import document, where_map
+from .. import document
 from ..engine import advice, jobs, pe
+from ..queries import where_map
 from .declared import OperatorResult, Told, chosen_file, operator
 from .imports import BY_NAME, FORMAT_OR_NAME, rig_of_file
 from .jobs import JobRow, Task, begin, of_study

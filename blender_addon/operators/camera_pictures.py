@@ -14,9 +14,10 @@ import bpy
 import gpu
 from mathutils import Matrix
 
-from .. import document, viewport
+from .. import document
 from ..engine import pe
 from ..overlay import surroundings
+from ..view import viewport
 from . import sensor_pictures
 from .sensor_pictures import PictureSize, PictureView, ViewportPicture
 

@@ -5,11 +5,12 @@ from typing import Any
 
 import bpy
 
-from .. import plates, sensor_cache, viewport
+from ..caches import sensor_cache
 from ..engine import pe
-from ..plates import Plate, PlateSize, Room
 from ..sensor_kinds import row_of
-from ..viewport import DrawRegion
+from ..view import plates, viewport
+from ..view.plates import Plate, PlateSize, Room
+from ..view.viewport import DrawRegion
 from . import camera_pictures, sensor_pictures
 from .declared import declared
 from .sensor_pictures import PictureSize, has_room, sensor_of

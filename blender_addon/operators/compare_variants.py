@@ -7,11 +7,13 @@ from typing import Any
 import bpy
 from bpy.props import EnumProperty
 
-from .. import document, result_staleness, variant_pictures
+from .. import document
+from ..caches import result_staleness
 from ..engine import advice, pe, search
 from ..live import SENSE_ICONS
-from ..own_jobs import ComparedVariant, CompareJob, PendingVariant
 from ..panel_text import draw_label, worded
+from ..processes.own_jobs import ComparedVariant, CompareJob, PendingVariant
+from ..view import variant_pictures
 from .declared import INTERNAL, OperatorResult, Told, operator
 from .jobs import JobRow, Task
 from .variants import unless_variants

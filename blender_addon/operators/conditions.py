@@ -3,8 +3,9 @@
 import bpy
 from bpy.props import IntProperty
 
-from .. import document, film, signals
+from .. import document, signals
 from ..engine import motion, pe
+from ..view import film
 from .declared import chosen_file, operator
 from .exports import dialog
 from .rows import new_row, row_list, unless_selected

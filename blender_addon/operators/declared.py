@@ -12,8 +12,8 @@ import bpy
 
 from .. import signals
 from ..engine import pe, text
-from ..english import DEFERRED
 from ..panel_text import typeset
+from ..preferences.english import DEFERRED
 
 USER_ERRORS = (pe.InputError, MemoryError)
 """Errors that end an operator with one line: wrong input, and too little memory."""

@@ -4,7 +4,8 @@ import bpy
 from bpy.props import BoolProperty, StringProperty
 from mathutils import Matrix
 
-from .. import document, signals, vehicle_cache
+from .. import document, signals
+from ..caches import vehicle_cache
 from ..engine import advice, pe
 from .add_sensor import select_only
 from .declared import INTERNAL, Refused, Told, chosen_sensor, operator

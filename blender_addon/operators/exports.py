@@ -14,9 +14,10 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from .. import document, own_jobs
+from .. import document
 from ..engine import app, exchange, jobs, outputs, page, pe
-from ..own_jobs import ExportJob, WrittenFiles
+from ..processes import own_jobs
+from ..processes.own_jobs import ExportJob, WrittenFiles
 from . import running_job
 from .declared import Answer, OperatorResult, Stopped, Told, chosen_file, operator
 from .jobs import JobRow, Task, begin

@@ -12,7 +12,8 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from .. import document, signals, vehicle_cache
+from .. import document, signals
+from ..caches import vehicle_cache
 from ..engine import catalog, exchange, graphics, pe, search, studies
 from ..sensor_kinds import mount_of
 from .declared import INTERNAL, Told, chosen_file, operator

@@ -10,10 +10,13 @@ from typing import Any, ClassVar, NamedTuple
 
 import bpy
 
-from .. import diagnostics, document, engine_calls, result_staleness, signals, vehicle_cache
+from .. import document, signals
+from ..caches import result_staleness, vehicle_cache
 from ..engine import advice, jobs, pe
 from ..live import FinishedScore, live_state
 from ..panel_text import typeset
+from ..processes import engine_calls
+from ..queries import diagnostics
 from . import known_rigs, running_job
 from .declared import (
     INTERNAL,

@@ -5,8 +5,9 @@ import math
 
 import bpy
 
-from .. import engine_calls, engine_process, signals
+from .. import signals
 from ..engine import pe, scoring
+from ..processes import engine_calls, engine_process
 
 
 def request(scene: bpy.types.Scene, study: pe.Study, surroundings: str) -> None:

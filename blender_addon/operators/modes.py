@@ -8,8 +8,8 @@ from collections.abc import Iterable
 
 import bpy
 
-from .. import viewport
 from ..panel_text import draw_label
+from ..view import viewport
 
 TEXT_PX = 12
 PAD_PX = 6

@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from .. import vehicle_cache
+from ..caches import vehicle_cache
 from ..engine import geometry, pe
 from .declared import Refused, operator
 

@@ -4,12 +4,13 @@ from itertools import count
 
 import bpy
 
-from .. import document, vehicle_cache
+from .. import document
+from ..caches import vehicle_cache
 from ..choices import REGION_ITEMS
 from ..engine import catalog, kinds, pe, studies
 from ..properties import DEFAULT_REGION
 from ..sensor_kinds import own_kinds
-from ..view_settings import FITTED
+from ..view.view_settings import FITTED
 from .declared import Refused, operator
 from .rows import new_row, row_list
 

@@ -11,8 +11,8 @@ from mathutils import Matrix, Vector
 
 from .. import document
 from ..engine import catalog, kinds, pe
-from ..housing import measured_housing
 from ..sensor_kinds import Mount, mount_for
+from ..view.housing import measured_housing
 from . import modes, placement
 from .add_sensor import (
     MODEL,

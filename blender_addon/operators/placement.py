@@ -15,13 +15,15 @@ import numpy as np
 from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix
 
-from .. import document, engine_calls, engine_process, viewport
+from .. import document
 from ..choices import free_name
 from ..engine import catalog, graphics, kinds, pe
-from ..engine_calls import Gain
 from ..overlay.regions import box_edges
 from ..panel_text import draw_label
+from ..processes import engine_calls, engine_process
+from ..processes.engine_calls import Gain
 from ..sensor_kinds import mount_for
+from ..view import viewport
 from . import modes, running_job
 from .surface_pose import (
     MAX_STAND_OFF_M,

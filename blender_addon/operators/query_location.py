@@ -6,7 +6,8 @@ from typing import Any
 import bpy
 from bpy.props import FloatVectorProperty
 
-from .. import document, location_query
+from .. import document
+from ..queries import location_query
 from . import modes
 from .declared import OperatorResult, Unless, operator, report
 from .surface_pose import ViewUnderMouse, ray_of, view_under

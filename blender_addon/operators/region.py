@@ -6,8 +6,9 @@ import bpy
 from bpy.props import BoolProperty
 from mathutils import Vector
 
-from .. import document, signals, where_map
+from .. import document, signals
 from ..engine import advice, jobs, pe
+from ..queries import where_map
 from .declared import OperatorResult, Refused, chosen_sensor, operator
 from .edit_sensors import NAME
 from .jobs import JobRow, Task, begin, of_study

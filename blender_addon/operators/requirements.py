@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import bpy
 
-from .. import document, vehicle_cache
+from .. import document
+from ..caches import vehicle_cache
 from ..engine import requirements, studies, wording
 from ..overlay.layer_cache import shown_of
 from ..overlay.requirement_zones import VerdictShape

@@ -9,9 +9,11 @@ from typing import Any, cast
 
 import bpy
 
-from .. import best_so_far, engine_process, signals, viewport
+from .. import signals
 from ..engine import jobs
 from ..panel_text import draw_label, typeset
+from ..processes import engine_process
+from ..view import best_so_far, viewport
 from . import modes
 
 TOPIC = "job"

@@ -9,9 +9,10 @@ import numpy as np
 from gpu_extras.presets import draw_texture_2d
 from mathutils import Matrix
 
-from .. import document, viewport
+from .. import document
 from ..engine import catalog, pe
-from ..plates import PlateSize, Room
+from ..view import viewport
+from ..view.plates import PlateSize, Room
 
 TITLE_PX = 20.0
 PAD_PX = 6.0

@@ -7,8 +7,9 @@ from typing import Any
 import bpy
 from bpy.props import FloatVectorProperty, IntProperty, StringProperty
 
-from .. import document, where_map
+from .. import document
 from ..engine import jobs, pe
+from ..queries import where_map
 from .add_sensor import select_only
 from .declared import INTERNAL, OperatorResult, Refused, operator
 from .jobs import JobRow, Task, begin, of_study

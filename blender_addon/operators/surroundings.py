@@ -9,8 +9,11 @@ from typing import Any
 import bpy
 import numpy as np
 
-from .. import body_query, document, housing, vehicle_cache
+from .. import document
+from ..caches import vehicle_cache
 from ..engine import graphics, requirements
+from ..queries import body_query
+from ..view import housing
 from .declared import operator
 
 NAME = "Surroundings"

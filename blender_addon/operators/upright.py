@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from .. import sensor_cache
+from ..caches import sensor_cache
 from ..engine import catalog, pe
 from ..sensor_kinds import mount_for
 from .surface_pose import Stance, SurfaceSpot, vehicle_center

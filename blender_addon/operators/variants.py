@@ -7,9 +7,11 @@ from typing import Any
 import bpy
 from bpy.props import IntProperty
 
-from .. import diagnostics, document, result_staleness, signals
+from .. import document, signals
+from ..caches import result_staleness
 from ..choices import BEFORE_MOVE, free_name
 from ..engine import pe
+from ..queries import diagnostics
 from .declared import INTERNAL, UNDO, operator
 from .rows import row_list
 

@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import verification
+from ..preferences import verification
 from .declared import operator
 
 

@@ -2,8 +2,8 @@
 
 import bpy
 
-from .. import plates
-from ..plates import Plate, Room
+from ..view import plates
+from ..view.plates import Plate, Room
 from . import birds_eye, camera_pictures, camera_strip
 
 PLATE_NAME = "pictures"

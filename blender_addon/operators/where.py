@@ -6,10 +6,11 @@ from typing import Any
 import bpy
 from bpy.props import EnumProperty, IntProperty
 
-from .. import document, location_query, where_map
+from .. import document
 from ..engine import catalog, jobs, kinds, pe
-from ..housing import measured_housing
+from ..queries import location_query, where_map
 from ..sensor_kinds import mount_for
+from ..view.housing import measured_housing
 from .add_sensor import MODEL, new_sensor, select_only
 from .declared import INTERNAL, OperatorResult, Refused, operator
 from .jobs import JobRow, Task, begin, of_study

@@ -7,7 +7,7 @@ import gpu
 from gpu_extras.batch import batch_for_shader
 
 from ..engine import graphics
-from ..viewport import DrawRegion, line_shader, shader
+from ..view.viewport import DrawRegion, line_shader, shader
 
 THIN_PX = 1.0
 EDGE_PX = 2.0

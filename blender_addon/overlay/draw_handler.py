@@ -12,9 +12,13 @@ import gpu
 import numpy as np
 from mathutils import Matrix
 
-from .. import body_query, document, engine_process, plates, vehicle_cache, viewport
+from .. import document
+from ..caches import vehicle_cache
 from ..engine import graphics, pe
 from ..panel_text import is_simple, plain
+from ..processes import engine_process
+from ..queries import body_query
+from ..view import plates, viewport
 from . import labels, scheduler, strip, surroundings, wipe
 from .batches import Batches
 from .layer_cache import shown_of

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..engine import Floats, graphics, pe, sight
-from ..view_settings import WHOLE
+from ..view.view_settings import WHOLE
 
 if TYPE_CHECKING:
     from .layer_cache import LayerCache

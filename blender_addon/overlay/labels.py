@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import bpy
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 
-from .. import plates, viewport
 from ..engine import graphics
-from ..plates import Plate, PlateSize, Room
-from ..viewport import FAINT, INK, PLATE, SMALL, PlateBox
+from ..view import plates, viewport
+from ..view.plates import Plate, PlateSize, Room
+from ..view.viewport import FAINT, INK, PLATE, SMALL, PlateBox
 
 STRONG_SIZE = 12.5
 RISE = 10.0

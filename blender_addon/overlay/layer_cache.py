@@ -7,8 +7,8 @@ from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from .. import engine_calls
 from ..engine import graphics, pe, requirements, sight, text
+from ..processes import engine_calls
 from .request import SceneSensor, ViewRequest
 
 Sight = sight.Sight  # a cache has a method `sight`

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..engine import advice, engine_process, graphics, kinds, motion, pe, requirements
-from ..view_settings import ALL, BY_CHANNEL, BY_SENSOR, RIG, ViewSettings
+from ..view.view_settings import ALL, BY_CHANNEL, BY_SENSOR, RIG, ViewSettings
 from . import ground_layers, heatmap, regions
 from .annotations import (
     GHOST_PALETTE,

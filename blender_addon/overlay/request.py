@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..choices import FocusRegion, LimitBox
 from ..engine import graphics
-from ..view_settings import ALL, ViewSettings
+from ..view.view_settings import ALL, ViewSettings
 
 if TYPE_CHECKING:
     from ..engine import advice, jobs, motion, pe, requirements

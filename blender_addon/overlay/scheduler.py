@@ -9,8 +9,10 @@ from collections.abc import Hashable, Iterator, Mapping
 
 import bpy
 
-from .. import analysis_calls, engine_process, sensor_cache, viewport
+from ..caches import sensor_cache
 from ..engine import graphics, pe
+from ..processes import analysis_calls, engine_process
+from ..view import viewport
 from .layer_cache import ShownLayer, shown, shown_of
 from .layers import LAYERS, Layer
 from .request import ViewRequest

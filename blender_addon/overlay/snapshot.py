@@ -9,12 +9,15 @@ from typing import Any, NamedTuple
 import bpy
 import numpy as np
 
-from .. import best_so_far, document, location_query, sensor_cache, vehicle_cache, where_map
+from .. import document
+from ..caches import sensor_cache, vehicle_cache
 from ..choices import LimitBox
 from ..engine import graphics, pe, studies
-from ..engine_calls import rig_key
 from ..live import BEFORE_SEARCH, live_state, shown_score
-from ..view_settings import MIN_LENGTH_M, ViewSettings
+from ..processes.engine_calls import rig_key
+from ..queries import location_query, where_map
+from ..view import best_so_far
+from ..view.view_settings import MIN_LENGTH_M, ViewSettings
 from .annotations import MENDS
 from .layers import LAYERS
 from .request import MountFaces, SceneSensor, SteeredSensor, ViewRequest

@@ -1,9 +1,9 @@
 """The strip of a drive-by along the lower edge of the 3D view: AP over time, moments, a cursor."""
 
-from .. import plates, viewport
 from ..engine import graphics
-from ..plates import Plate, PlateSize, Room
-from ..viewport import FAINT, INK, PLATE, SMALL, PlateBox
+from ..view import plates, viewport
+from ..view.plates import Plate, PlateSize, Room
+from ..view.viewport import FAINT, INK, PLATE, SMALL, PlateBox
 from .batches import Batches
 
 ROW = 14.0

@@ -7,7 +7,7 @@ scene has (`operators.surroundings`), too.
 import gpu
 
 from ..engine import graphics, pe, text
-from ..viewport import DrawRegion
+from ..view.viewport import DrawRegion
 from .batches import Batches
 
 MAX_EYES = 16

@@ -7,8 +7,8 @@ import bpy
 import gpu
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 
-from .. import viewport
 from ..engine import graphics
+from ..view import viewport
 from .layers import OTHER_RIG
 
 DROP = 130.0

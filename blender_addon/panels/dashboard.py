@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from bpy.types import Context, PropertyGroup, Scene, UILayout
 
+from ..caches.sensor_cache import sensors as listed_sensors
 from ..document import NONE, keep_property, limit_property, limits_of, shown_state
 from ..engine import advice, scoring, search
 from ..live import (
@@ -25,7 +26,6 @@ from ..live import (
 )
 from ..operators import known_rigs, shown_verdicts
 from ..panel_text import draw_label, is_simple
-from ..sensor_cache import sensors as listed_sensors
 from .layout import columns, draw_sentence, room_px, shortened_to, text_px
 
 MET_ICONS = {True: "COLORSET_03_VEC", False: "ERROR"}

@@ -10,12 +10,12 @@ import blf
 import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 
+from ..caches.sensor_cache import sensors as listed_sensors
 from ..engine import advice
 from ..live import SAME, SENSE_ICONS
 from ..operators import FIX_LABELS, ROW_LISTS
 from ..panel_text import draw_label, is_simple, worded
 from ..properties import INDEX_OF, ROWS, DeclaredRow, declared_rows
-from ..sensor_cache import sensors as listed_sensors
 
 DrawPanel = Callable[[UILayout, PropertyGroup, Context], None]
 DrawHeader = Callable[[UILayout, Context], None]

@@ -3,12 +3,12 @@
 import bpy
 from bpy.types import Context, PropertyGroup, UILayout
 
-from .. import where_map
-from ..diagnostics import vehicle_line
+from ..caches.sensor_cache import sensors as listed_sensors
 from ..engine import advice
 from ..operators import offers, running_job
 from ..panel_text import draw_label, is_simple, typeset
-from ..sensor_cache import sensors as listed_sensors
+from ..queries import where_map
+from ..queries.diagnostics import vehicle_line
 from .dashboard import draw_dashboard, draw_result
 from .layout import columns, draw_declared, draw_sentence, is_empty, panel
 from .sensor_lists import draw_sensors

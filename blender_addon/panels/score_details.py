@@ -4,10 +4,10 @@ from collections.abc import Iterable
 
 from bpy.types import Context, PropertyGroup, UILayout
 
-from .. import body_query, location_query, where_map
-from ..diagnostics import explanation
 from ..operators import suggest
 from ..panel_text import draw_label, is_simple
+from ..queries import body_query, location_query, where_map
+from ..queries.diagnostics import explanation
 from .layout import BUTTON_PX, draw_sentence, draw_stale_mark, draw_warning, panel, section
 from .sensor_lists import draw_sensor_table
 

@@ -2,12 +2,12 @@
 
 from bpy.types import Context, Object, PropertyGroup, UILayout
 
-from .. import where_map
 from ..document import holder_of, in_surroundings
 from ..engine import search
 from ..operators import shown_way
 from ..panel_text import draw_label, is_simple, worded
 from ..properties import AXIS_LABELS, measured_distances
+from ..queries import where_map
 from ..sensor_kinds import has_view
 from .layout import draw_declared, draw_sentence, panel, section
 

@@ -4,10 +4,10 @@ from typing import Any
 
 from bpy.types import Context, Object, PropertyGroup, Scene, UILayout
 
-from ..diagnostics import explanation
+from ..caches.sensor_cache import sensors as listed_sensors
 from ..document import figures_of_sensor, sensor_loss
 from ..panel_text import draw_label, is_simple
-from ..sensor_cache import sensors as listed_sensors
+from ..queries.diagnostics import explanation
 from .layout import ICON_PX, fitted, row_list
 
 MODEL_FROM = 0.64  # Where the model begins, in shares of the room for name and model

@@ -7,7 +7,7 @@ import bpy
 from bpy.props import PointerProperty
 
 from ..sensor_kinds import DEFAULT_MODEL
-from ..view_settings import ViewSettings
+from ..view.view_settings import ViewSettings
 from .callbacks import model_suggestions
 from .declared import ROWS, DeclaredRow, declared_rows, rows_of
 from .list_rows import (

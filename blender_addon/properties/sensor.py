@@ -12,7 +12,8 @@ import bpy
 import numpy as np
 from bpy.types import Context, Object, PropertyGroup
 
-from .. import document, edge_cache
+from .. import document
+from ..caches import edge_cache
 from ..choices import BODY_ITEMS
 from ..engine import catalog, graphics, pe, search, studies
 from ..sensor_kinds import DEFAULT_MODEL

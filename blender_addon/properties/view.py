@@ -6,7 +6,7 @@ from bpy.types import Context, PropertyGroup
 
 from ..choices import BEFORE_MOVE
 from ..engine import pe
-from ..view_settings import LiveSettings, ViewSettings
+from ..view.view_settings import LiveSettings, ViewSettings
 from .callbacks import redraw, switched
 from .declared import group_of
 from .fields import menu

@@ -30,7 +30,7 @@ def blender_s_own_words():
 
 def sent(content):
     """Return content as it comes out of the engine's process: pickled, but for shared objects."""
-    from blender_addon import engine_process
+    from blender_addon.processes import engine_process
     from pe_tools.engine_process.messages import packed, unpacked
 
     shared = {}

@@ -12,7 +12,13 @@ from tests.engine.source_trees import imported, nodes_of, tree_of
 
 ROOT = Path(blender_addon.__file__).parent
 PACKAGE = "blender_addon"
-CALLS = {"analysis_calls", "engine_calls", "own_jobs", "sensor_kinds", "view_settings"}
+CALLS = {
+    "processes.analysis_calls",
+    "processes.engine_calls",
+    "processes.own_jobs",
+    "sensor_kinds",
+    "view.view_settings",
+}
 """What the engine's process runs."""
 ARRAYS = CALLS | {
     f"overlay.{name}"
@@ -33,61 +39,33 @@ engine:
 signals:
 choices:
 sensor_kinds: engine
-view_settings: choices engine
-english:
-panel_text: choices
-own_catalog: engine
-edge_cache: document engine vehicle_cache
-properties: document choices edge_cache engine sensor_kinds signals view_settings
-document: choices engine sensor_kinds
-sensor_cache: document
-engine_calls: engine
-analysis_calls: engine engine_calls overlay
-own_jobs: engine
-film: document engine
-engine_process: analysis_calls engine overlay
-vehicle_cache: document engine
-change_events: sensor_cache signals vehicle_cache
-consistency: document sensor_cache
-viewport: panel_text
-plates: engine viewport
-result_staleness: document sensor_cache signals vehicle_cache
-diagnostics: analysis_calls document engine engine_process sensor_cache signals vehicle_cache
-location_query: document engine engine_process sensor_cache signals vehicle_cache
-body_query: analysis_calls choices document engine engine_process sensor_cache vehicle_cache
-    viewport
-where_map: document engine signals
-housing: engine sensor_cache sensor_kinds
 library:
-verification: engine engine_process signals
-preferences_panel: library own_catalog panel_text properties signals verification
-live: analysis_calls document change_events choices engine engine_calls engine_process panel_text
-    plates sensor_cache signals vehicle_cache viewport
-best_so_far: engine
-variant_pictures:
-overlay: choices engine engine_calls plates view_settings viewport
-overlay.snapshot: best_so_far document choices engine engine_calls live location_query overlay
-    sensor_cache vehicle_cache view_settings where_map
-overlay.scheduler: analysis_calls engine engine_process overlay overlay.snapshot sensor_cache
-    viewport
-overlay.surroundings: engine overlay viewport
-overlay.draw_handler: body_query document engine engine_process overlay overlay.scheduler
-    overlay.surroundings panel_text plates vehicle_cache viewport
-operators: best_so_far body_query document choices diagnostics engine engine_calls engine_process
-    english film housing library live location_query overlay overlay.scheduler
-    overlay.surroundings own_jobs panel_text plates properties result_staleness sensor_cache
-    sensor_kinds signals variant_pictures vehicle_cache verification view_settings viewport
-    where_map
-panels: body_query document choices diagnostics engine live location_query operators panel_text
-    properties sensor_cache sensor_kinds where_map
-commands: document engine film result_staleness
-wiring: body_query document change_events consistency diagnostics engine_process housing live
-    location_query operators overlay.draw_handler overlay.scheduler result_staleness sensor_cache
-    signals variant_pictures vehicle_cache viewport where_map
+panel_text: choices
+document: choices engine sensor_kinds
+processes.engine_calls: engine
+caches: document engine signals
+view: caches choices document engine panel_text sensor_kinds
+properties: caches choices document engine sensor_kinds signals view
+overlay: choices engine processes.engine_calls view
+processes: engine overlay processes.engine_calls
+queries: caches choices document engine processes signals view
+preferences: engine library panel_text processes properties signals
+live: caches choices document engine panel_text processes processes.engine_calls signals view
+overlay.snapshot: caches choices document engine live overlay processes.engine_calls queries view
+overlay.scheduler: caches engine overlay overlay.snapshot processes view
+overlay.surroundings: engine overlay view
+overlay.draw_handler: caches document engine overlay overlay.scheduler overlay.surroundings
+    panel_text processes queries view
+operators: caches choices document engine library live overlay overlay.scheduler
+    overlay.surroundings panel_text preferences processes processes.engine_calls properties queries
+    sensor_kinds signals view
+panels: caches choices document engine live operators panel_text properties queries sensor_kinds
+commands: caches document engine view
+wiring: caches document live operators overlay.draw_handler overlay.scheduler processes queries
+    signals view
 __main__: __init__ commands engine
-__init__: best_so_far body_query change_events commands consistency diagnostics engine_process
-    english library live location_query operators overlay.draw_handler panels preferences_panel
-    properties sensor_cache variant_pictures vehicle_cache where_map wiring
+__init__: caches commands library live operators overlay.draw_handler panels preferences processes
+    properties queries view wiring
 """
 """What each module or package may import. What stands below a package is part of it, unless it has
 a line of its own."""
@@ -164,11 +142,11 @@ def test_imports_are_seen_wherever_they_stand(tmp_path):
     path = tmp_path / PACKAGE / "operators" / "job.py"
     path.parent.mkdir(parents=True)
     path.write_text(
-        "from .. import result_staleness as s, document\n"
+        "from .. import signals as s, document\n"
         "from ..overlay import draw_handler\n"
         "def f():\n    from . import running_job\n    import blender_addon.overlay.labels\n"
     )
-    expected = ["result_staleness", "document", "overlay.draw_handler"]
+    expected = ["signals", "document", "overlay.draw_handler"]
     expected += ["operators.running_job", "overlay.labels"]
     assert list(imported_files(path, tmp_path)) == expected
     face = path.with_name("__init__.py")

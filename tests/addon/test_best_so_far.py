@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import bpy
 import pytest
 
-from blender_addon import best_so_far
 from blender_addon.engine import jobs, pe, search
 from blender_addon.operators.running_job import RunningJob
 from blender_addon.panels import search_panels
+from blender_addon.view import best_so_far
 from tests.addon import layouts, scenes
 
 

@@ -3,7 +3,8 @@
 import bpy
 import pytest
 
-from blender_addon import change_events, signals, wiring
+from blender_addon import signals, wiring
+from blender_addon.caches import change_events
 from tests.addon import scenes
 
 MOVED = "moved"

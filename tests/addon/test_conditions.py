@@ -7,7 +7,8 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import document, result_staleness, vehicle_cache
+from blender_addon import document
+from blender_addon.caches import result_staleness, vehicle_cache
 from tests.addon import scenes
 from tests.engine import shapes
 

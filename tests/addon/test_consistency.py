@@ -3,7 +3,8 @@
 import bpy
 import pytest
 
-from blender_addon import consistency, document, sensor_cache
+from blender_addon import document
+from blender_addon.caches import consistency, sensor_cache
 
 
 @pytest.fixture

@@ -7,10 +7,11 @@ import re
 import bpy
 import pytest
 
-from blender_addon import document, engine_calls
+from blender_addon import document
 from blender_addon.engine import jobs, pe, search
 from blender_addon.operators import known_rigs
 from blender_addon.panels import CLASSES, dashboard, layout, main
+from blender_addon.processes import engine_calls
 from tests.addon import layouts, scenes
 
 TERMS = re.compile(r"\bnats\b|\bprior\b|\bfusion\b|entropy", re.IGNORECASE)

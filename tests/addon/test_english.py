@@ -6,8 +6,8 @@ from pathlib import Path
 import bpy
 
 import blender_addon
-from blender_addon import english
-from blender_addon.english import CONTEXT
+from blender_addon.preferences import english
+from blender_addon.preferences.english import CONTEXT
 
 WITH_CONTEXT = {"operator", "prop", "operator_menu_enum", "prop_search", "prop_menu_enum"}
 """What is drawn of a type or property: a text that is written there is looked up in its context."""

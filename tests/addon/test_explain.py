@@ -6,8 +6,9 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import diagnostics, document, location_query
+from blender_addon import document
 from blender_addon.engine import advice
+from blender_addon.queries import diagnostics, location_query
 from tests.addon import scenes
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from mathutils import Matrix
 
-from blender_addon import diagnostics
 from blender_addon.panels import CLASSES, main
+from blender_addon.queries import diagnostics
 from tests.addon import scenes
 from tests.addon.layouts import Window, drawn
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import pe_tools as pt
-from blender_addon import where_map
 from blender_addon.engine import jobs, pe, search
+from blender_addon.queries import where_map
 from tests.addon import scenes
 
 

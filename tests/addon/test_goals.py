@@ -4,7 +4,8 @@ import bpy
 import pytest
 
 import pe_core as pe
-from blender_addon import diagnostics, document
+from blender_addon import document
+from blender_addon.queries import diagnostics
 from pe_core.search import Goals
 from pe_tools.advice import flatness
 from pe_tools.jobs import FrontJob, front_dict

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from mathutils import Vector
 
-from blender_addon import viewport
 from blender_addon.engine import catalog
 from blender_addon.operators import place_sensor, placement, surface_pose
 from blender_addon.operators.surface_pose import SurfaceSpot
+from blender_addon.view import viewport
 from tests.addon import scenes
 
 ROOF = SurfaceSpot(Vector((-0.3, 0.0, 1.5)), Vector((0.0, 0.0, 1.0)), "cabin")

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from blender_addon import housing as surfaces
-from blender_addon.housing import KEY, model_surface
+from blender_addon.view import housing as surfaces
+from blender_addon.view.housing import KEY, model_surface
 from tests.addon import scenes
 
 MODELS = ["Pandar64", "Velodyne HDL-32E", "Hesai QT128C2X", "Hesai AT128E2X", "Camera 60 deg"]

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import pe_tools as pt
-from blender_addon import document, result_staleness
+from blender_addon import document
+from blender_addon.caches import result_staleness
 from blender_addon.engine import jobs as pe_jobs
 from blender_addon.engine import pe
 from blender_addon.operators import declared, jobs, running_job

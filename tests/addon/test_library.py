@@ -8,15 +8,10 @@ import pytest
 
 import blender_addon
 import pe_core as pe
-from blender_addon import (
-    library,
-    operators,
-    own_catalog,
-    preferences_panel,
-    sensor_cache,
-    verification,
-)
-from blender_addon.housing import KEY
+from blender_addon import library, operators
+from blender_addon.caches import sensor_cache
+from blender_addon.preferences import own_catalog, preferences_panel, verification
+from blender_addon.view.housing import KEY
 from tests.addon import scenes
 
 BLEND = library.FOLDER / "sensors.blend"

@@ -6,7 +6,8 @@ from dataclasses import replace
 import bpy
 import pytest
 
-from blender_addon import change_events, document, engine_calls, engine_process, result_staleness
+from blender_addon import document
+from blender_addon.caches import change_events, result_staleness
 from blender_addon.live import (
     AT_REST,
     MOVING,
@@ -22,6 +23,7 @@ from blender_addon.live import (
 from blender_addon.overlay import snapshot
 from blender_addon.panels import main
 from blender_addon.panels.dashboard import HEADS
+from blender_addon.processes import engine_calls, engine_process
 from pe_core.sensors.kernels import DefinedSample
 from tests.addon import layouts, scenes
 

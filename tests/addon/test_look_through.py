@@ -4,7 +4,8 @@ import bpy
 import pytest
 from mathutils import Vector
 
-from blender_addon import consistency, document
+from blender_addon import document
+from blender_addon.caches import consistency
 from blender_addon.operators import look_through
 from tests.addon import scenes
 

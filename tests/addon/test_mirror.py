@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 import pe_core as pe
-from blender_addon import consistency, document
+from blender_addon import document
+from blender_addon.caches import consistency
 from tests.addon import scenes
 
 PLACE = {"location": (1.2, 0.7, 0.9), "rotation_euler": (0.1, 0.2, 0.7)}

@@ -6,10 +6,12 @@ from types import SimpleNamespace
 import bpy
 import pytest
 
-from blender_addon import document, engine_process, vehicle_cache
+from blender_addon import document
+from blender_addon.caches import vehicle_cache
 from blender_addon.engine import graphics, pe, sight
 from blender_addon.overlay import draw_handler, scheduler, surroundings
 from blender_addon.overlay.layer_cache import shown_of
+from blender_addon.processes import engine_process
 from tests.addon import scenes
 
 

@@ -4,11 +4,12 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import analysis_calls, document, engine_process, signals
+from blender_addon import document, signals
 from blender_addon.engine import graphics, sight
 from blender_addon.live import state
 from blender_addon.overlay import draw_handler, ground_layers, layers, scheduler
 from blender_addon.overlay.layer_cache import shown, shown_of
+from blender_addon.processes import analysis_calls, engine_process
 from tests.addon import scenes
 from tests.thorough import pairs
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from mathutils import Vector
 
-from blender_addon import engine_calls
 from blender_addon.engine import pe
 from blender_addon.operators import placement, surface_pose
+from blender_addon.processes import engine_calls
 from blender_addon.sensor_kinds import mount_for
 from pe_core.scoring import paired_error
 from tests.addon import scenes

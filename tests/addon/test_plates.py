@@ -5,13 +5,13 @@ from types import SimpleNamespace
 
 import pytest
 
-from blender_addon import plates, viewport
 from blender_addon.engine import graphics
 from blender_addon.live import readout
 from blender_addon.operators import camera_strip, sensor_pictures
 from blender_addon.overlay import labels, strip
-from blender_addon.plates import Plate, PlateSize, Room
-from blender_addon.viewport import FAINT, INK
+from blender_addon.view import plates, viewport
+from blender_addon.view.plates import Plate, PlateSize, Room
+from blender_addon.view.viewport import FAINT, INK
 
 VIEWS = [(700, 500), (1000, 640), (1280, 720), (1600, 900), (2560, 1440), (500, 1200)]
 SIDEBARS = [0.0, 200.0, 330.0]

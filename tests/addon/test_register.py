@@ -9,9 +9,11 @@ import bpy
 import pytest
 
 import blender_addon
-from blender_addon import change_events, sensor_cache, signals, viewport, wiring
+from blender_addon import signals, wiring
+from blender_addon.caches import change_events, sensor_cache
 from blender_addon.operators import running_job
 from blender_addon.overlay import scheduler
+from blender_addon.view import viewport
 
 ROOT = Path(blender_addon.__file__).parents[1]
 ROUNDS = 3

@@ -4,11 +4,12 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import analysis_calls, document
+from blender_addon import document
 from blender_addon.operators import jobs
 from blender_addon.operators import requirements as operators
 from blender_addon.overlay.requirement_zones import MET, NOT_MET
 from blender_addon.overlay.snapshot import SnapshotReader
+from blender_addon.processes import analysis_calls
 from pe_core.study import requirement_file
 from tests.addon import scenes
 

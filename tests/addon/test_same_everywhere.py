@@ -8,8 +8,9 @@ import json
 import bpy
 import pytest
 
-from blender_addon import engine_calls, result_staleness
+from blender_addon.caches import result_staleness
 from blender_addon.live import session
+from blender_addon.processes import engine_calls
 from tests.addon import scenes
 from tests.addon.command_line import pe_here, run_here
 

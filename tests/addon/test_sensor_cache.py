@@ -5,10 +5,10 @@ import sys
 import bpy
 import pytest
 
-from blender_addon import result_staleness, sensor_cache
+from blender_addon.caches import result_staleness, sensor_cache
+from blender_addon.caches.sensor_cache import sensors as listed_sensors
 from blender_addon.document.rig import sensor_objects
 from blender_addon.overlay.snapshot import SnapshotReader
-from blender_addon.sensor_cache import sensors as listed_sensors
 
 OTHERS = 2000
 

@@ -7,7 +7,8 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import consistency, document
+from blender_addon import document
+from blender_addon.caches import consistency
 from blender_addon.engine import graphics
 from tests.addon import scenes
 

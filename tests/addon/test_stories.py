@@ -10,10 +10,12 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import consistency, diagnostics, document, result_staleness
+from blender_addon import document
+from blender_addon.caches import consistency, result_staleness
 from blender_addon.engine import exchange, jobs, outputs, page, pe, search, studies, text
 from blender_addon.operators import compare_variants
 from blender_addon.panels import main
+from blender_addon.queries import diagnostics
 from tests.addon import layouts, scenes
 from tests.engine.processes import finished
 

@@ -5,9 +5,10 @@ import json
 import bpy
 import pytest
 
-from blender_addon import location_query, panels, where_map
+from blender_addon import panels
 from blender_addon.engine import jobs
 from blender_addon.panels.score_details import draw_offers
+from blender_addon.queries import location_query, where_map
 from tests.addon import scenes
 from tests.addon.command_line import pe_here, run_here
 from tests.addon.layouts import Layout, Window, drawn

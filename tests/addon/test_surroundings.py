@@ -4,8 +4,8 @@ import json
 
 import bpy
 
-from blender_addon import body_query
 from blender_addon.panels.score_details import surroundings
+from blender_addon.queries import body_query
 from tests.addon import scenes
 from tests.addon.command_line import pe_here, run_here
 from tests.addon.layouts import Window, drawn

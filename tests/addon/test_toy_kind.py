@@ -11,9 +11,10 @@ import pytest
 
 import blender_addon
 import pe_core as pe
-from blender_addon import document, housing, panels, properties, sensor_kinds
+from blender_addon import document, panels, properties, sensor_kinds
 from blender_addon.engine import advice
 from blender_addon.operators import models, offers
+from blender_addon.view import housing
 from pe_core import catalog
 from pe_core import sensors as kinds
 from tests.addon import scenes

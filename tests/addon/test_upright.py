@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from mathutils import Matrix, Vector
 
-from blender_addon.housing import housing_mesh
 from blender_addon.operators import upright
+from blender_addon.view.housing import housing_mesh
 
 TAIL = Vector((-2.0, 0.3, 0.6))
 

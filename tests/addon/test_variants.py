@@ -9,9 +9,11 @@ import bpy
 import numpy as np
 import pytest
 
-from blender_addon import diagnostics, document, result_staleness
+from blender_addon import document
+from blender_addon.caches import result_staleness
 from blender_addon.engine import advice
 from blender_addon.operators import compare_variants
+from blender_addon.queries import diagnostics
 from tests.addon import scenes
 from tests.addon.layouts import Layout
 

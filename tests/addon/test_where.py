@@ -4,8 +4,8 @@ import json
 
 import bpy
 
-from blender_addon import where_map
 from blender_addon.engine import catalog, jobs, pe
+from blender_addon.queries import where_map
 from tests.addon import scenes
 from tests.addon.command_line import pe_here, run_here
 

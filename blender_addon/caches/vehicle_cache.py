@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import bpy
 
-from . import document
-from .engine import pe
+from .. import document
+from ..engine import pe
 
 
 class CachedVehicle(NamedTuple):

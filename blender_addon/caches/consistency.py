@@ -8,7 +8,8 @@ written.
 
 import bpy
 
-from . import document, sensor_cache
+from .. import document
+from . import sensor_cache
 
 TOLD_S = 8.0  # How long the status bar says so
 

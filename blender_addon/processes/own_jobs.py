@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from .engine import advice, exchange, graphics, jobs, outputs, page, pe
+from ..engine import advice, exchange, graphics, jobs, outputs, page, pe
 
 OnProgress = Callable[[float], None]
 SCORED_SHARE = 0.25

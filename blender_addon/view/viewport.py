@@ -15,7 +15,7 @@ import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
 
-from .panel_text import typeset
+from ..panel_text import typeset
 
 Rgba = tuple[float, float, float, float]
 PlateBox = tuple[float, float, float, float]

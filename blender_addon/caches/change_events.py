@@ -10,7 +10,8 @@ from collections.abc import Hashable
 
 import bpy
 
-from . import sensor_cache, signals, vehicle_cache
+from .. import signals
+from . import sensor_cache, vehicle_cache
 
 IDLE_S = 0.25  # How long nothing has to move until the scene is idle
 

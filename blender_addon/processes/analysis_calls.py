@@ -5,12 +5,12 @@ from collections.abc import Generator, Sequence
 from dataclasses import replace
 from typing import Any
 
+from ..engine import advice, graphics, pe, sight, text
+from ..overlay.layer_cache import LayerCache
+from ..overlay.layers import LAYERS, ShapeSteps
+from ..overlay.request import ViewRequest
 from . import engine_calls
-from .engine import advice, graphics, pe, sight, text
 from .engine_calls import Problem
-from .overlay.layer_cache import LayerCache
-from .overlay.layers import LAYERS, ShapeSteps
-from .overlay.request import ViewRequest
 
 _sight: text.RecentCache[sight.Sight] = text.RecentCache()
 """By the problem's key."""

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from . import sensor_cache
-from .engine import Floats, catalog, pe
-from .sensor_kinds import row_of
+from ..caches import sensor_cache
+from ..engine import Floats, catalog, pe
+from ..sensor_kinds import row_of
 
 BODY, TRIM, GLASS, MARK = range(4)
 """What a face is made of."""

@@ -12,8 +12,8 @@ import bpy
 import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 
+from ..engine import Floats, graphics
 from . import viewport
-from .engine import Floats, graphics
 from .viewport import PlateBox
 
 MAX_SHARE = 0.25

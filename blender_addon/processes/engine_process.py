@@ -11,9 +11,9 @@ from typing import Any
 
 import bpy
 
+from ..engine import advice, catalog, engine_process, jobs, kinds, pe
+from ..overlay.request import ViewRequest
 from . import analysis_calls
-from .engine import advice, catalog, engine_process, jobs, kinds, pe
-from .overlay.request import ViewRequest
 
 FOLLOWS_MOUSE = engine_process.FOLLOWS_MOUSE
 BEHIND = engine_process.BEHIND
@@ -25,7 +25,8 @@ LIVE_SCORE = "live score of "
 OVERLAY = "overlay "
 """How topics begin. Layers are delivered while a view is drawn, as they write nothing into
 Blender's data; a score is not, as the sidebar has been drawn by then."""
-_PACKAGES = (__package__, f"{__package__}.overlay")
+ADDON = __package__.rpartition(".")[0]
+_PACKAGES = (__package__, f"{ADDON}.overlay")
 
 
 def shared_types() -> dict[type, int]:

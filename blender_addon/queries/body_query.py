@@ -8,9 +8,12 @@ import contextlib
 import bpy
 from mathutils import Vector
 
-from . import analysis_calls, document, engine_process, sensor_cache, vehicle_cache, viewport
-from .choices import NO_BODY
-from .engine import advice, graphics, pe, requirements
+from .. import document
+from ..caches import sensor_cache, vehicle_cache
+from ..choices import NO_BODY
+from ..engine import advice, graphics, pe, requirements
+from ..processes import analysis_calls, engine_process
+from ..view import viewport
 
 TOPIC = f"{engine_process.OVERLAY}test bodies"
 """As a layer of the view: what has been found is taken before the view is drawn."""

@@ -5,8 +5,9 @@ import contextlib
 
 import bpy
 
-from . import document, vehicle_cache
-from .engine import pe, studies, text
+from .. import document
+from ..engine import pe, studies, text
+from . import vehicle_cache
 
 _cached = text.RecentCache[studies.VehicleEdges]()
 

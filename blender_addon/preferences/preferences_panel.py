@@ -2,10 +2,11 @@
 
 import bpy
 
-from . import library, own_catalog, signals, verification
-from .library import stored
-from .panel_text import draw_label
-from .properties import fields
+from .. import library, signals
+from ..library import stored
+from ..panel_text import draw_label
+from ..properties import fields
+from . import own_catalog, verification
 
 
 def show_or_hide(preferences: bpy.types.AddonPreferences, _context: bpy.types.Context) -> None:
@@ -27,7 +28,7 @@ def redraw(_preferences: bpy.types.AddonPreferences, _context: bpy.types.Context
 class PE_Preferences(bpy.types.AddonPreferences):
     """Preferences of the extension"""
 
-    bl_idname = __package__
+    bl_idname = library.ADDON
 
     show_library: fields.switch(
         "Sensors in the Asset Browser",

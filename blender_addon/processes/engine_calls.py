@@ -9,7 +9,7 @@ from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from .engine import catalog, pe, requirements, scoring, text
+from ..engine import catalog, pe, requirements, scoring, text
 
 SAMPLES = 32_768
 """Voxels that a live score evaluates: an error of 0.02 nats on the sedan, 10 ms a move of a LiDAR.

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import bpy
 
-from . import document, signals
-from .engine import advice, jobs, studies
+from .. import document, signals
+from ..engine import advice, jobs, studies
 
 
 class Mended(NamedTuple):

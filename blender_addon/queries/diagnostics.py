@@ -11,8 +11,10 @@ from typing import NamedTuple
 
 import bpy
 
-from . import analysis_calls, document, engine_process, sensor_cache, signals, vehicle_cache
-from .engine import advice, geometry, jobs, pe
+from .. import document, signals
+from ..caches import sensor_cache, vehicle_cache
+from ..engine import advice, geometry, jobs, pe
+from ..processes import analysis_calls, engine_process
 
 IDLE_DELAY_S = 1.0  # How long the scene has to be idle until the checks run
 WARNINGS = "warnings"

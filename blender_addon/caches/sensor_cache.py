@@ -7,7 +7,7 @@ sensors themselves (`document.sensor_objects`).
 
 import bpy
 
-from . import document
+from .. import document
 
 _cache: dict[str, list[bpy.types.Object]] = {}
 """Sensors by the scene's name. Objects are held until the next change only; a lookup by name would

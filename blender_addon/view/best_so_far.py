@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .engine import pe
+    from ..engine import pe
 
 searches: "dict[str, tuple[pe.Sensor, ...]]" = {}
 """Sensors of the best placement by the scene's name; none while that is the start."""

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import bpy
 
-from .engine import catalog, pe
+from ..engine import catalog, pe
 
 problem = ""  # Why the file was not loaded, in one line; empty where it was
 _names: list[str] = []

@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import bpy
 
-from . import document, sensor_cache, signals, vehicle_cache
+from .. import document, signals
+from . import sensor_cache, vehicle_cache
 
 
 class LastDrawn(NamedTuple):

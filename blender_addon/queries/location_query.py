@@ -8,8 +8,10 @@ from typing import NamedTuple
 
 import bpy
 
-from . import document, engine_process, sensor_cache, signals, vehicle_cache
-from .engine import advice, pe
+from .. import document, signals
+from ..caches import sensor_cache, vehicle_cache
+from ..engine import advice, pe
+from ..processes import engine_process
 
 TOPIC = "place"
 QueriedPoint = tuple[float, float, float]

@@ -6,8 +6,8 @@ A layer's settings stand below its switch, `show_` and its name. See `pe_core.ba
 from dataclasses import dataclass
 from typing import Any
 
-from .choices import BEFORE_MOVE
-from .engine import studies
+from ..choices import BEFORE_MOVE
+from ..engine import studies
 
 DEFAULT_CLASS = "pedestrian"
 AVERAGE = "AVERAGE"

@@ -1,7 +1,8 @@
 """The engine held to its golden cases by its own process: what the preferences show of it."""
 
-from . import engine_process, signals
-from .engine import verify
+from .. import signals
+from ..engine import verify
+from ..processes import engine_process
 
 TOPIC = "verification"
 _lines: list[str] = []

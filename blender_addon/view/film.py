@@ -16,8 +16,8 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from . import document
-from .engine import Floats, graphics, motion, pe, text
+from .. import document
+from ..engine import Floats, graphics, motion, pe, text
 
 WEBM = ".webm"
 FORMATS = {WEBM: ("WEBM", "WEBM"), ".mp4": ("MPEG4", "H264")}

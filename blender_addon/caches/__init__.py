@@ -1,0 +1,1 @@
+"""What is read from a scene once a change, and who hears of the change."""

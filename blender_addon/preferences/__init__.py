@@ -1,0 +1,1 @@
+"""The extension's preferences: own sensors, verification, English names."""

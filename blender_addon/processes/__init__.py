@@ -1,0 +1,1 @@
+"""The engine's process: requests, what it runs without Blender, and the jobs of a scene."""

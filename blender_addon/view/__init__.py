@@ -1,0 +1,1 @@
+"""What all drawing shares, and what is drawn as objects and pictures."""

@@ -20,7 +20,7 @@ from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
 from ..field_of_view import count_by_part
 from ..kernels import Occlusion
-from .definition import beam_directions, without_zeros
+from .definition import beam_axes, beam_directions, without_zeros
 from .lattice import lattice_of
 from .model import lidar_of
 from .occlusion import occlusion_candidates
@@ -77,18 +77,22 @@ class RotatedBeams:
 
     sensor: Sensor
 
-    @cached_property
+    @property
     def directions(self) -> Floats:
         """(B, 3) unit directions, ground frame."""
-        return beam_directions(self.sensor)
+        return np.stack(self._axes, axis=-1)
+
+    @cached_property
+    def _axes(self) -> list[Floats]:
+        return beam_axes(self.sensor)
 
     @cached_property
     def _components(self) -> list[Floats]:
-        return [np.ascontiguousarray(w) for w in without_zeros(self.directions).T]
+        return [without_zeros(w) for w in self._axes]
 
     def take(self, beams: Ints) -> Floats:
         """Return the unit directions (N, 3) of the beams with these indices (N,)."""
-        return self.directions[beams]
+        return np.stack([np.take(w, beams) for w in self._axes], axis=-1)
 
     def components(self, beams: Ints) -> list[Floats]:
         """Return the directions of beams (N,) as three arrays (N,), one an axis, without zeros.

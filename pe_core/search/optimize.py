@@ -13,8 +13,9 @@ from ..scoring import RigEvaluator
 from .journal import BATCH, Journal
 from .methods import METHODS, Given, Question, checked_method
 from .methods.method import Answered, QuestionStream
-from .objective import Objective, Value, as_objective
+from .objective import Objective, Value
 from .parametrization import Candidate, Parametrization, feasible_start
+from .race import as_objective
 from .search_space import Schedule, SearchSpace
 
 ExecutorSource = Callable[[], Executor | None]
@@ -204,7 +205,7 @@ def _evaluated(
             question.cutoff,
             executor,
             level=question.level,
-            rival=question.rival,
+            leader=question.leader,
         )
 
 

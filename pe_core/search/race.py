@@ -1,4 +1,4 @@
-"""Races: a candidate that is surely worse than its rival is not evaluated on all voxels.
+"""Races: a candidate that is surely worse than the leader is not evaluated on all voxels.
 
 Both are evaluated on the first voxels of the common sample. A difference on the same voxels has a
 far smaller error than either entropy, as most voxels differ little. Only a candidate that is not
@@ -13,12 +13,14 @@ racing algorithm for configuring metaheuristics, 2002.
 """
 
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from ..base.errors import InputError
 from ..base.values import rounded
 from ..scene.rig import Rig
 from ..scoring import Evaluator, RigEvaluator
 from ..scoring.score import standard_error, unseen_error
+from .objective import Objective
 
 SURE_ERRORS = 3.0
 """From so many standard errors on a candidate is surely worse."""
@@ -40,12 +42,14 @@ class Rise(NamedTuple):
         return self.nats - spare > SURE_ERRORS * self.error
 
 
-def rise_between(evaluator: RigEvaluator, rival: Rig, rig: Rig) -> Rise:
-    """Return how much higher the entropy of a rig is than that of its rival, on a sample."""
-    rigs = [rival, rig]  # the rival first: it stays the same, so it is measured once
+def rise_between(evaluator: RigEvaluator, leader: Rig, rig: Rig) -> Rise:
+    """Return how much higher the entropy of a rig is than that of the leader, on a sample."""
+    rigs = [leader, rig]  # the leader first: it stays the same, so it is measured once
     before, after = evaluator.entropies(rigs)
-    of_rival, of_rig = evaluator.residuals(rigs)
-    error = max(standard_error(of_rig - of_rival), unseen_error(len(rig.groups), evaluator.samples))
+    of_leader, of_rig = evaluator.residuals(rigs)
+    error = max(
+        standard_error(of_rig - of_leader), unseen_error(len(rig.groups), evaluator.samples)
+    )
     return Rise(rounded(after - before), error)
 
 
@@ -67,7 +71,28 @@ class RacedEntropy:
     def _first_voxels(self) -> Evaluator:
         return self._evaluator.on_first(self._evaluator.samples // RACED_PART)
 
-    def loses(self, rig: Rig, rival: Rig, spare: float) -> bool:
-        """Whether the entropy of a rig is surely higher than that of its rival, by more than
+    def loses(self, rig: Rig, leader: Rig, spare: float) -> bool:
+        """Whether the entropy of a rig is surely higher than that of the leader, by more than
         `spare` [nats]."""
-        return rise_between(self._first_voxels, rival, rig).is_surely_above(spare)
+        return rise_between(self._first_voxels, leader, rig).is_surely_above(spare)
+
+
+def entropy_objective(evaluator: RigEvaluator) -> Objective:
+    """Return the entropy of an evaluator as what a search minimises; on a large sample candidates
+    race."""
+    if isinstance(evaluator, Evaluator) and evaluator.samples >= MIN_RACED * RACED_PART:
+        return Objective(RacedEntropy(evaluator))
+    return Objective(evaluator.entropy)
+
+
+def as_objective(given: Any) -> Objective:
+    """Return an objective; of an evaluator that of its entropy, of a function that of its figure.
+    `InputError` for anything else."""
+    if isinstance(given, Objective):
+        return given
+    if hasattr(given, "entropy"):
+        return entropy_objective(given)
+    if callable(given):
+        return Objective(given)
+    expected = "an Evaluator, or a function of a rig"
+    raise InputError("optimize", "objective", expected, type(given).__name__)

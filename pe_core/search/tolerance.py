@@ -31,7 +31,8 @@ from ..scene.rig import Rig
 from ..scoring.scenarios import mean_or_worst
 from ..scoring.score import NO_DIFFERENCE, RigEvaluator, is_noise, standard_error
 from .domains import AXES, pose_from_values
-from .objective import Objective, entropy_objective
+from .objective import Objective
+from .race import entropy_objective
 
 DRAWS = 8  # Draws by default
 COMBINATIONS = 4

@@ -8,8 +8,7 @@ import pytest
 import pe_core as pe
 from pe_core.metric import average_precision, entropy_of, sigma_of
 from pe_core.scoring import Evaluator, draw
-from pe_core.search import NO_VALUE, Processes, Value, as_objective, evaluate_all, optimize
-from pe_core.search.objective import Rival
+from pe_core.search import NO_VALUE, Leader, Processes, Value, as_objective, evaluate_all, optimize
 from pe_core.search.race import SURE_ERRORS, Rise, rise_between
 from tests.engine import shapes
 
@@ -34,7 +33,7 @@ def rig_at(x=0.0, z=1.8, pitch=0.0):
     return pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(), (x, 0.0, z), (0.0, pitch, 0.0))])
 
 
-def near(rival, count=40):
+def near(leader, count=40):
     """Rigs near another one, and farther ones."""
     rng = np.random.default_rng(3)
     for scale in np.geomspace(1e-3, 1.0, count):
@@ -54,13 +53,13 @@ def test_a_rise_is_the_mean_difference_of_the_same_voxels_and_its_error_the_scat
     evaluator, car
 ):
     sample = draw(PRIOR.densities(SPACE), SPACE, FIRST, car.top(SPACE))
-    rival = rig_at()
+    leader = rig_at()
     for rig in (rig_at(0.3), rig_at(pitch=2.0)):
-        differences = of_voxels(rig, sample, car) - of_voxels(rival, sample, car)
+        differences = of_voxels(rig, sample, car) - of_voxels(leader, sample, car)
         mean = differences.mean()
         off = [(differences[sample.run == run] - mean).sum() for run in range(RUNS)]
         error = math.sqrt(np.square(off).sum() * RUNS / (RUNS - 1)) / len(differences)
-        found = rise_between(evaluator.on_first(FIRST), rival, rig)
+        found = rise_between(evaluator.on_first(FIRST), leader, rig)
         assert found.nats == pytest.approx(mean, abs=1e-8)
         assert found.error == pytest.approx(error, abs=1e-8)
 
@@ -93,17 +92,17 @@ def test_a_race_is_lost_from_three_errors_on():
 def test_a_race_stops_what_is_not_below_and_nothing_else(evaluator):
     objective = as_objective(evaluator)
     rig = rig_at()
-    rival = Rival(rig, objective.value(rig))
+    leader = Leader(rig, objective.value(rig))
     stopped = 0
     for candidate in near(rig):
         value = objective.value(candidate)
-        raced = objective.below(candidate, rival.value, rival)
-        assert raced == (value if value < rival.value else NO_VALUE)
+        raced = objective.below(candidate, leader.value, leader)
+        assert raced == (value if value < leader.value else NO_VALUE)
         stopped += objective.figure.loses(candidate, rig, 0.0)
     assert stopped > 5
 
 
-def test_a_cutoff_above_the_rival_s_value_leaves_a_candidate_that_much_more(evaluator):
+def test_a_cutoff_above_the_leader_s_value_leaves_a_candidate_that_much_more(evaluator):
     objective = as_objective(evaluator)
     rig = rig_at()
     value = objective.value(rig)
@@ -111,7 +110,7 @@ def test_a_cutoff_above_the_rival_s_value_leaves_a_candidate_that_much_more(eval
     assert objective.figure.loses(worse, rig, 0.0)
     rise = objective.value(worse).objective - value.objective
     cutoff = value.worse_by(rise + 0.01)
-    assert objective.below(worse, cutoff, Rival(rig, value)) == objective.value(worse)
+    assert objective.below(worse, cutoff, Leader(rig, value)) == objective.value(worse)
 
 
 def test_a_small_sample_has_no_race(car):
@@ -119,23 +118,23 @@ def test_a_small_sample_has_no_race(car):
     assert not hasattr(objective.figure, "loses")
 
 
-def test_against_a_rival_that_breaks_constraints_nothing_races(evaluator):
+def test_against_a_leader_that_breaks_constraints_nothing_races(evaluator):
     """Its figure says nothing: all that counts is which violation is less."""
     rig = rig_at()
     objective = as_objective(evaluator)
     broken = Value(1.0, math.inf)
     worse = rig_at(pitch=25.0)
-    assert objective.below(worse, broken, Rival(rig, broken)) == objective.value(worse)
+    assert objective.below(worse, broken, Leader(rig, broken)) == objective.value(worse)
 
 
 def test_processes_race_to_the_same_values(evaluator):
     objective = as_objective(evaluator)
     rig = rig_at()
-    rival = Rival(rig, objective.value(rig))
+    leader = Leader(rig, objective.value(rig))
     rigs = list(near(rig, count=12))
-    here = evaluate_all(objective, rigs, rival.value, rival=rival)
+    here = evaluate_all(objective, rigs, leader.value, leader=leader)
     with Processes(2) as processes:
-        there = evaluate_all(objective, rigs, rival.value, processes, rival)
+        there = evaluate_all(objective, rigs, leader.value, processes, leader)
     assert here == there
     assert NO_VALUE in here
 

@@ -181,9 +181,10 @@ BeamEnds = FixedEnds | LazyEnds
 
 @dataclass(frozen=True, slots=True, weakref_slot=True)
 class CastBeams:
-    """Where the beams of a sensor end."""
+    """The beams of a sensor at its orientation, and where they end."""
 
     sensor: Sensor
+    rotated: RotatedBeams
     ends: BeamEnds
 
 
@@ -218,9 +219,11 @@ class BeamCache:
 
     def _made(self, sensor: Sensor) -> CastBeams:
         model = lidar_of(sensor)
+        rotated = self.rotated(sensor)
         if self._vehicle is None:
-            return CastBeams(sensor, FixedEnds(np.full(model.beam_count, model.max_range)))
-        return CastBeams(sensor, LazyEnds(sensor, self.rotated(sensor), self._vehicle))
+            ends = FixedEnds(np.full(model.beam_count, model.max_range))
+            return CastBeams(sensor, rotated, ends)
+        return CastBeams(sensor, rotated, LazyEnds(sensor, rotated, self._vehicle))
 
     def keep_only(self, sensors: Collection[Sensor]) -> None:
         """Drop the entries of all other sensors."""

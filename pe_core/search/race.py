@@ -8,6 +8,8 @@ what is better. So a race saves time, and changes a search only where it errs.
 Placements that differ in few voxels differ perhaps in none of the first ones: then the scatter says
 nothing. So the error is never taken to be smaller than by the rule of three.
 
+The race of descents in `methods.portfolio` is another one: it shares the budget among them.
+
 Racing on common samples: O. Maron, A. W. Moore, Hoeffding races, 1994; M. Birattari et al., A
 racing algorithm for configuring metaheuristics, 2002.
 """

@@ -28,8 +28,9 @@ SURE_ERRORS = 3.0
 """From so many standard errors on a candidate is surely worse."""
 RACED_PART = 16
 """A race is on the first voxels of the sample: all of them divided by this."""
-MIN_RACED = 2048
-"""Voxels of the smallest race; on fewer ones a sensor takes as long, because its rays are cast."""
+MIN_RACED = 4096
+"""Voxels of the smallest race: on fewer ones a LiDAR takes nearly as long, because rays are cast,
+and a candidate that is not stopped costs both."""
 
 
 class Rise(NamedTuple):

@@ -15,7 +15,7 @@ from tests.engine import shapes
 SPACE = pe.PerceptionSpace((-20.0, 20.0), (-20.0, 20.0), (0.0, 3.0), 0.2)
 PRIOR = pe.Prior.road()
 RUNS = 16
-SAMPLES = 32_768
+SAMPLES = 65_536
 FIRST = SAMPLES // 16
 
 

@@ -203,11 +203,15 @@ class SampledScorer:
     def _classes(self, entropy: Floats, coverage: Floats) -> dict[str, PartScore]:
         """Return the score by class; a voxel counts by the probability that its object is of it."""
         per_class = {}
+        product = np.empty(len(entropy))  # reused: the first writes to new memory are slow
         rows = zip(self._sample.names, self._by_class, self._class_masses, strict=True)
         for name, likely, mass in rows:
             if mass > 0.0:
                 # Not by BLAS: on small products its threads only wait for each other.
-                h, c = (float((values * likely).sum()) / mass for values in (entropy, coverage))
+                h, c = (
+                    float(np.multiply(values, likely, out=product).sum()) / mass
+                    for values in (entropy, coverage)
+                )
                 per_class[name] = PartScore(rounded(h), rounded(c), rounded(mass / len(likely)))
         return per_class
 

@@ -84,10 +84,25 @@ class Evaluator:
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the arguments: another process makes an evaluator of its own from them."""
-        again = partial(
-            Evaluator, self.space, self.prior, self.vehicle, samples=self.samples, shift=self._shift
-        )
-        return partial(again, model=self._model, workers=self._workers), ()
+        return partial(self._like_this, samples=self.samples), ()
+
+    @property
+    def _like_this(self) -> "partial[Evaluator]":
+        """Makes an evaluator of the same problem, of a number of samples."""
+        problem = partial(Evaluator, self.space, self.prior, self.vehicle, shift=self._shift)
+        return partial(problem, model=self._model, workers=self._workers)
+
+    def on_first(self, samples: int) -> "Evaluator":
+        """Return the evaluator on the first voxels of this one's sample.
+
+        `InputError` when there are too few.
+
+        Parameters
+        ----------
+        samples : int
+            How many voxels; of a sample, at most as many as it has.
+        """
+        return self._like_this(samples=samples)
 
     def score(self, rig: Rig, *, watch: Watch | None = None) -> Score:
         """Score a rig in full: entropy, coverage, by class, by sensor, ground map.

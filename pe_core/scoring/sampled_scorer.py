@@ -11,7 +11,7 @@ from ..base.arrays import Floats, Ints
 from ..base.lazy_threads import threads
 from ..base.values import rounded
 from ..geometry.grids import PerceptionSpace
-from ..metric.entropy import H_BEST, H_BLIND
+from ..metric.entropy import H_BLIND
 from ..metric.fusion import Fusion
 from ..prior.prior import ClassDensity
 from ..scene.rig import Rig, Sensor
@@ -22,7 +22,6 @@ from .sampling import BLOCKS, CENTERED, Shift, VoxelSample, draw, outside_masses
 from .scenarios import Scenarios, fused_early, members_of
 from .score import (
     ALIKE,
-    RULE_OF_THREE,
     FigureKey,
     PartScore,
     Scatter,
@@ -33,6 +32,7 @@ from .score import (
     residuals,
     sample_digest,
     sensor_score,
+    unseen_error,
     zone_masks,
 )
 
@@ -203,11 +203,15 @@ class SampledScorer:
     def _classes(self, entropy: Floats, coverage: Floats) -> dict[str, PartScore]:
         """Return the score by class; a voxel counts by the probability that its object is of it."""
         per_class = {}
+        product = np.empty(len(entropy))  # reused: the first writes to new memory are slow
         rows = zip(self._sample.names, self._by_class, self._class_masses, strict=True)
         for name, likely, mass in rows:
             if mass > 0.0:
                 # Not by BLAS: on small products its threads only wait for each other.
-                h, c = (float((values * likely).sum()) / mass for values in (entropy, coverage))
+                h, c = (
+                    float(np.multiply(values, likely, out=product).sum()) / mass
+                    for values in (entropy, coverage)
+                )
                 per_class[name] = PartScore(rounded(h), rounded(c), rounded(mass / len(likely)))
         return per_class
 
@@ -252,8 +256,7 @@ class SampledScorer:
         blind to the best that all groups can reach.
         """
         if np.ptp(entropies) <= ALIKE:
-            largest = H_BLIND - H_BEST + np.log(groups)
-            return rounded(RULE_OF_THREE / 2.0 * largest / len(entropies))
+            return unseen_error(groups, len(entropies))
         sizes = self._by_zone.counts[0]
         means = by_run[sizes > 0] / sizes[sizes > 0]
         return rounded(float(np.std(means, ddof=1)) / np.sqrt(len(means)))

@@ -60,7 +60,8 @@ SEARCHED: Shift = (0.319, 0.171, 0.049)
 it was searched on, so its score on them is too good: it is reported on those of `CENTERED`."""
 HELD_OUT: tuple[Shift, ...] = (CENTERED, (0.819, 0.671, 0.549))
 """Shifts of samples that no search uses; the difference of two estimates tells their error."""
-AT_ONCE = 1 << 16
+AT_ONCE = 1 << 11
+"""Voxels whose heights are drawn together: their profiles fit the processor's cache."""
 
 
 def scrambled_sobol(count: int, shift: Sequence[float]) -> Floats:
@@ -250,9 +251,19 @@ def _inverse(cumulative: Floats, values: Floats) -> Ints:
 
 def outside_profile(density: ClassDensity, space: PerceptionSpace, tops: Floats) -> Floats:
     """Sum the class's height profile over voxels outside the vehicle, by column."""
-    above = np.append(np.cumsum(density.profile[::-1])[::-1], 0.0)
+    return _profile_from(density, _layers_below(space, tops))
+
+
+def _layers_below(space: PerceptionSpace, tops: Floats) -> Ints:
+    """Return the number of layers (nx, ny) whose centres are below these heights."""
     below = np.searchsorted(space.centers(2), tops.reshape(-1), side="left")
-    return above[below].reshape(tops.shape)
+    return below.reshape(tops.shape)
+
+
+def _profile_from(density: ClassDensity, layer: Ints) -> Floats:
+    """Sum the class's height profile from these layers (nx, ny) up."""
+    above = np.append(np.cumsum(density.profile[::-1])[::-1], 0.0)
+    return np.asarray(above[layer])
 
 
 def outside_masses(
@@ -262,7 +273,8 @@ def outside_masses(
     `InputError` when no weight is left outside."""
     if tops is None:
         return [float(d.ground.sum()) for d in densities]
-    masses = [float((d.ground * outside_profile(d, space, tops)).sum()) for d in densities]
+    below = _layers_below(space, tops)  # of all classes
+    masses = [float((d.ground * _profile_from(d, below)).sum()) for d in densities]
     if not sum(masses) > 0.0:
         raise InputError("prior", "weights", "some weight outside the vehicle", "none")
     return masses

@@ -21,6 +21,7 @@ from ..base.notebook import ShortRepr, Tabular
 from ..base.setting import AtTimes, NotStored
 from ..base.values import DECIMALS, error_text, rounded, shown_share
 from ..geometry.grids import PerceptionSpace
+from ..metric.entropy import H_BEST, H_BLIND
 from ..scene.rig import Rig
 from ..sensors import Occlusion
 
@@ -123,6 +124,14 @@ def sample_digest(parts: Iterable[NDArray[Any]]) -> str:
     for part in parts:
         digest.update(np.ascontiguousarray(part).tobytes())
     return digest.hexdigest()[:16]
+
+
+def unseen_error(groups: int, count: int) -> float:
+    """Return the standard error of a mean entropy of `count` voxels or objects that do not differ
+    [nats]: half of the bound by the rule of three, for others that have any entropy from blind to
+    the best that all fusion groups reach."""
+    max_difference = H_BLIND - H_BEST + math.log(groups)
+    return rounded(RULE_OF_THREE / 2.0 * max_difference / count)
 
 
 def standard_error(batches: Iterable[float]) -> float:

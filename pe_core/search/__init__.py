@@ -37,13 +37,14 @@ with lazy_face(__name__):
         SlotMount,
         SurfaceMount,
     )
-    from .objective import NO_VALUE, FeasibilityRule, Objective, Value, as_objective, violation_sum
+    from .objective import NO_VALUE, FeasibilityRule, Leader, Objective, Value, violation_sum
     from .optimize import Step, optimize
     from .own_places import OwnPlaces, PathPoint, PlacedRig
     from .parametrization import Candidate, Parametrization, feasible_start, mirrored, rig_on_mounts
     from .payload import Payload, Unreadable, send_payload
     from .places import MountingPlaces, SurfacePlace, outward_yaw
     from .processes import LazyProcesses, Processes, no_processes, start_processes
+    from .race import as_objective
     from .rig_view import RigView
     from .search_space import (
         PAPER_FREE,

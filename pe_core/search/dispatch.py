@@ -16,7 +16,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from ..base.errors import InputError, shown
 from ..scene.rig import Rig
-from .objective import NO_VALUE, Objective, Value
+from .objective import NO_VALUE, Leader, Objective, Value
 from .payload import PackedPayload, Unreadable, send_payload, unpickled
 
 TaskKey = TypeVar("TaskKey", bound=Hashable)
@@ -125,12 +125,15 @@ def evaluate_all(
     rigs: Sequence[Rig],
     cutoff: Value = NO_VALUE,
     executor: Executor | None = None,
+    leader: Leader | None = None,
 ) -> list[Value]:
     """Evaluate several rigs; the result depends neither on the workers nor on earlier calls.
 
     `objective`: Its `shared_parts` are sent to each worker once, so they must not change. Where it
         cannot be pickled, or a worker cannot unpickle it, the rigs are evaluated here.
     `cutoff`: Values are needed only below this one; all of them, by default.
+    `leader`: A placement that candidates race against: one that is surely not below the cutoff is
+        not evaluated in full.
     `executor`: Its workers evaluate; by default this thread does. `Processes` replaces dead
         workers.
 
@@ -143,16 +146,20 @@ def evaluate_all(
     """
     if executor is not None and rigs:
         with suppress(Unreadable):
-            return _evaluate_by_workers(objective, rigs, cutoff, executor)
-    return [objective.below(rig, cutoff) for rig in rigs]
+            return _evaluate_by_workers(objective, rigs, cutoff, executor, leader=leader)
+    return [objective.below(rig, cutoff, leader) for rig in rigs]
 
 
 def _evaluate_by_workers(
-    objective: Objective, rigs: Sequence[Rig], cutoff: Value, executor: Executor
+    objective: Objective,
+    rigs: Sequence[Rig],
+    cutoff: Value,
+    executor: Executor,
+    leader: Leader | None,
 ) -> list[Value]:
     models = (sensor.model for rig in rigs for sensor in rig)
     sent = send_payload(executor, (*objective.shared_parts(), *models))
-    candidates = [sent.payload.pickled((objective, rig)) for rig in rigs]
+    candidates = [sent.payload.pickled((objective, rig, leader)) for rig in rigs]
     tried: set[int] = set()
 
     def call_of(number: int) -> Call:
@@ -173,6 +180,6 @@ def _evaluate_by_workers(
 
 
 def _evaluate_in_worker(payload: PackedPayload, candidate: bytes, cutoff: Value) -> Value:
-    objective, rig = unpickled(payload, candidate)
-    found: Value = objective.below(rig, cutoff)
+    objective, rig, leader = unpickled(payload, candidate)
+    found: Value = objective.below(rig, cutoff, leader)
     return found

@@ -14,7 +14,7 @@ from ..base.codec import Node, read_value
 from ..base.errors import InputError
 from ..scene.rig import Rig
 from .dispatch import evaluate_all
-from .objective import NO_VALUE, Objective, Value
+from .objective import NO_VALUE, Leader, Objective, Value
 
 DIGEST_BYTES = 4  # Length of the digest that identifies a placement
 BATCH = 16
@@ -69,6 +69,7 @@ class Journal:
         executor: Executor | None = None,
         *,
         level: int = 0,
+        leader: Leader | None = None,
     ) -> list[Value]:
         """Return the values of the next placements: the first ones may be in the journal, the
         others are evaluated and recorded."""
@@ -78,7 +79,7 @@ class Journal:
                 break
             values.append(value)
         new_rigs = rigs[len(values) :]
-        new_values = evaluate_all(objective, new_rigs, cutoff, executor)
+        new_values = evaluate_all(objective, new_rigs, cutoff, executor, leader)
         for rig, value in zip(new_rigs, new_values, strict=True):
             self.record(rig, level, value)
         return values + new_values

@@ -7,7 +7,7 @@ figures do not matter and are not computed.
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from typing import Annotated, Any, NamedTuple, Protocol
+from typing import Annotated, NamedTuple, Protocol
 
 from ..base.errors import InputError, shown
 from ..base.setting import Part
@@ -53,6 +53,13 @@ NO_VALUE = Value(math.inf, math.inf)
 """Above all values: of a candidate that is not below the cutoff; the cutoff of all others."""
 
 
+class Leader(NamedTuple):
+    """A placement that candidates race against, and its value by the same objective."""
+
+    rig: Rig
+    value: Value
+
+
 class FeasibilityRule(Protocol):
     """What a placement keeps, or breaks by its violation."""
 
@@ -69,6 +76,8 @@ class Objective:
     figure : callable
         Takes a `Rig` and returns a number, the same for the same rig; lower is better. A method
         ``below``, of a rig and a number, may return inf sooner where the figure is not below that.
+        A method ``loses``, of a rig, a leader and a number, tells early whether the figure of the
+        rig is surely higher than that of the leader, by more than the number.
         A method ``shared_parts`` returns what workers are sent once, if that is not all of it.
     constraints : sequence of FeasibilityRule
     """
@@ -87,10 +96,13 @@ class Objective:
         """Return the value of a placement; `InputError` where its figure is no number."""
         return self.below(rig, NO_VALUE)
 
-    def below(self, rig: Rig, cutoff: Value) -> Value:
+    def below(self, rig: Rig, cutoff: Value, leader: Leader | None = None) -> Value:
         """Return the value of a placement where it is below a cutoff; otherwise `NO_VALUE`. A
-        placement whose figure is not below is not held to the constraints, which takes longer."""
+        placement whose figure is not below is not held to the constraints, which takes longer; one
+        that surely is not, as a race against the leader shows, has no figure computed."""
         if cutoff.is_feasible:
+            if leader is not None and self._loses(rig, cutoff, leader):
+                return NO_VALUE
             found = self._figure_below(rig, cutoff.objective)
             kept = found < cutoff.objective and not self.violation(rig, 0.0)
             return Value(0.0, found) if kept else NO_VALUE
@@ -109,6 +121,12 @@ class Objective:
         whole = (getattr(self.figure, "__self__", self.figure),)  # of a method, its object
         return (*(whole if own is None else own()), *self._constraints)
 
+    def _loses(self, rig: Rig, cutoff: Value, leader: Leader) -> bool:
+        """Whether a race shows that the figure of a rig is not below the cutoff."""
+        loses: Callable[[Rig, Rig, float], bool] | None = getattr(self.figure, "loses", None)
+        spare = cutoff.objective - leader.value.objective
+        return loses is not None and loses(rig, leader.rig, spare)
+
     def _figure_below(self, rig: Rig, cutoff: float) -> float:
         below: Callable[[Rig, float], float] | None = getattr(self.figure, "below", None)
         return self._number(rig) if below is None else below(rig, cutoff)
@@ -118,19 +136,6 @@ class Objective:
         if math.isnan(value):
             raise InputError("objective", "value", "a number for each rig", shown(found))
         return value
-
-
-def as_objective(given: Any) -> Objective:
-    """Return an objective; of an evaluator that of its entropy, of a function that of its figure.
-    `InputError` for anything else."""
-    if isinstance(given, Objective):
-        return given
-    if hasattr(given, "entropy"):
-        return Objective(given.entropy)
-    if callable(given):
-        return Objective(given)
-    expected = "an Evaluator, or a function of a rig"
-    raise InputError("optimize", "objective", expected, type(given).__name__)
 
 
 def violation_sum(violations: Iterable[float], enough: float) -> float:

@@ -13,14 +13,15 @@ from ..scoring import RigEvaluator
 from .journal import BATCH, Journal
 from .methods import METHODS, Given, Question, checked_method
 from .methods.method import Answered, QuestionStream
-from .objective import NO_VALUE, Objective, Value, as_objective
+from .objective import Objective, Value
 from .parametrization import Candidate, Parametrization, feasible_start
+from .race import as_objective
 from .search_space import Schedule, SearchSpace
 
 ExecutorSource = Callable[[], Executor | None]
 Minimised = RigEvaluator | Callable[[Rig], float] | Objective
-Evaluate = Callable[[Sequence[Rig], Value, int], Iterator[Value]]
-"""Yields the values of rigs below a cutoff, on a level."""
+Evaluate = Callable[[Sequence[Rig], Question], Iterator[Value]]
+"""Yields the values of rigs below a question's cutoff, on its level."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +150,7 @@ def _steps(
     done = 0
     while question is not None and step.evaluations < budget:
         if question.level > step.level:  # the incumbent is evaluated on the new level
-            [value] = evaluate([step.best], NO_VALUE, question.level)
+            [value] = evaluate([step.best], Question((), level=question.level))
             yield (
                 step := replace(
                     step,
@@ -166,7 +167,7 @@ def _steps(
         question = _within(question, budget - step.evaluations)
         answers: Answered = []
         rigs = [each.rig for each in question.candidates if each is not None]
-        values = evaluate(rigs, question.cutoff, question.level)
+        values = evaluate(rigs, question)
         for candidate in question.candidates:
             answer = None if candidate is None else next(values)
             answers.append(answer)
@@ -193,13 +194,19 @@ def _evaluated(
     journal: Journal,
     executor_source: ExecutorSource,
     rigs: Sequence[Rig],
-    cutoff: Value,
-    level: int,
+    question: Question,
 ) -> Iterator[Value]:
     """Yield values: all evaluated at once by an executor, or one after the other here."""
     executor = executor_source()
     for batch in [rigs] if executor is not None else [[rig] for rig in rigs]:
-        yield from journal.evaluate_all(levels[level], batch, cutoff, executor, level=level)
+        yield from journal.evaluate_all(
+            levels[question.level],
+            batch,
+            question.cutoff,
+            executor,
+            level=question.level,
+            leader=question.leader,
+        )
 
 
 def _next_step(

@@ -32,6 +32,7 @@ from ..scoring.scenarios import mean_or_worst
 from ..scoring.score import NO_DIFFERENCE, RigEvaluator, is_noise, standard_error
 from .domains import AXES, pose_from_values
 from .objective import Objective
+from .race import entropy_objective
 
 DRAWS = 8  # Draws by default
 COMBINATIONS = 4
@@ -182,8 +183,9 @@ class RobustFigure:
 
 def objective_of(evaluator: RigEvaluator, tolerance: Tolerance, seed: int = 0) -> Objective:
     """Return what a search minimises: the entropy, or `RobustFigure` if a tolerance is on."""
-    robust = RobustFigure(evaluator, tolerance, seed)
-    return Objective(robust if tolerance.is_on else evaluator.entropy)
+    if tolerance.is_on:
+        return Objective(RobustFigure(evaluator, tolerance, seed))
+    return entropy_objective(evaluator)
 
 
 WORKSHOP = Tolerance(0.01, math.radians(0.3), draws=6)

@@ -131,13 +131,16 @@ class StepCosts:
     def evaluate(self, rigs: Iterable[Rig]) -> None:
         """Evaluate rigs side by side, as far as they are not known."""
         new = {key: rig for rig in rigs if (key := _key(rig)) not in self._values}
-        if new:
-            rigs = list(new.values())
+        executor = self._helpers()
+        keys = list(new)
+        # Here rig by rig: rays that are cast for one sample are those of the others, too.
+        for some in [keys] if executor is not None and keys else [[key] for key in keys]:
+            rigs = [new[key] for key in some]
             by_sample = [
-                [each.objective for each in evaluate_all(o, rigs, executor=self._helpers())]
+                [each.objective for each in evaluate_all(o, rigs, executor=executor)]
                 for o in self._objectives
             ]
-            self._values |= zip(new, np.array(by_sample).T, strict=True)
+            self._values |= zip(some, np.array(by_sample).T, strict=True)
 
     def change(self, rig: Rig) -> float:
         """Return how much higher the value of a rig is than that of the reference."""

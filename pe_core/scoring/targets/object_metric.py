@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ...base.arrays import Floats, Ints
 from ...base.errors import InputError
 from ...base.values import rounded
-from ...metric.entropy import H_BEST, H_BLIND, OwnCurve, ap_of_entropy
+from ...metric.entropy import H_BLIND, OwnCurve, ap_of_entropy
 from ...metric.fusion import Fusion, early_fusion
 from ...scene.objects import Objects
 from ...scene.rig import Rig
@@ -26,7 +26,6 @@ from ..score import (
     BY_DISTANCE,
     FARTHEST_M,
     POINTS,
-    RULE_OF_THREE,
     FigureKey,
     FoundClass,
     ObjectScore,
@@ -35,6 +34,7 @@ from ..score import (
     TrafficAp,
     residuals,
     sample_digest,
+    unseen_error,
     zone_masks,
 )
 from .object_sampling import SampledObjects
@@ -140,8 +140,7 @@ class ObjectSums:
         """
         values = entropies if mask is None else entropies[mask]
         if np.ptp(values) <= ALIKE:
-            max_difference = H_BLIND - H_BEST + math.log(groups)
-            return rounded(RULE_OF_THREE / 2.0 * max_difference / len(values))
+            return unseen_error(groups, len(values))
         return self._scatter(entropies, mask)
 
     def object_score(

@@ -21,7 +21,7 @@ from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from ..objective import NO_VALUE, Value
+from ..objective import NO_VALUE, Leader, Value
 from ..parametrization import Candidate, Parametrization
 from ..search_space import Schedule
 
@@ -63,6 +63,8 @@ class Question:
 
     `candidates`: None where no feasible candidate was sampled; its answer is None.
     `cutoff`: A value that is not below the cutoff is answered by `NO_VALUE`.
+    `leader`: The placement that the cutoff comes from, with its value on this level: objectives may
+        race candidates against it.
     `round`: From 0, for progress reports.
     `total`: Candidates of the whole search, as far as is known, for the progress bar.
     `level`: The objective that evaluates. After a question on a higher level, answers on a lower
@@ -76,6 +78,7 @@ class Question:
     total: int = 1
     level: int = 0
     ends: tuple[Value, ...] = ()
+    leader: Leader | None = None
 
 
 QuestionStream = Generator[Question, Answered, None]
@@ -116,12 +119,22 @@ class Phase:
     ends: tuple[Value, ...] = ()
 
     def evaluate(
-        self, candidates: Sequence[Candidate | None], cutoff: Value = NO_VALUE, below: int = 0
+        self,
+        candidates: Sequence[Candidate | None],
+        cutoff: Value = NO_VALUE,
+        below: int = 0,
+        leader: Leader | None = None,
     ) -> MethodPart[list[Value]]:
         """Evaluate the candidates, `below` levels lower; return one value for each: `NO_VALUE` for
         one that is missing or not below the cutoff."""
         answers = yield Question(
-            candidates, cutoff, self.round, self.total, level=self.level - below, ends=self.ends
+            candidates,
+            cutoff,
+            self.round,
+            self.total,
+            level=self.level - below,
+            ends=self.ends,
+            leader=leader,
         )
         return [NO_VALUE if answer is None else answer for answer in answers]
 
@@ -164,17 +177,21 @@ class Incumbent:
         passed: dict[int, Value | None] = dict.fromkeys(range(len(candidates)))
         if self.screened is not None:
             cutoff = self.screened.worse_by(SCREENED_WITHIN)
-            coarse = yield from phase.evaluate(candidates, cutoff, below=1)
+            screened = Leader(self.best.rig, self.screened)
+            coarse = yield from phase.evaluate(candidates, cutoff, below=1, leader=screened)
             passed = {k: value for k, value in enumerate(coarse) if value < NO_VALUE}
             self.count += len(candidates)
         values = [NO_VALUE] * len(candidates)
         if passed:
-            found = yield from phase.evaluate([candidates[k] for k in passed], self.value)
+            # Those that passed are so near that a race would tell nothing.
+            leader = Leader(self.best.rig, self.value) if self.screened is None else None
+            chosen = [candidates[k] for k in passed]
+            found = yield from phase.evaluate(chosen, self.value, leader=leader)
             self.count += len(passed)
-            for (k, screened), value in zip(passed.items(), found, strict=True):
+            for (k, of_candidate), value in zip(passed.items(), found, strict=True):
                 values[k] = value
                 if value < self.value:
                     self.best = candidates[k]
                     self.value = value
-                    self.screened = screened
+                    self.screened = of_candidate
         return values

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..domains import METRE, RADIAN, SHARE
+from ..objective import Leader
 from ..parametrization import Candidate
 from ..search_space import REACH_M, REACH_RAD
 from .method import Given, Question, QuestionStream, sampled_candidate
@@ -25,7 +26,8 @@ def ask(given: Given) -> QuestionStream:
         for asked in range(0, schedule.candidates, given.batch):
             count = min(given.batch, schedule.candidates - asked)
             candidates = [_neighbour(center, given, scale, rng) for _ in range(count)]
-            answers = yield Question(candidates, value, number, total)
+            leader = Leader(best.rig, value)
+            answers = yield Question(candidates, value, number, total, leader=leader)
             for candidate, answer in zip(candidates, answers, strict=True):
                 if candidate is not None and answer is not None and answer < value:
                     best = candidate

@@ -20,7 +20,7 @@ from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle
 from ..field_of_view import count_by_part
 from ..kernels import Occlusion
-from .definition import beam_directions, without_zeros
+from .definition import beam_axes, beam_directions, without_zeros
 from .lattice import lattice_of
 from .model import lidar_of
 from .occlusion import occlusion_candidates
@@ -77,18 +77,22 @@ class RotatedBeams:
 
     sensor: Sensor
 
-    @cached_property
+    @property
     def directions(self) -> Floats:
         """(B, 3) unit directions, ground frame."""
-        return beam_directions(self.sensor)
+        return np.stack(self._axes, axis=-1)
+
+    @cached_property
+    def _axes(self) -> list[Floats]:
+        return beam_axes(self.sensor)
 
     @cached_property
     def _components(self) -> list[Floats]:
-        return [np.ascontiguousarray(w) for w in without_zeros(self.directions).T]
+        return [without_zeros(w) for w in self._axes]
 
     def take(self, beams: Ints) -> Floats:
         """Return the unit directions (N, 3) of the beams with these indices (N,)."""
-        return self.directions[beams]
+        return np.stack([np.take(w, beams) for w in self._axes], axis=-1)
 
     def components(self, beams: Ints) -> list[Floats]:
         """Return the directions of beams (N,) as three arrays (N,), one an axis, without zeros.
@@ -177,9 +181,10 @@ BeamEnds = FixedEnds | LazyEnds
 
 @dataclass(frozen=True, slots=True, weakref_slot=True)
 class CastBeams:
-    """Where the beams of a sensor end."""
+    """The beams of a sensor at its orientation, and where they end."""
 
     sensor: Sensor
+    rotated: RotatedBeams
     ends: BeamEnds
 
 
@@ -214,9 +219,11 @@ class BeamCache:
 
     def _made(self, sensor: Sensor) -> CastBeams:
         model = lidar_of(sensor)
+        rotated = self.rotated(sensor)
         if self._vehicle is None:
-            return CastBeams(sensor, FixedEnds(np.full(model.beam_count, model.max_range)))
-        return CastBeams(sensor, LazyEnds(sensor, self.rotated(sensor), self._vehicle))
+            ends = FixedEnds(np.full(model.beam_count, model.max_range))
+            return CastBeams(sensor, rotated, ends)
+        return CastBeams(sensor, rotated, LazyEnds(sensor, rotated, self._vehicle))
 
     def keep_only(self, sensors: Collection[Sensor]) -> None:
         """Drop the entries of all other sensors."""

@@ -61,12 +61,25 @@ def position_in_voxels(position: Sequence[float], origin: Sequence[float], side:
 def without_zeros(directions: Floats) -> Floats:
     """Return directions with components of 0, or of less, replaced by `ZERO_COMPONENT`. What is
     nearer to 0 than that (an angle of 1e-320 degrees) would overflow where it divides."""
-    return np.where(np.abs(directions) < ZERO_COMPONENT, ZERO_COMPONENT, directions)
+    zeros = np.abs(directions) < ZERO_COMPONENT
+    return np.where(zeros, ZERO_COMPONENT, directions) if zeros.any() else directions
 
 
 def beam_directions(sensor: Sensor) -> Floats:
     """Return the unit directions (B, 3) of a LiDAR's beams, ground frame; eq. 1."""
     return rotate(sensor.pose.ground_from_sensor, lidar_of(sensor).directions)
+
+
+def beam_axes(sensor: Sensor) -> list[Floats]:
+    """Return the components of `beam_directions`, an array (B,) an axis; the same bits."""
+    x, y, z = lidar_of(sensor).direction_axes
+    axes = []
+    for row in sensor.pose.ground_from_sensor:
+        axis = row[0] * x
+        axis += row[1] * y
+        axis += row[2] * z
+        axes.append(axis)
+    return axes
 
 
 def beam_ends(sensor: Sensor, directions: Floats, vehicle: Vehicle | None) -> Floats:

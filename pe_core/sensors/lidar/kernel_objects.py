@@ -79,8 +79,8 @@ class LidarObjects(ObjectKernel):
 
     def _tester(self, sensor: Sensor) -> BoxTester:
         boxes = PlacedBoxes.of(self._view.objects, sensor.pose.position)
-        ends = self.cache.cast(sensor).ends
-        return BoxTester(sensor, boxes, self.cache.rotated(sensor), ends)
+        beams = self.cache.cast(sensor)
+        return BoxTester(sensor, boxes, beams.rotated, beams.ends)
 
 
 def _count(tester: BoxTester, scenes: Ints | None) -> Ints:

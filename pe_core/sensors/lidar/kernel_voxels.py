@@ -37,7 +37,7 @@ from ..kernels import (
     Voxels,
     block_voxels,
 )
-from .beams import BeamCache, BeamEnds, BeamField, LazyEnds, beam_field
+from .beams import BeamCache, BeamField, CastBeams, LazyEnds, beam_field
 from .definition import cube_crossing, position_in_voxels, with_returns
 from .grid_sweep import BeamGrid
 from .lattice import lattice_of
@@ -153,7 +153,7 @@ class LidarSample(SampleKernel):
     def measure(self, sensor: Sensor) -> Measured:
         """Count a LiDAR's beams."""
         beams = self.cache.cast(sensor)
-        lidar = self._placed(sensor, beams.ends)
+        lidar = self._placed(beams)
         most = self._saturation_count if lidar_of(sensor).returns == ALL else MAX_TABLE
         counts = count_voxel_beams(self._points, lidar, most)
         counts = recount_min_range(self._points, lidar, counts, lidar_of(sensor).min_range)
@@ -167,14 +167,15 @@ class LidarSample(SampleKernel):
         field = ends.beam_field() if is_lazy else beam_field(measured.sensor, self._vehicle)
         return field.occlusion()
 
-    def _placed(self, sensor: Sensor, ends: BeamEnds) -> PlacedLidar:
+    def _placed(self, beams: CastBeams) -> PlacedLidar:
         side = self._space.interval
+        sensor = beams.sensor
         return PlacedLidar(
             lattice_of(lidar_of(sensor)),
             position_in_voxels(sensor.pose.position, self._space.origin, side),
             sensor.pose.ground_from_sensor,
-            self.cache.rotated(sensor),
-            ends=ends,
+            beams.rotated,
+            ends=beams.ends,
             side=side,
         )
 
@@ -216,8 +217,7 @@ class LidarGround(GroundKernel):
     def mark(self, sensor: Sensor) -> VisibleGround:
         """Mark the squares of beams between the ground and the posts' height."""
         beams = self.cache.cast(sensor)
-        rotated = self.cache.rotated(sensor)
-        components = rotated.components(np.arange(lidar_of(sensor).beam_count))
+        components = beams.rotated.components(np.arange(lidar_of(sensor).beam_count))
         first, last = self._low_parts(sensor, components)
         low = np.flatnonzero(first <= last)
         occludable = low[beams.ends.occludable[low]]

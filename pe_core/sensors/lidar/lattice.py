@@ -98,9 +98,11 @@ class Lattice:
         row = np.repeat(bounds.row[voxels], rows) + count_up(rows)
         n = columns[voxel]
         first = bounds.column[voxels].astype(np.int64) % self.count
-        column = np.repeat(first[voxel], n) + count_up(n)
-        column[column >= self.count] -= self.count
-        return np.repeat(voxel, n), np.repeat(self.channels[row] * self.width, n) + column
+        column = np.repeat(first[voxel] - (np.cumsum(n) - n), n)  # as of `count_up`, in one turn
+        column += np.arange(len(column))
+        np.subtract(column, self.count, out=column, where=column >= self.count)
+        column += np.repeat(self.channels[row] * self.width, n)
+        return np.repeat(voxel, n), column
 
     def candidates(self, windows: Windows) -> tuple[Ints, Ints]:
         """Return (voxel, beam) pairs (P,) of the beams inside each voxel's window."""

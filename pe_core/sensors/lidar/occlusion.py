@@ -48,7 +48,7 @@ def occlusion_candidates(
     once += again
     for row, before in zip(once[1:], once, strict=False):
         row += before  # five times as fast as np.cumsum along the first axis
-    covered: Flags = np.cumsum(once[:-1], axis=1) > 0
+    covered: Flags = np.cumsum(once[:-1], axis=1, dtype=np.int32) > 0
     return covered
 
 

@@ -143,18 +143,24 @@ def _count_bracketed(
     counts = bounds.lower.astype(np.int64)
     counts[_may_exceed(points, lidar.max_range)] = 0
     limit = np.iinfo(np.int64).max if saturation_count is None else saturation_count
-    undecided = np.flatnonzero((counts < bounds.upper) & (counts < limit))
-    offsets = voxels.offsets(lidar.position, index[undecided])
-    beams = lattice.window_beams(bounds, undecided)
-    counts[undecided] = count_pairs(offsets, lidar, *beams, without_vehicle=True)
-    occludable = lidar.occludable
-    rows = np.flatnonzero(occludable.any(axis=1))
-    if len(rows):
-        affected = np.flatnonzero((bounds.row <= rows[-1]) & (bounds.upper > 0) & (counts > 0))
-        affected = affected[_any_in_window(occludable, bounds, affected)]
-        offsets = voxels.offsets(lidar.position, index[affected])
-        counts[affected] = count_pairs(offsets, lidar, *lattice.window_beams(bounds, affected))
+    undecided = (counts < bounds.upper) & (counts < limit)
+    affected = _affected(lidar.occludable, bounds)
+    undecided[affected] = False
+    for some, without_vehicle in ((np.flatnonzero(undecided), True), (affected, False)):
+        offsets = voxels.offsets(lidar.position, index[some])
+        beams = lattice.window_beams(bounds, some)
+        counts[some] = count_pairs(offsets, lidar, *beams, without_vehicle=without_vehicle)
     return counts
+
+
+def _affected(occludable: NDArray[np.bool_], bounds: Bracket) -> Ints:
+    """Return the voxels (N,) whose windows hold a beam that the vehicle may occlude, of flags (C,
+    A), lowest channel first."""
+    rows = np.flatnonzero(occludable.any(axis=1))
+    if not len(rows):
+        return np.zeros(0, np.intp)
+    possible = np.flatnonzero((bounds.row <= rows[-1]) & (bounds.upper > 0))
+    return possible[_any_in_window(occludable, bounds, possible)]
 
 
 def _may_exceed(points: Sequence[Singles], max_range: float) -> NDArray[np.bool_]:
@@ -187,8 +193,9 @@ def count_pairs(
     (V, 3) are the voxels' centres seen from the sensor, in sides."""
     counts = np.zeros(len(offsets), np.int64)
     occludable = []
+    axes = [np.ascontiguousarray(w) for w in offsets.T]
     for block in blocks(len(voxel), PAIR_BLOCK):
-        through, enter = _through(offsets, lidar, voxel[block], beam[block])
+        through, enter = _through(axes, lidar, voxel[block], beam[block])
         pairs = voxel[block][through], beam[block][through]
         counts += np.bincount(pairs[0], minlength=len(counts))
         if not without_vehicle:
@@ -201,16 +208,20 @@ def count_pairs(
     return counts
 
 
-def _through(offsets: Floats, lidar: PlacedLidar, voxel: Ints, beam: Ints) -> tuple[Ints, Floats]:
+def _through(
+    offsets: Sequence[Floats], lidar: PlacedLidar, voxel: Ints, beam: Ints
+) -> tuple[Ints, Floats]:
     """Pairs whose beam enters its cube in range, and the distance there, in sides. The arithmetic
-    of `definition.cube_crossing`, axis by axis."""
+    of `definition.cube_crossing`, axis by axis; `offsets` are three arrays (V,), one an axis."""
     enter = np.zeros(len(voxel))
     leave = np.full(len(voxel), np.inf)
-    for axis, step in enumerate(lidar.beams.components(beam)):
-        center = offsets[voxel, axis]
-        t0 = (center - 0.5) / step
-        t1 = (center + 0.5) / step
-        np.maximum(enter, np.minimum(t0, t1), out=enter)
-        np.minimum(leave, np.maximum(t0, t1), out=leave)
+    for center, step in zip(offsets, lidar.beams.components(beam), strict=True):
+        upper = np.take(center, voxel)
+        lower = upper - 0.5
+        upper += 0.5
+        lower /= step
+        upper /= step
+        np.maximum(enter, np.minimum(lower, upper, out=step), out=enter)
+        np.minimum(leave, np.maximum(lower, upper, out=step), out=leave)
     through = np.flatnonzero((enter < leave) & (enter <= lidar.max_range))
     return through, enter[through]

@@ -109,6 +109,7 @@ def rich(car):
     curve.b = 0.1
     curve.c = 0.1
     settings.score_samples = 2048
+    settings.figures = {"blind_ground", "entropy"}
     settings.search_samples = 1024
     settings.method = "random"
     settings.candidates = 3

@@ -46,7 +46,8 @@ Constraints: a placement that breaks a rule is not evaluated and counts nothing.
 anew; the others are told a penalty, the worst entropy so far plus the number of broken rules.
 
 A cell has five seeds, or says how many. With fewer than three nothing is best and nothing is
-ranked.
+ranked. The mean rank is among the methods that have three seeds of a problem; the number of
+problems is in brackets.
 
 ## The plan of these runs, written before them
 
@@ -132,7 +133,7 @@ def _of_budget(runs: list[Json], budget: str) -> list[str]:
         head = f"| {title} | {own[0]['asked']:,} | {own[0]['samples']:,} "
         lines.append(f"{head}| {' | '.join(_cell(ends[m], best) for m in methods)} |")
     ranks = [_mean_rank(runs, m, methods) for m in methods]
-    lines.append(f"| mean rank | | | {' | '.join(ranks)} |")
+    lines.append(f"| mean rank (problems) | | | {' | '.join(ranks)} |")
     seconds = [_seconds(runs, m) for m in methods]
     lines.append(f"| processor time of a run, median | | | {' | '.join(seconds)} |")
     broken = [_broken(runs, m) for m in methods]
@@ -155,14 +156,15 @@ def _cell(values: list[float], best: float) -> str:
 
 
 def _mean_rank(runs: list[Json], method: str, methods: list[str]) -> str:
-    """Return the mean rank of a method's median over problems with all seeds of all methods."""
+    """Return the mean rank of a method's median among those of all methods, and over how many
+    problems; a method counts where it has enough seeds."""
     ranks = []
     for name in PROBLEMS:
         ends = {m: entropies(runs, name, m) for m in methods}
-        if all(len(values) >= SEEDS for values in ends.values()):
-            middles = {m: median(values) for m, values in ends.items()}
+        middles = {m: median(values) for m, values in ends.items() if len(values) >= SEEDS}
+        if method in middles and len(middles) > 1:
             ranks.append(1 + sum(value < middles[method] for value in middles.values()))
-    return f"{mean(ranks):.1f} of {len(ranks)}" if ranks else "-"
+    return f"{mean(ranks):.1f} ({len(ranks)})" if ranks else "-"
 
 
 def _seconds(runs: list[Json], method: str) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 import addon_utils
 import bpy
 from bl_ext.user_default import perception_entropy
-from bl_ext.user_default.perception_entropy import english
+from bl_ext.user_default.perception_entropy.preferences import english
 
 ADDON = "bl_ext.user_default.perception_entropy"
 OPERATORS = ("add_sensor", "score", "optimize", "export_study", "render_review")

@@ -16,9 +16,9 @@ import traceback
 from pathlib import Path
 
 import bpy
-from bl_ext.user_default.perception_entropy import location_query
 from bl_ext.user_default.perception_entropy.live import state
 from bl_ext.user_default.perception_entropy.operators import placement, running_job
+from bl_ext.user_default.perception_entropy.queries import location_query
 from mathutils import Euler
 
 FOLDER = Path(sys.argv[-1])

@@ -43,7 +43,8 @@ draw_handler.register()
 """
 FILM = f"""
 from pathlib import Path
-from {NAME} import document, film
+from {NAME} import document
+from {NAME}.view import film
 window.scene.render.fps = 4
 with bpy.context.temp_override(window=window, area=area, region=region):
     study = document.study_as_drawn(window.scene)

@@ -11,7 +11,7 @@ from tests.blender.test_search_window import ask_for
 from tests.limits import HANG_S
 
 NAME = "bl_ext.user_default.perception_entropy"
-ENGINE = f"__import__('{NAME}.engine_process', fromlist=['*'])"
+ENGINE = f"__import__('{NAME}.processes.engine_process', fromlist=['*'])"
 RUNNING = f"__import__('{NAME}.operators.running_job', fromlist=['*']).current"
 LIVE = f"__import__('{NAME}.live.state', fromlist=['*']).live_state(window.scene.name)"
 SETTINGS = "window.scene.perception_entropy"

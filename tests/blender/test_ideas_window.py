@@ -7,7 +7,7 @@ from tests.blender.stage import HEIGHT, WIDTH
 EFFECT_TIMEOUT_S = 120
 ANSWER_TIMEOUT_S = 90
 OFFERS = (
-    "__import__('bl_ext.user_default.perception_entropy.where_map', fromlist=['offers'])"
+    "__import__('bl_ext.user_default.perception_entropy.queries.where_map', fromlist=['offers'])"
     ".offers.get(bpy.context.window_manager.windows[0].scene.name)"
 )
 ADDON = "bl_ext.user_default.perception_entropy"

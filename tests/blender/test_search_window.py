@@ -7,7 +7,7 @@ BETTER_TIMEOUT_S = 180
 ADDON = "bl_ext.user_default.perception_entropy"
 ON_THE_ROOF_M = 1.45 + 0.04 + 0.12
 """No sensor on a base plate of 40 mm is higher than this."""
-VIEW = f"__import__('{ADDON}.best_so_far', fromlist=['searches']).searches"
+VIEW = f"__import__('{ADDON}.view.best_so_far', fromlist=['searches']).searches"
 RUNNING = f"__import__('{ADDON}.operators.running_job', fromlist=['current']).current"
 PLACE = "bpy.data.objects['roof_lidar'].matrix_world.translation"
 

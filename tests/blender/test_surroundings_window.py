@@ -6,7 +6,7 @@ import pytest
 
 EFFECT_TIMEOUT_S = 60
 SEEN = (
-    "__import__('bl_ext.user_default.perception_entropy.body_query', fromlist=['seen'])"
+    "__import__('bl_ext.user_default.perception_entropy.queries.body_query', fromlist=['seen'])"
     ".seen(bpy.context.window_manager.windows[0].scene)"
 )
 CHILD = f"kept['child'] = {SEEN}['child'].to_dict()"
@@ -17,8 +17,8 @@ GROUND = OURS.format("overlay.layer_cache") + ".shown_of(window.scene.name, 'bir
 BOX = f"""
 name = {OURS.format("operators.birds_eye")}.PLATE_NAME
 main = next(each for each in area.regions if each.type == "WINDOW")
-kind = {OURS.format("plates")}.BIRDS_EYE
-((left, bottom, right, top),) = {OURS.format("viewport")}.plate_boxes(main.as_pointer(), kind)
+kind = {OURS.format("view.plates")}.BIRDS_EYE
+((left, bottom, right, top),) = {OURS.format("view.viewport")}.plate_boxes(main.as_pointer(), kind)
 kept["box"] = [main.x + left, window.height - main.y - top, right - left, top - bottom]
 kept["taken"] = sorted(key.name for key in {PICTURES}._pictures if key.plate == name)
 """

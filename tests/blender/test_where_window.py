@@ -5,7 +5,7 @@ from tests.blender.stage import WIDTH
 EFFECT_TIMEOUT_S = 60
 PLACES_TIMEOUT_S = 150
 FOUND = (
-    "__import__('bl_ext.user_default.perception_entropy.where_map', fromlist=['maps'])"
+    "__import__('bl_ext.user_default.perception_entropy.queries.where_map', fromlist=['maps'])"
     ".maps.get(bpy.context.window_manager.windows[0].scene.name)"
 )
 ADDON = "bl_ext.user_default.perception_entropy"

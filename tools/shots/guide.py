@@ -22,10 +22,10 @@ OURS = "__import__('bl_ext.user_default.perception_entropy.{}', fromlist=['*'])"
 RUNNING = OURS.format("operators.running_job")
 LIVE_READING = OURS.format("live.state") + ".live_state(window.scene.name).score"
 MODAL = "[each.bl_idname.lower().replace('_ot_', '.') for each in window.modal_operators]"
-IDLE = f"not {OURS.format('engine_process')}.busy('live score')"
+IDLE = f"not {OURS.format('processes.engine_process')}.busy('live score')"
 PLACING = OURS.format("operators.placement")
 SENSORS = "any(each.perception_entropy.is_sensor for each in window.scene.objects)"
-ANSWER = OURS.format("location_query") + ".answer(window.scene)"
+ANSWER = OURS.format("queries.location_query") + ".answer(window.scene)"
 SETTINGS = "settings = window.scene.perception_entropy\n"
 BUDGET = f"""
 {SETTINGS.strip()}

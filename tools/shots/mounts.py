@@ -6,7 +6,7 @@ from .guide import LOOK
 from .reel import Camera, Reel
 
 ADDON = "bl_ext.user_default.perception_entropy"
-BEST = f"__import__('{ADDON}.best_so_far', fromlist=['searches']).searches"
+BEST = f"__import__('{ADDON}.view.best_so_far', fromlist=['searches']).searches"
 PATIENCE_S = 240
 """How long a better placement may take."""
 

@@ -7,7 +7,7 @@ from .reel import Camera, Reel
 
 ADDON = "bl_ext.user_default.perception_entropy"
 JOB = f"__import__('{ADDON}.operators.running_job', fromlist=['current']).current"
-REGION = f"__import__('{ADDON}.where_map', fromlist=['regions']).regions"
+REGION = f"__import__('{ADDON}.queries.where_map', fromlist=['regions']).regions"
 PATIENCE_S = 300
 """How long the fine region may take."""
 

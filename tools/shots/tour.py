@@ -12,7 +12,7 @@ ROOF = (-0.43, 0.0, 1.8)
 BEHIND_SEAT = (0.4, 1.7, 0.0)
 AHEAD = LOOK.format(center=(5.0, 0.0, 0.5), distance=24.0, rotation=(1.05, 0.0, 2.3))
 BODIES = LOOK.format(center=(4.0, 0.0, 0.5), distance=19.0, rotation=(1.12, 0.0, 2.5))
-WHERE = OURS.format("where_map")
+WHERE = OURS.format("queries.where_map")
 PLACES = f"{WHERE}.maps.get(window.scene.name)"
 OFFERS = f"{WHERE}.offers.get(window.scene.name)"
 STORY = OURS.format("overlay.layer_cache") + ".shown_of(window.scene.name, 'story')"

@@ -84,7 +84,7 @@ def test_the_page_says_where_another_method_wins_and_ranks_whole_cells_alone():
         "| two free | 250 | 2,048 | 2.300 (2.400, 3 seeds) | **2.200** (2.900, 3 seeds) |" in page
     )
     assert "1.350 (1.400, 2 seeds)" in page
-    assert "| mean rank | | | 2.0 of 1 | 1.0 of 1 |" in page
+    assert "| mean rank (problems) | | | 2.0 (1) | 1.0 (1) |" in page
     assert "one after the other): none" in page
     runs[1]["path"] = runs[0]["path"]
     assert "two free by portfolio" in "\n".join(table(runs))

@@ -379,6 +379,11 @@ def _requirement_keys(request: ViewRequest) -> dict[str, Hashable]:
 def _requirements(request: ViewRequest, cache: LayerCache, _name: str) -> ShapeSteps:
     """Pause after each step of the check; the zones are there before the margins."""
     checker, unplaced = cache.checker(request)
+
+    def zones_of(found: list[requirements.Verdict]) -> graphics.LayerShape:
+        before = cache.met_before(request, found)
+        return requirement_zones(found, request.requirement, before, unplaced)
+
     early: list[requirements.Verdict] = []
     verdicts: list[requirements.Verdict] = []
     is_told = False
@@ -388,9 +393,8 @@ def _requirements(request: ViewRequest, cache: LayerCache, _name: str) -> ShapeS
             (early if step.is_early else verdicts).append(step.verdict)
         is_early = bool(early) and not (step.is_early or is_told)
         is_told = is_told or is_early
-        yield requirement_zones(early, request.requirement, None, unplaced) if is_early else None
-    before = cache.met_before(request, verdicts)
-    return requirement_zones(verdicts, request.requirement, before, unplaced)
+        yield zones_of(early) if is_early else None
+    return zones_of(verdicts)
 
 
 def _story_keys(request: ViewRequest) -> dict[str, Hashable]:

@@ -145,22 +145,32 @@ class TestZones:
         met = sum(verdict.met for verdict in verdicts)
         assert shape.legend.title == f"{met} of 3 requirements met"
 
-    def test_zones_are_there_before_the_margins(self, held):
-        """One shape for the time being: every requirement on bodies, met or not as at the end."""
+    def steps(self, scene):
+        """The shapes for the time being, and the last one."""
         depsgraph = bpy.context.evaluated_depsgraph_get()
-        request = SnapshotReader().request(held, depsgraph, False)
-        names = list(scenes.drawn(held)["requirements"])
-        steps = analysis_calls.layer_shapes(request, "requirements", False, names)
+        request = SnapshotReader().request(scene, depsgraph, False)
+        steps = analysis_calls.layer_shapes(request, "requirements", False, [""])
         early = []
         with pytest.raises(StopIteration) as end:
             while True:
                 early += [step] if (step := next(steps)) is not None else []
-        ((first,),) = early
-        (last,) = end.value.value
-        met = {verdict.name: verdict.met for verdict in last.verdicts}
-        assert first.verdicts
-        assert all(verdict.met == met[verdict.name] for verdict in first.verdicts)
+        return [shape for (shape,) in early], end.value.value[0]
+
+    def test_zones_are_there_before_the_margins(self, held):
+        """One shape for the time being: every requirement, met or not as at the end."""
+        (first,), last = self.steps(held)
+        assert [verdict.met for verdict in first.verdicts] == [each.met for each in last.verdicts]
         assert len(last.verdicts) == 3
+
+    def test_what_a_move_lost_is_told_with_the_first_zones(self, held):
+        self.steps(held)
+        for name in ("eye", "roof"):
+            bpy.data.objects[name].location = (0.0, 0.0, 0.5)  # within the body
+        (first,), last = self.steps(held)
+        news = [text for _, text in last.legend.classes if text.startswith("lost: ")]
+        assert news and news == [
+            text for _, text in first.legend.classes if text.startswith("lost: ")
+        ]
 
     def test_samples_are_filled_where_met_and_hatched_where_not(self, held):
         """Squares of the passing samples cover the chosen zone, hatching those that fail."""

@@ -109,14 +109,14 @@ def test_verdicts_follow_a_turned_camera_and_a_check_of_all_is_ended_by_esc(stag
     stage.photograph(screenshots / "window_requirements_won.png")
 
     # A check of all presets leaves the window free, and Esc keeps what it found.
+    stage.point_at_view()
     stage.do(CHECK)
     running = f"__import__('{NAME}.operators.running_job', fromlist=['current']).current"
     known = "sum(bool(row.verdict) for row in window.scene.perception_entropy.requirements)"
     stage.wait_until(f"{known} > 0 or {running} is None", EFFECT_TIMEOUT_S)
-    stage.photograph(screenshots / "window_check.png")
-    stage.point_at_view()
     stage.key("Escape")
     stage.wait_until(f"{running} is None", EFFECT_TIMEOUT_S)
+    stage.photograph(screenshots / "window_check.png")
     answer = stage.do(ROWS)
     assert len(answer["known"]) > 10, "the window stood still"
     found = [verdict for verdict in answer["found"] if verdict is not None]

@@ -15,7 +15,7 @@ demo: .venv/run.stamp  ## better places for a LiDAR and a camera on a sedan: a p
 test test-all: export PYTHONDONTWRITEBYTECODE =
 # Its threads wait busily for each other, and no test computes what they would make faster.
 test test-all: export OPENBLAS_NUM_THREADS = 1
-test: .venv/dev.stamp  ## run the tests, a quarter of an hour; ARGS="tests/engine -k prior" for some
+test: .venv/dev.stamp  ## run the tests, ten minutes; ARGS="tests/engine -k prior" for some
 	@$(PYTHON_VENV) -m pytest $(ON_ALL_PROCESSORS) $(or $(ARGS),tests)
 
 test-all: export PE_THOROUGH = 1

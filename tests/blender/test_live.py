@@ -64,12 +64,16 @@ def live(stage):
 def wait_for_rest(stage, other_than=None):
     """Wait for an exact reading."""
 
+    exact = []
+
     def rested():
         said = stage.state["live"]
-        return said.get("rested") and said["entropy"] != other_than
+        if said.get("rested") and said["entropy"] != other_than:
+            exact.append(said["entropy"])
+        return exact
 
     stage.wait_for(rested, EFFECT_TIMEOUT_S, "an exact score")
-    return stage.state["live"]["entropy"]
+    return exact[-1]  # not read again: an undo may have begun the next score meanwhile
 
 
 def grab_and_move(stage, moves=MOVES):

@@ -11,7 +11,6 @@ import argparse
 import json
 import math
 import os
-import resource
 import subprocess
 import sys
 import time
@@ -27,6 +26,7 @@ import pe_core as pe
 
 from .many_rows import ring_on_roof
 from .problems import car, plain_study
+from .timing import peak_mb
 
 ROOT = Path(__file__).resolve().parent.parent
 RUNS = ROOT / "build" / "growth"
@@ -161,8 +161,7 @@ def measured(name: str, value: int) -> Json:
         except pe.InputError as error:
             return {"refused": str(error)}
         seconds.append(time.process_time() - begun)
-    peak_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    return {"seconds": median(seconds), "peak_mb": peak_mb, "load": os.getloadavg()[0]}
+    return {"seconds": median(seconds), "peak_mb": peak_mb(), "load": os.getloadavg()[0]}
 
 
 def _run(folder: Path, name: str, value: int) -> Json:

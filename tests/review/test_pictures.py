@@ -5,9 +5,11 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
+from pe_core import scene
 from pe_core.catalog import load
 from pe_tools.page import ReportContext
 from pe_tools.page.pictures import vehicle_picture as picture_module
+from pe_tools.page.pictures.brackets import bracket
 from pe_tools.page.pictures.painted_mesh import painted_vehicle
 from pe_tools.page.pictures.ray_scene import RayCamera, RayScene, Viewpoint
 from pe_tools.page.pictures.vehicle_picture import vehicle_picture
@@ -83,3 +85,19 @@ def test_a_sensor_behind_the_body_is_reported_apart(car):
     drawing, key = picture_module.labelled_picture(shown, "alt")
     assert drawing.count('stroke-dasharray="4 4"') == 1 and drawing.count("<circle") == 3
     assert [row[:2] for row in key] == [(1, "right"), (2, "a <b>")]
+
+
+@pytest.mark.parametrize("away", [0.0, 0.02, 0.1, 0.4])
+@pytest.mark.parametrize("yaw", [0.0, 40.0])
+def test_a_sensor_off_the_body_has_a_post_to_its_nearest_point(away, yaw):
+    body = pe.Vehicle(box((-2.0, -0.9, 0.2), (2.0, 0.9, 1.5)))
+    housing = scene.Housing("box", (0.1, 0.1, 0.1), optical_center=(0.0, 0.0, 0.05))
+    side = 0.9
+    pose = pe.Pose.from_degrees((0.0, side + 0.05 + away, 1.0), (0.0, 0.0, yaw))
+    post = bracket(body, housing, pose)
+    if away < 0.03:
+        assert post is None, "its housing stands on the body"
+        return
+    low, high = post.mesh.bounds
+    assert low[1] == pytest.approx(side) and high[1] == pytest.approx(pose.position[1])
+    assert np.abs((low + high)[[0, 2]] / 2.0 - [0.0, 1.0]).max() < 0.01

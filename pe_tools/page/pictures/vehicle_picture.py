@@ -13,6 +13,7 @@ from pe_core.base.arrays import Floats
 from ... import advice, graphics, jobs
 from ...templating import Markup
 from ..report_context import MAX_TRIANGLES, ReportContext
+from .brackets import bracket
 from .painted_mesh import PaintedMesh, lathe, painted_vehicle, rounded_box
 from .ray_scene import RayScene, Viewpoint
 from .rendering import Environment, render
@@ -79,8 +80,10 @@ def rendered(
 ) -> Floats:
     """Return a picture of a rig on its vehicle as sRGB (H, W, 3), 0 to 1."""
     colors = graphics.sensor_colors_on_paper(rig)
-    solids = [] if vehicle is None else [painted_vehicle(vehicle)]
-    solids += [_solid(sensor, colors[sensor.name]) for sensor in rig]
+    solids = [_solid(sensor, colors[sensor.name]) for sensor in rig]
+    if vehicle is not None:
+        posts = (bracket(vehicle, housing_of(sensor), sensor.pose) for sensor in rig)
+        solids = [painted_vehicle(vehicle), *solids, *(post for post in posts if post is not None)]
     bodies = RayScene(solids, vehicle is not None)
     return render(view.camera(*size), bodies, _studio(_bounds(vehicle, rig)))
 

@@ -5,9 +5,7 @@ from bpy.props import IntProperty
 
 from .. import document, signals
 from ..engine import motion, pe
-from ..view import film
-from .declared import chosen_file, operator
-from .exports import dialog
+from .declared import operator
 from .rows import new_row, row_list, unless_selected
 
 DRAWN = -1
@@ -100,24 +98,3 @@ def play_story(context: bpy.types.Context) -> None:
         settings.view.show_story = settings.show_overlay = True
     if not bpy.app.background:
         bpy.ops.screen.animation_play()
-
-
-def _unless_rendering(context: bpy.types.Context) -> str | None:
-    """Why no film can be begun; None: one can."""
-    if bpy.app.is_job_running("RENDER"):
-        return "Another render is running; Esc stops it"
-    return unless_selected("stories")(context)
-
-
-@operator("Film", unless=_unless_rendering, **dialog("", lambda _self: f"drive_by{film.WEBM}"))
-def film_story(context: bpy.types.Context, filepath: str, asked_in_window: bool) -> str:
-    """Render the selected story as a film (.webm, .mp4), with what the 3D view shows over it"""
-    settings = context.scene.perception_entropy
-    path = chosen_file(filepath)
-    story = document.story_of(settings.stories[settings.story_index])
-    study = document.study_as_drawn(context.scene)
-    if bpy.app.background or not asked_in_window:
-        film.write_film(context.scene, study, story, path)
-        return f"Wrote {path}"
-    film.FilmRender(context.scene, study, story, path)
-    return "Rendering: Esc ends it, and keeps what is done"

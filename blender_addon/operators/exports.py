@@ -1,14 +1,16 @@
-"""Exports: the study, the scene and the rig for other programs, the review picture and page.
+"""*Export*: one operator writes each format: study, review page, picture, film; rig and scene for
+other programs.
 
-What takes long is a job, whose files are written as one set at the end. A file
-dialog's operator ends with it: the job then runs in an operator of its own.
+A format is a row of `FORMATS`. What takes long is a job, whose files are written as one set at the
+end. A file dialog's operator ends with it: the job then runs in an operator of its own.
 """
 
 import shlex
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import dataclass, fields
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
@@ -18,17 +20,51 @@ from .. import document
 from ..engine import app, exchange, jobs, outputs, page, pe
 from ..processes import own_jobs
 from ..processes.own_jobs import ExportJob, WrittenFiles
+from ..view import film
 from . import running_job
-from .declared import Answer, OperatorResult, Stopped, Told, chosen_file, operator
+from .declared import Answer, OperatorResult, Refused, Stopped, Told, chosen_file, operator
 from .jobs import JobRow, Task, begin
+from .rows import unless_selected
 
 STOPPED = "Stopped: nothing was written"
-REPLACE = BoolProperty(
-    name="Replace", description="Replace existing files of a folder", default=False
-)
-FORMAT_ITEMS = tuple(
-    (row.name, row.title, "", k) for k, row in enumerate(exchange.RIG_FORMATS.values())
-)
+BUSY = "Another score, search or export is running; Esc stops it"
+RENDERING = "Another render is running; Esc stops it"
+ABOUT_PAGE = ("title", "author", "date", "revision")
+
+
+class Asked(NamedTuple):
+    """What *Export* is asked for: the scene's context, the file or folder to write, and the
+    operator, whose properties are its options."""
+
+    context: bpy.types.Context
+    path: Path
+    options: Any
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExportFormat:
+    """A format of *Export*.
+
+    `title` is its entry in the menu, `file` the usual name of its file, or of its folder where it
+    `has_folder`. `write` writes it. `options` are the properties of the operator that it has.
+    `unless` says why it cannot be written now. One that is `named_after_scene` has the name of the
+    .blend, not its usual one.
+    """
+
+    title: str
+    file: str
+    write: Callable[[Asked], Answer]
+    options: tuple[str, ...] = ()
+    unless: Callable[[bpy.types.Context], str | None] = lambda _context: None
+    has_folder: bool = False
+    named_after_scene: bool = False
+
+    @property
+    def first_name(self) -> str:
+        """The name that the file dialog proposes."""
+        if not self.named_after_scene:
+            return self.file
+        return str(Path(bpy.data.filepath or "untitled").with_suffix(Path(self.file).suffix))
 
 
 def _take_waiting(_context: bpy.types.Context) -> Task:
@@ -58,46 +94,174 @@ def told_of(written: WrittenFiles) -> Told:
 
 
 def _unless_running(_context: bpy.types.Context) -> str | None:
-    busy = running_job.current is not None
-    return "Another score, search or export is running; Esc stops it" if busy else None
+    return None if running_job.current is None else BUSY
 
 
-def dialog(suffix: str, name: Callable[[Any], str] | None = None) -> dict[str, Any]:
-    """Return what operators have that ask for a file to write. `suffix` is that of the file's name;
-    without, the name says which format. `name` returns the first name."""
-
-    def invoke(self: Any, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
-        self.asked_in_window = not bpy.app.background
-        if name is not None:
-            self.filepath = name(self)
-        return ExportHelper.invoke(self, context, event)
-
-    found = {"bases": (ExportHelper,), "invoke": invoke, "filename_ext": suffix}
-    found |= {"options": frozenset(), "asked_in_window": False}
-    if not suffix:
-        return found | {"check_extension": None}
-    return found | {"filter_glob": StringProperty(default=f"*{suffix}", options={"HIDDEN"})}
+def _unless_rendering(context: bpy.types.Context) -> str | None:
+    """Why no film can be begun; None: one can."""
+    if bpy.app.is_job_running("RENDER"):
+        return RENDERING
+    return unless_selected("stories")(context)
 
 
-@operator("Export Study", **dialog(".toml"))
-def export_study(context: bpy.types.Context, filepath: str) -> Told:
-    """Write a study (.toml) and the vehicle's mesh (.npz) beside it"""
-    path = chosen_file(filepath)
-    study = document.study_as_drawn(context.scene)
-    jobs.export_study(study, path, replace_study=True)  # the file dialog has confirmed it
-    return told_of(WrittenFiles((path,)))
+def _write_study(asked: Asked) -> Told:
+    study = document.study_as_drawn(asked.context.scene)
+    jobs.export_study(study, asked.path, replace_study=True)  # the file dialog has confirmed it
+    return told_of(WrittenFiles((asked.path,)))
+
+
+def _write_review(asked: Asked) -> Answer:
+    path = asked.path
+    about = page.About(*(getattr(asked.options, name) for name in ABOUT_PAGE))
+    scene = asked.context.scene
+    study = document.study_as_drawn(scene)
+    facts: dict[str, Any] = {
+        "name": name_of(scene, path),
+        "command": headless_command(path, about),
+        "versions": document.blender_version(),
+    }
+    jobs.prepare_folder(path.parent)  # fail before the work, not after
+    search = searched_from(scene, study)
+
+    job = own_jobs.page_job(study, path, about, facts, search=search)
+    return run(job, asked.options.asked_in_window)
+
+
+def _write_picture(asked: Asked) -> Answer:
+    study = document.study_as_drawn(asked.context.scene)
+    jobs.prepare_folder(asked.path.parent)  # fail before the work, not after
+    return run(own_jobs.picture_job(study, asked.path), asked.options.asked_in_window)
+
+
+def _write_film(asked: Asked) -> str:
+    scene = asked.context.scene
+    settings = scene.perception_entropy
+    story = document.story_of(settings.stories[settings.story_index])
+    study = document.study_as_drawn(scene)
+    if bpy.app.background or not asked.options.asked_in_window:
+        film.write_film(scene, study, story, asked.path)
+        return f"Wrote {asked.path}"
+    film.FilmRender(scene, study, story, asked.path)
+    return "Rendering: Esc ends it, and keeps what is done"
+
+
+def _write_scene(name: str, asked: Asked) -> Answer:
+    row = outputs.scene_output(name)
+    scene = asked.context.scene
+    study = document.study_from_scene(scene, asked.context.evaluated_depsgraph_get())
+    replace = asked.options.replace or not row.has_several  # of one file the dialog has asked
+    reach = asked.options.range_m or None
+    job = own_jobs.scene_job(study, name, asked.path, reach, replace=replace)
+    return run(job, asked.options.asked_in_window)
+
+
+def _write_rig(name: str, asked: Asked) -> Answer:
+    row = exchange.rig_format(name)
+    scene = asked.context.scene
+    study = document.study_from_scene(scene, asked.context.evaluated_depsgraph_get())
+    replace = asked.options.replace or not (row.beside or row.is_folder)  # as `_write_scene`
+    target = bpy.path.abspath(asked.options.into) or None
+    if row.write_scene is not None:
+        result = document.stored_result(scene, study)
+        job = own_jobs.rig_job(study, name, asked.path, target, replace=replace, result=result)
+        return run(job, asked.options.asked_in_window)
+    return told_of(own_jobs.write_rig(study, name, asked.path, target, replace=replace))
+
+
+def _of_rig(name: str) -> ExportFormat:
+    row = exchange.rig_format(name)
+    return ExportFormat(
+        title=row.title,
+        file=f"{name}_rig" if row.is_folder else row.files[0],
+        write=partial(_write_rig, name),
+        options=("into", "replace"),
+        unless=_unless_running if row.write_scene is not None else lambda _context: None,
+        has_folder=row.is_folder,
+    )
+
+
+def _of_scene(name: str) -> ExportFormat:
+    row = outputs.scene_output(name)
+    return ExportFormat(
+        title=row.title,
+        file=row.file,
+        write=partial(_write_scene, name),
+        options=("range_m", "replace") if row.has_range else ("replace",),
+        unless=_unless_running,
+        has_folder=row.has_several,
+    )
+
+
+FORMATS = {
+    "study": ExportFormat(
+        title="Study (.toml)", file="study.toml", write=_write_study, named_after_scene=True
+    ),
+    "review": ExportFormat(
+        title="Review Page (.html)",
+        file="review.html",
+        write=_write_review,
+        options=ABOUT_PAGE,
+        unless=_unless_running,
+        named_after_scene=True,
+    ),
+    "film": ExportFormat(
+        title="Film of the Selected Story",
+        file=f"drive_by{film.WEBM}",
+        write=_write_film,
+        unless=_unless_rendering,
+    ),
+    **{name: _of_rig(name) for name in exchange.RIG_FORMATS},
+    **{name: _of_scene(name) for name in outputs.scene_outputs()},
+    "picture": ExportFormat(
+        title="Picture (.svg)",
+        file="rig.svg",
+        write=_write_picture,
+        unless=_unless_running,
+        named_after_scene=True,
+    ),
+}
+"""What *Export* writes, by the format's name, as ``pe export --to`` has it."""
+FILES = {name: row.file for name, row in FORMATS.items() if not row.has_folder}
+
+
+def _propose(self: Any, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
+    """Open the file dialog; refuse at once what cannot be written now."""
+    row = FORMATS[self.format]
+    reason = row.unless(context)
+    if reason:
+        self.report({"WARNING"}, reason)
+        return {"CANCELLED"}
+    self.asked_in_window = not bpy.app.background
+    if Path(self.filepath).suffix != Path(row.file).suffix:  # of none, or the last one's format
+        self.filepath = str(Path(self.filepath).parent / row.first_name)
+    return ExportHelper.invoke(self, context, event)
+
+
+def _draw(self: Any, _context: bpy.types.Context) -> None:
+    """Draw the format, and the options that it has."""
+    self.layout.prop(self, "format")
+    for name in FORMATS[self.format].options:
+        self.layout.prop(self, name)
+
+
+def _about_format(about: str, chosen: bpy.types.OperatorProperties) -> str:
+    return f"{about}: {FORMATS[chosen.format].title}"
 
 
 @operator(
-    "Export Scene",
-    unless=_unless_running,
-    **dialog("", lambda self: outputs.scene_output(self.output).file),
-    output=EnumProperty(
-        items=tuple(
-            (row.name, row.title, "", k) for k, row in enumerate(outputs.scene_outputs().values())
-        ),
-        name="Output",
-        description="What to write",
+    "Export",
+    bases=(ExportHelper,),
+    invoke=_propose,
+    draw=_draw,
+    options=frozenset(),
+    tooltip=_about_format,
+    filename_ext="",
+    check_extension=None,
+    asked_in_window=False,
+    format=EnumProperty(
+        items=tuple((name, row.title, "", k) for k, (name, row) in enumerate(FORMATS.items())),
+        name="Format",
+        description="The format to write; by default that of the file's name",
     ),
     range_m=FloatProperty(
         name="Range",
@@ -106,44 +270,15 @@ def export_study(context: bpy.types.Context, filepath: str) -> Told:
         min=0.0,
         subtype="DISTANCE",
     ),
-    replace=REPLACE,
-)
-def export_scene(
-    context: bpy.types.Context,
-    filepath: str,
-    output: str,
-    range_m: float,
-    replace: bool,
-    asked_in_window: bool,
-) -> Answer:
-    """Write vehicle, sensors and fields of view for CAD, viewers and other programs"""
-    row = outputs.scene_output(output)
-    path = chosen_file(filepath)
-    if not (row.has_several or path.suffix):
-        path = path.with_suffix(Path(row.file).suffix)
-    exchange.format_of_file(path, outputs.output_files(), row.name)  # refuses another's suffix
-    study = document.study_from_scene(context.scene, context.evaluated_depsgraph_get())
-    replace = replace or not row.has_several  # of one file the dialog has confirmed it
-
-    return run(
-        own_jobs.scene_job(study, row.name, path, range_m or None, replace=replace), asked_in_window
-    )
-
-
-@operator("Render Review", unless=_unless_running, **dialog(".svg"))
-def render_review(context: bpy.types.Context, filepath: str, asked_in_window: bool) -> Answer:
-    """Score the present sensors and write a picture of the rig (.svg)"""
-    path = chosen_file(filepath)
-    study = document.study_as_drawn(context.scene)
-    jobs.prepare_folder(path.parent)  # fail before the work, not after
-
-    return run(own_jobs.picture_job(study, path), asked_in_window)
-
-
-@operator(
-    "Export Review",
-    unless=_unless_running,
-    **dialog(".html"),
+    into=StringProperty(
+        name="Into",
+        description="File or folder of that format whose other content is kept; by default that "
+        "which is replaced",
+        subtype="FILE_PATH",
+    ),
+    replace=BoolProperty(
+        name="Replace", description="Replace existing files of a folder", default=False
+    ),
     title=StringProperty(name="Title", description="Title of the page instead of the file's name"),
     author=StringProperty(name="Author", description="Author of the page"),
     date=StringProperty(
@@ -151,28 +286,27 @@ def render_review(context: bpy.types.Context, filepath: str, asked_in_window: bo
     ),
     revision=StringProperty(name="Revision", description="Revision of the page"),
 )
-def export_review(
-    context: bpy.types.Context,
-    filepath: str,
-    title: str,
-    author: str,
-    date: str,
-    revision: str,
-    asked_in_window: bool,
-) -> Answer:
-    """Score the present sensors and write a page of the results (.html)"""
+def export_file(context: bpy.types.Context, filepath: str, operator: Any) -> Answer:
+    """Write the study, its results, or its rig for another program"""
     path = chosen_file(filepath)
-    about = page.About(title, author, date, revision)
-    study = document.study_as_drawn(context.scene)
-    facts: dict[str, Any] = {
-        "name": name_of(context.scene, path),
-        "command": headless_command(path, about),
-        "versions": document.blender_version(),
-    }
-    jobs.prepare_folder(path.parent)  # fail before the work, not after
-    search = searched_from(context.scene, study)
+    told = operator.format if operator.properties.is_property_set("format") else None
+    if told is not None:
+        path = _named(path, FORMATS[told])
+    name = exchange.format_of_file(path, FILES, told)
+    row = FORMATS[name]
+    if reason := row.unless(context):
+        raise Refused(reason)
+    return row.write(Asked(context=context, path=path, options=operator))
 
-    return run(own_jobs.page_job(study, path, about, facts, search=search), asked_in_window)
+
+def _named(path: Path, row: ExportFormat) -> Path:
+    """Return a path with the name that its format has: a name that the dialog proposed for another
+    format is changed, and a file without a suffix gets one."""
+    if path.name != row.file and path.name in {each.file for each in FORMATS.values()}:
+        return path.with_name(row.file)
+    if row.has_folder or path.suffix:
+        return path
+    return path.with_suffix(Path(row.file).suffix)
 
 
 def name_of(scene: bpy.types.Scene, path: Path) -> str:
@@ -207,54 +341,6 @@ def headless_command(path: Path, about: page.About) -> str:
     options += [f"--{name}={text}" for name, text in texts.items() if text]
     file = shlex.quote(Path(bpy.data.filepath).name)
     return app.as_typed(f"blender -b {file} --command pe", options)
-
-
-def rig_file(name: str) -> str:
-    """Return the usual name of a format's file, or of its folder."""
-    row = exchange.rig_format(name)
-    return f"{name}_rig" if row.is_folder else row.files[0]
-
-
-@operator(
-    "Export Rig",
-    **dialog("", lambda self: rig_file(self.format)),
-    format=EnumProperty(
-        items=FORMAT_ITEMS,
-        name="Format",
-        description="The program and format to write for; by default that of the file's name",
-    ),
-    into=StringProperty(
-        name="Into",
-        description="File or folder of that format whose other content is kept; by default that "
-        "which is replaced",
-        subtype="FILE_PATH",
-    ),
-    replace=REPLACE,
-)
-def export_rig(
-    context: bpy.types.Context,
-    filepath: str,
-    format: str,
-    properties: Any,
-    into: str,
-    replace: bool,
-    asked_in_window: bool,
-) -> Answer:
-    """Write the sensors for another program: URDF, ROS 2, Autoware, nuScenes, CARLA and others"""
-    path = chosen_file(filepath)
-    told = format if properties.is_property_set("format") or not path.suffix else None
-    if told is not None and path.name in map(rig_file, exchange.RIG_FORMATS):
-        path = path.with_name(rig_file(told))  # the dialog's own name, of another format
-    name = exchange.format_of_file(path, exchange.FILES, told)
-    row = exchange.rig_format(name)
-    study = document.study_from_scene(context.scene, context.evaluated_depsgraph_get())
-    replace = replace or not (row.beside or row.is_folder)  # of one file the dialog has asked
-    target = bpy.path.abspath(into) or None
-    if row.write_scene is not None:
-        result = document.stored_result(context.scene, study)
-        job = own_jobs.rig_job(study, name, path, target, replace=replace, result=result)
-        return run(job, asked_in_window)
-    return told_of(own_jobs.write_rig(study, name, path, target, replace=replace))
 
 
 def unregister() -> None:

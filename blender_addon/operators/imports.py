@@ -17,12 +17,16 @@ from ..caches import vehicle_cache
 from ..engine import catalog, exchange, graphics, pe, search, studies
 from ..sensor_kinds import mount_of
 from .declared import INTERNAL, Told, chosen_file, operator
-from .exports import FORMAT_ITEMS
 from .named_places import places_of
 from .variants import stand_as_variant
 
 BY_NAME = "TOLD"
-FORMAT_OR_NAME = (*FORMAT_ITEMS, (BY_NAME, "By Name", "By the file's name", len(FORMAT_ITEMS)))
+STUDY = "study"
+FORMAT_OR_NAME = (
+    (BY_NAME, "By Name", "By the file's name"),
+    (STUDY, "Study", "A study (.toml), and the mesh that it names"),
+    *((row.name, row.title, "") for row in exchange.RIG_FORMATS.values()),
+)
 
 
 def _about_rig(about: str, chosen: bpy.types.OperatorProperties) -> str:
@@ -162,43 +166,47 @@ def paste_rig(context: bpy.types.Context, text: str) -> Told:
     return replace_sensors(context.scene, "Pasted", rig, lines=(), origin="Pasted")
 
 
-@operator(
-    "Import Study",
-    mode="Studies are imported in Object Mode",
-    signal=signals.study_changed,
-    bases=(ImportHelper,),
-    filename_ext=".toml",
-    filter_glob=StringProperty(default="*.toml", options={"HIDDEN"}),
-)
-def import_study(context: bpy.types.Context, filepath: str) -> Told:
-    """Load a study into the scene: its vehicle, sensors, mounts, and search settings.
+def _draw(self: bpy.types.Operator, _context: bpy.types.Context) -> None:
+    self.layout.prop(self, "format")
 
-    A vehicle that is already the same stays"""
+
+@operator(
+    "Import",
+    mode="Files are imported in Object Mode",
+    bases=(ImportHelper,),
+    draw=_draw,
+    filename_ext="",
+    filter_glob=StringProperty(default="*", options={"HIDDEN"}),
+    format=EnumProperty(
+        items=FORMAT_OR_NAME, name="Format", description="The format of the file", default=BY_NAME
+    ),
+)
+def import_file(context: bpy.types.Context, filepath: str, format: str) -> Told:
+    """Load a study, or replace the sensors by those of another program's file.
+
+    A study brings its vehicle, mounts and settings; a vehicle that is already the same stays.
+    Sensors of another program become a variant; present ones that are no variant yet are saved as
+    one. A sensor whose model the file does not name gets a usual one, and a line that says so"""
     path = chosen_file(filepath)
+    if format == STUDY or (format == BY_NAME and path.suffix.lower() == ".toml"):
+        told = _load_study(context.scene, path)
+        signals.study_changed.emit()
+        return told
+    found = rig_of_file(context.scene, path, format)
+    title = path.stem or path.parent.name
+    lines = found.lines
+    return replace_sensors(
+        context.scene, title, tuple(found.rig), lines, origin=f"Read from {path}"
+    )
+
+
+def _load_study(scene: bpy.types.Scene, path: Path) -> Told:
     study = pe.load_study(path)
-    if lost := document.load_into(context.scene, study):
+    if lost := document.load_into(scene, study):
         return Told(f"The scene differs from the file in: {', '.join(lost)}", level="WARNING")
     if study.mesh_notes:
-        return Told(f"Imported {filepath}; {study.mesh}: {'; '.join(study.mesh_notes)}")
-    return Told(f"Imported {filepath} without any loss")
-
-
-@operator(
-    "Import Rig",
-    bases=(ImportHelper,),
-    filter_glob=StringProperty(default="*", options={"HIDDEN"}),
-    format=EnumProperty(items=FORMAT_OR_NAME, name="Format", default=BY_NAME),
-)
-def import_rig(context: bpy.types.Context, filepath: str, format: str) -> Told:
-    """Replace the sensors of the scene by those of another program's file, as a variant.
-
-    Present sensors that are no variant yet are saved as one. A sensor whose model the file does not
-    name gets a usual one, and a line that says so"""
-    path = chosen_file(filepath)
-    scene = context.scene
-    found = rig_of_file(scene, path, format)
-    title = path.stem or path.parent.name
-    return replace_sensors(scene, title, tuple(found.rig), found.lines, origin=f"Read from {path}")
+        return Told(f"Imported {path}; {study.mesh}: {'; '.join(study.mesh_notes)}")
+    return Told(f"Imported {path} without any loss")
 
 
 def rig_of_file(scene: bpy.types.Scene, path: Path, format_name: str) -> exchange.ImportedRig:

@@ -89,7 +89,7 @@ def draw_stories(layout: UILayout, settings: PropertyGroup, context: Context) ->
         row = layout.row(align=True)
         row.operator("pe.check_requirements", text="Check", icon="VIEWZOOM")
         row.operator("pe.play_story", text="", icon="PLAY")
-        row.operator("pe.film_story", text="", icon="RENDER_ANIMATION")
+        row.operator("pe.export_file", text="", icon="RENDER_ANIMATION").format = "film"
     if settings.story_index < len(settings.stories):
         row = settings.stories[settings.story_index]
         told = json.loads(row.result or "{}")

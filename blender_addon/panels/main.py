@@ -108,18 +108,16 @@ def draw_built(layout: UILayout, context: Context) -> None:
 @panel("Export and Import", simple=True)
 def export(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
     """Files to take away, and rigs of other programs"""
-    layout.operator("pe.export_review", icon="DOCUMENTS")
-    layout.operator("pe.export_study", icon="EXPORT")
-    if is_simple(context.scene):
-        layout.operator("pe.export_rig", icon="FILE_TICK")
-        return
-    layout.operator("pe.import_study", icon="IMPORT")
-    layout.operator("pe.render_review", icon="RENDER_STILL")
+    review = layout.operator("pe.export_file", text="Export Review", icon="DOCUMENTS")
+    review.format = "review"
+    study = layout.operator("pe.export_file", text="Export Study", icon="EXPORT")
+    study.format = "study"
     row = layout.row(align=True)
-    row.operator("pe.export_rig", text="Export Rig", icon="FILE_TICK")
-    row.operator("pe.import_rig", text="Import Rig", icon="FILE_FOLDER")
+    row.operator_menu_enum("pe.export_file", "format", text="Export", icon="FILE_TICK")
+    row.operator("pe.import_file", icon="IMPORT")
+    if is_simple(context.scene):
+        return
     draw_built(layout, context)
-    layout.operator_menu_enum("pe.export_scene", "output", text="Export Scene", icon="SCENE_DATA")
     row = layout.row()
     row.prop(settings, "axles_known", text="Axles")
     row.operator("pe.guess_axles", text="From Wheels", icon="VIEWZOOM")
@@ -129,16 +127,12 @@ def export(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
 
 def draw_export(menu: bpy.types.Menu, _context: Context) -> None:
     """File > Export."""
-    menu.layout.operator("pe.export_study", text="Study (Perception Entropy, .toml)")
-    menu.layout.operator("pe.export_rig", text="Rig of Sensors (Perception Entropy)")
-    text = "Fields of View and Scene (Perception Entropy)"
-    menu.layout.operator_menu_enum("pe.export_scene", "output", text=text, translate=False)
+    menu.layout.operator_menu_enum("pe.export_file", "format", text="Perception Entropy")
 
 
 def draw_import(menu: bpy.types.Menu, _context: Context) -> None:
     """File > Import."""
-    menu.layout.operator("pe.import_study", text="Study (Perception Entropy, .toml)")
-    menu.layout.operator("pe.import_rig", text="Rig of Sensors (Perception Entropy)")
+    menu.layout.operator("pe.import_file", text="Perception Entropy (study, rig of sensors)")
 
 
 CLASSES = (main,)

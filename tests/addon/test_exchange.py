@@ -1,12 +1,14 @@
 """Rigs of other programs leave the scene and come into it; axles stand where wheels are."""
 
 import json
+from pathlib import Path
 
 import bpy
 import pytest
 
 from blender_addon import document
 from blender_addon.engine import pe, studies
+from blender_addon.operators import exports
 from pe_tools.cli.verbs import main
 from tests.addon import scenes
 from tests.engine.test_merging import CARLA
@@ -31,10 +33,10 @@ def axled(car):
 def test_the_suffix_of_a_rig_s_file_chooses_the_format(axled, tmp_path):
     """`prius.urdf` became a CSV: the dialog's format is a default, what is typed is meant."""
     path = tmp_path / "prius.urdf"
-    assert bpy.ops.pe.export_rig(filepath=str(path)) == {"FINISHED"}
+    assert bpy.ops.pe.export_file(filepath=str(path)) == {"FINISHED"}
     assert path.read_text().startswith("<?xml")
     with pytest.raises(RuntimeError, match=r"other\.urdf: format: "):
-        bpy.ops.pe.export_rig(filepath=str(tmp_path / "other.urdf"), format="csv")
+        bpy.ops.pe.export_file(filepath=str(tmp_path / "other.urdf"), format="csv")
     assert not (tmp_path / "other.urdf").exists()
 
 
@@ -53,7 +55,7 @@ def test_a_bad_file_changes_nothing(car, tmp_path):
     (tmp_path / "objects.json").write_text("{")
     before = scenes.study().rig
     with pytest.raises(RuntimeError, match="valid JSON"):
-        bpy.ops.pe.import_rig(filepath=str(tmp_path / "objects.json"))
+        bpy.ops.pe.import_file(filepath=str(tmp_path / "objects.json"))
     assert [s.pose for s in scenes.study().rig] == [s.pose for s in before]
     assert not car.perception_entropy.variants
 
@@ -63,19 +65,34 @@ def test_what_a_file_has_besides_its_rig_stays_in_it(axled, tmp_path, capfd):
     replaces it, by `into`, and by the command."""
     objects = tmp_path / "objects.json"
     objects.write_text(json.dumps(CARLA))
-    assert bpy.ops.pe.import_rig(filepath=str(objects)) == {"FINISHED"}
+    assert bpy.ops.pe.import_file(filepath=str(objects)) == {"FINISHED"}
     line = "left out: 1 collision sensor (collision)"
     assert line in capfd.readouterr().out
     assert line in document.active_variant(axled).note
     assert {s.name for s in scenes.study().rig} == {"rgb_front", "lidar", "radar_front"}
     study = tmp_path / "study" / "study.toml"
     study.parent.mkdir()
-    assert bpy.ops.pe.export_study(filepath=str(study)) == {"FINISHED"}
+    assert bpy.ops.pe.export_file(filepath=str(study)) == {"FINISHED"}
     out = tmp_path / "out.json"
     options = {"filepath": str(out), "format": "carla", "into": str(objects)}
-    assert bpy.ops.pe.export_rig(**options) == {"FINISHED"}
+    assert bpy.ops.pe.export_file(**options) == {"FINISHED"}
     assert json.loads(out.read_text()) == CARLA
-    assert bpy.ops.pe.export_rig(filepath=str(objects)) == {"FINISHED"}
+    assert bpy.ops.pe.export_file(filepath=str(objects)) == {"FINISHED"}
     assert json.loads(objects.read_text()) == CARLA
     main(["export", str(study), "--into", str(objects), "-o", str(tmp_path / "command.json")])
     assert (tmp_path / "command.json").read_bytes() == out.read_bytes()
+
+
+def test_a_name_that_the_dialog_proposed_for_another_format_is_changed(axled, tmp_path):
+    """The format is chosen in the dialog, after the name was proposed; a name that a person typed
+    gets the suffix that it lacks."""
+    for name in ("urdf", "csv", "study", "footprints", "carla"):
+        folder = tmp_path / name
+        folder.mkdir()
+        wanted = exports.FORMATS[name].file
+        for proposed in (exports.FORMATS["kitti"].file, "rig"):
+            given = str(folder / proposed)
+            assert bpy.ops.pe.export_file(filepath=given, format=name) == {"FINISHED"}
+        typed = f"rig{Path(wanted).suffix}"
+        assert {wanted, typed} <= {each.name for each in folder.iterdir()}, name
+        assert not (folder / exports.FORMATS["kitti"].file).exists()

@@ -7,11 +7,7 @@ import pytest
 
 from blender_addon.operators import exports, running_job
 
-OPERATORS = {
-    "page.html": ("export_review", {}),
-    "picture.svg": ("render_review", {}),
-    "scene.glb": ("export_scene", {"output": "gltf", "range_m": 5.0}),
-}
+OPTIONS = {"page.html": {}, "picture.svg": {}, "scene.glb": {"range_m": 5.0}}
 STAGES = {
     "page.html": ["scoring", "page"],
     "picture.svg": ["scoring", "picture"],
@@ -33,14 +29,13 @@ def job_of(small, monkeypatch):
     monkeypatch.setattr(exports, "run", lambda job, _asked: made.append(job))
 
     def make(path):
-        call, given = OPERATORS[path.name]
-        assert getattr(bpy.ops.pe, call)(filepath=str(path), **given) == {"FINISHED"}
+        assert bpy.ops.pe.export_file(filepath=str(path), **OPTIONS[path.name]) == {"FINISHED"}
         return made.pop()
 
     return make
 
 
-@pytest.mark.parametrize("name", OPERATORS)
+@pytest.mark.parametrize("name", OPTIONS)
 def test_a_job_tells_how_far_it_is_and_writes_at_its_end(job_of, tmp_path, name):
     job = job_of(tmp_path / name)
     steps = []
@@ -67,7 +62,9 @@ def test_stopped_at_any_stage_it_leaves_nothing(job_of, tmp_path, name, stage):
     assert job.written is None and not list(tmp_path.iterdir())
 
 
-def test_no_export_begins_while_another_job_runs(small, monkeypatch):
+def test_no_export_that_takes_long_begins_while_another_job_runs(small, monkeypatch, tmp_path):
     monkeypatch.setattr(running_job, "current", object())
-    names = ("export_review", "render_review", "export_scene")
-    assert not any(getattr(bpy.ops.pe, name).poll() for name in names)
+    for name in OPTIONS:
+        assert bpy.ops.pe.export_file(filepath=str(tmp_path / name)) == {"CANCELLED"}
+    assert not list(tmp_path.iterdir())
+    assert bpy.ops.pe.export_file(filepath=str(tmp_path / "study.toml")) == {"FINISHED"}

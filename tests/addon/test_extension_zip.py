@@ -35,7 +35,7 @@ bpy.ops.wm.open_mainfile(filepath=blend)
 settings = bpy.context.scene.perception_entropy
 settings.score_samples = 8192
 assert bpy.ops.pe.score() == {"FINISHED"}
-bpy.ops.pe.export_study(filepath=study)
+bpy.ops.pe.export_file(filepath=study)
 print("scored", settings.result_json)
 bpy.ops.preferences.addon_disable(module="bl_ext.user_default.perception_entropy")
 sys.stdout.flush()

@@ -50,7 +50,7 @@ def test_one_click_makes_the_region_the_mount_of_its_sensor(asked, tmp_path):
     step = search.Parametrization(study.rig, study.search_space())  # the sensor is on it
     assert step.domain_of(name).surface is not None
     pt.export_study(study, tmp_path / "next.toml")  # and a file brings it back
-    assert bpy.ops.pe.import_study(filepath=str(tmp_path / "next.toml")) == {"FINISHED"}
+    assert bpy.ops.pe.import_file(filepath=str(tmp_path / "next.toml")) == {"FINISHED"}
     again = scenes.study().search.mounting.mount_of(name)
     assert np.array_equal(again.area.triangles, mount.area.triangles)
 

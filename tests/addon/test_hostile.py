@@ -85,7 +85,7 @@ def assert_drawn_sound(scene):
 def score_and_export(folder) -> list[str | None]:
     """What they say; a search reads the scene as they do, and takes longer."""
     path = str(folder / "study.toml")
-    return [said_by(bpy.ops.pe.score), said_by(bpy.ops.pe.export_study, filepath=path)]
+    return [said_by(bpy.ops.pe.score), said_by(bpy.ops.pe.export_file, filepath=path)]
 
 
 @pytest.mark.filterwarnings("error")
@@ -149,9 +149,9 @@ def test_files_that_cannot_be_written(small, tmp_path, small_pictures):
     (tmp_path / "file").touch()
     for file in ("", "x" * 300, "file/below", ".."):
         path = str(tmp_path / file) if file else ""
-        assert "expected" in said_by(bpy.ops.pe.export_study, filepath=path), file
+        assert "expected" in said_by(bpy.ops.pe.export_file, filepath=path), file
     below = str(tmp_path / "file" / "below")
-    assert "expected" in said_by(bpy.ops.pe.render_review, filepath=below)
+    assert "expected" in said_by(bpy.ops.pe.export_file, filepath=below)
 
 
 class Reporter:

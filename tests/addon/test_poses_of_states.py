@@ -112,7 +112,7 @@ def test_panel_headless_and_pe_agree_to_the_bit(parked, tmp_path):
     assert [r["state"] for r in panel["rows"]] == 2 * ["As Drawn"] + 2 * ["door open"]
     assert panel["rows"][1]["weight"] == 0.1
     assert len({row["entropy"] for row in panel["rows"]}) == 4
-    assert bpy.ops.pe.export_study(filepath=str(tmp_path / "study.toml")) == {"FINISHED"}
+    assert bpy.ops.pe.export_file(filepath=str(tmp_path / "study.toml")) == {"FINISHED"}
     blend = tmp_path / "parked.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
     headless = run_here(blend, ["score", "--json"])

@@ -14,7 +14,7 @@ from tests.addon import scenes
 def test_headless_blender_writes_the_page_of_the_command_line(car, tmp_path, small_pictures):
     scenes.add_sensor("front", model="Camera 60 deg")
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "study.blend"))
-    bpy.ops.pe.export_study(filepath=str(tmp_path / "study.toml"))
+    bpy.ops.pe.export_file(filepath=str(tmp_path / "study.toml"))
     arguments = ["--samples", "1024", "-o", str(tmp_path / "inside")]
     said = io.StringIO()
     assert commands.main(["review", *arguments], commands.IN_BLENDER, said) == 0

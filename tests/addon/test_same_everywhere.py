@@ -105,7 +105,7 @@ def test_panel_headless_and_pe_find_the_same_bits(car, tmp_path, name):
     (tmp_path / "study").mkdir()
     study = tmp_path / "study" / "study.toml"
     blend = tmp_path / "car.blend"
-    assert bpy.ops.pe.export_study(filepath=str(study)) == {"FINISHED"}
+    assert bpy.ops.pe.export_file(filepath=str(study)) == {"FINISHED"}
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
     assert getattr(bpy.ops.pe, verb)() == {"FINISHED"}
     panel = told(json.loads(settings.result_json))

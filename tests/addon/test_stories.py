@@ -100,19 +100,19 @@ def test_place_score_optimize_check_and_export(scene, tmp_path, small_pictures):
 
     # Export: what is written is of this scene, and scores the same.
     study, glb, review = (tmp_path / n for n in ("car.toml", "car.glb", "for <all>.html"))
-    assert bpy.ops.pe.export_study(filepath=str(study)) == {"FINISHED"}
+    assert bpy.ops.pe.export_file(filepath=str(study)) == {"FINISHED"}
     outcome = finished(jobs.ScoreJob(pe.load_study(study)))
     assert outcome.after == expected.after
-    assert bpy.ops.pe.export_scene(filepath=str(glb), output="gltf") == {"FINISHED"}
+    assert bpy.ops.pe.export_file(filepath=str(glb), format="gltf") == {"FINISHED"}
     assert glb.read_bytes() == outputs.scene_files(scenes.study(), "gltf", None)[0]["scene.glb"]
     review.write_text("mine")  # the file dialog has asked
     said = {"title": "Roof & rails", "author": "A. Author", "date": "May", "revision": "B"}
-    assert bpy.ops.pe.export_review(filepath=str(review), **said) == {"FINISHED"}
+    assert bpy.ops.pe.export_file(filepath=str(review), **said) == {"FINISHED"}
     told = review.read_text("utf-8")
     assert told.count('="The vehicle with 1 LiDAR') == 1
     assert "<h1>Roof &amp; rails</h1>" in told and "A. Author, May, Revision B</p>" in told
     picture = tmp_path / "car.svg"
-    assert bpy.ops.pe.render_review(filepath=str(picture)) == {"FINISHED"}
+    assert bpy.ops.pe.export_file(filepath=str(picture)) == {"FINISHED"}
     assert picture.read_bytes() == page.picture_file(scenes.study(), outcome)
 
 
@@ -127,9 +127,9 @@ def test_import_rigs_and_compare_them(car, tmp_path):
     for name in FORMATS:
         row = exchange.rig_format(name)
         path = tmp_path / (row.files[0] if len(row.files) == 1 else name)
-        assert bpy.ops.pe.export_rig(filepath=str(path), format=name) == {"FINISHED"}
+        assert bpy.ops.pe.export_file(filepath=str(path), format=name) == {"FINISHED"}
         chosen = path / row.files[0] if len(row.files) > 1 else path
-        assert bpy.ops.pe.import_rig(filepath=str(chosen)) == {"FINISHED"}
+        assert bpy.ops.pe.import_file(filepath=str(chosen)) == {"FINISHED"}
         assert settings.variants[0].name == "Unsaved"
         assert document.active_variant(car).note.startswith("Read from")
         theirs = sorted(scenes.study().rig, key=lambda s: s.pose.position)
@@ -204,7 +204,7 @@ def test_mount_bound_tie_and_search(car, tmp_path):
     assert names(study.search.mounting.constraints.no_go) == ["no_go"]
 
     # The search keeps to all of it; the study's file gives the same search.
-    bpy.ops.pe.export_study(filepath=str(tmp_path / "car.toml"))
+    bpy.ops.pe.export_file(filepath=str(tmp_path / "car.toml"))
     there = jobs.OptimizeJob(pe.load_study(tmp_path / "car.toml"))
     outcome = finished(there)
     assert bpy.ops.pe.optimize() == {"FINISHED"}

@@ -10,7 +10,7 @@ from bl_ext.user_default import perception_entropy
 from bl_ext.user_default.perception_entropy.preferences import english
 
 ADDON = "bl_ext.user_default.perception_entropy"
-OPERATORS = ("add_sensor", "score", "optimize", "export_study", "render_review")
+OPERATORS = ("add_sensor", "score", "optimize", "export_file", "import_file")
 
 
 def classes() -> list[str]:

@@ -27,7 +27,7 @@ for frame in (1, 20):
     assert bpy.ops.pe.add_row(rows="states") == {"FINISHED"}
 assert bpy.ops.pe.add_row(rows="weathers", kind="FOG") == {"FINISHED"}
 bpy.ops.wm.save_as_mainfile(filepath=saved)  # with the hood open
-assert bpy.ops.pe.export_study(filepath=folder + "/study.toml") == {"FINISHED"}
+assert bpy.ops.pe.export_file(filepath=folder + "/study.toml") == {"FINISHED"}
 """
 SHORT_STORY = """
 [[story]]

@@ -8,7 +8,7 @@ import pytest
 from tests.blender.runner import output_of
 
 HERE = Path(__file__).resolve().parent
-OPERATORS = ["add_sensor", "score", "optimize", "export_study", "render_review"]
+OPERATORS = ["add_sensor", "score", "optimize", "export_file", "import_file"]
 
 
 @pytest.fixture(scope="module")

@@ -78,7 +78,7 @@ def ask_for(stage, page):
     stage.do(f"""
         bpy.context.preferences.view.filebrowser_display_type = "SCREEN"
         with bpy.context.temp_override(window=window, area=area, region=region):
-            bpy.ops.pe.export_review("INVOKE_DEFAULT", filepath={str(page)!r})
+            bpy.ops.pe.export_file("INVOKE_DEFAULT", filepath={str(page)!r})
     """)
     stage.wait_until("any(area.type == 'FILE_BROWSER' for area in window.screen.areas)")
     stage.settle()

@@ -201,7 +201,7 @@ def optimized(camera: Camera) -> None:
 def reported(camera: Camera) -> None:
     """The review picture."""
     path = camera.scratch / "review.svg"
-    camera.stage.do(f"bpy.ops.pe.render_review(filepath={str(path)!r})")
+    camera.stage.do(f"bpy.ops.pe.export_file(filepath={str(path)!r})")
     camera.stage.wait_until(
         f"{RUNNING}.current is None and __import__('os').path.exists({str(path)!r})", 120
     )

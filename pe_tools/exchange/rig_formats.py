@@ -89,7 +89,7 @@ class RigFormat:
 _ROWS = (
     RigFormat(
         name="csv",
-        title="table (CSV)",
+        title="CSV table",
         origin=GROUND,
         files=(csv_table.FILE,),
         suffixes=(".csv",),

@@ -9,7 +9,7 @@ from pe_core import scene
 from pe_core.catalog import load
 from pe_tools.page import ReportContext
 from pe_tools.page.pictures import vehicle_picture as picture_module
-from pe_tools.page.pictures.brackets import bracket
+from pe_tools.page.pictures.brackets import painted_post, post_of
 from pe_tools.page.pictures.painted_mesh import painted_vehicle
 from pe_tools.page.pictures.ray_scene import RayCamera, RayScene, Viewpoint
 from pe_tools.page.pictures.vehicle_picture import vehicle_picture
@@ -94,10 +94,10 @@ def test_a_sensor_off_the_body_has_a_post_to_its_nearest_point(away, yaw):
     housing = scene.Housing("box", (0.1, 0.1, 0.1), optical_center=(0.0, 0.0, 0.05))
     side = 0.9
     pose = pe.Pose.from_degrees((0.0, side + 0.05 + away, 1.0), (0.0, 0.0, yaw))
-    post = bracket(body, housing, pose)
+    post = post_of(body, housing, pose)
     if away < 0.03:
         assert post is None, "its housing stands on the body"
         return
-    low, high = post.mesh.bounds
+    low, high = painted_post(post).mesh.bounds
     assert low[1] == pytest.approx(side) and high[1] == pytest.approx(pose.position[1])
     assert np.abs((low + high)[[0, 2]] / 2.0 - [0.0, 1.0]).max() < 0.01

@@ -1,5 +1,7 @@
 """Posts in pictures: from the vehicle's nearest surface to a sensor that stands off it."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 import pe_core as pe
@@ -16,22 +18,34 @@ RADIUS_M = 0.014
 STEEL = tuple(graphics.linear_of_srgb(np.array([0.33, 0.35, 0.38])).tolist())
 
 
-def bracket(vehicle: pe.Vehicle, housing: scene.Housing, pose: pe.Pose) -> PaintedMesh | None:
-    """Return the post that holds a housing at a pose, from the vehicle's point nearest to its
-    middle; None where the housing is within `GAP_M` of that point. No score contains it."""
+class Post(NamedTuple):
+    """What holds a sensor off the body: from a point of the vehicle to the housing's middle [m]."""
+
+    foot: Floats
+    head: Floats
+
+
+def post_of(vehicle: pe.Vehicle, housing: scene.Housing, pose: pe.Pose) -> Post | None:
+    """Return the post of a housing at a pose, from the vehicle's point nearest to its middle; None
+    where the housing is within `GAP_M` of that point. No score contains it."""
     turn = pose.ground_from_sensor
-    middle = np.array(pose.position) + scene.rotate(turn, np.array([housing.center]))[0]
-    near = closest_points(middle, vehicle.triangles)
-    foot = near[np.argmin(((near - middle) ** 2).sum(axis=1))]
-    post = middle - foot
-    length = float(np.sqrt(post @ post))
-    own = np.abs(np.array(turn).T @ post) / max(length, 1e-9)
+    head = np.array(pose.position) + scene.rotate(turn, np.array([housing.center]))[0]
+    near = closest_points(head, vehicle.triangles)
+    foot = near[np.argmin(((near - head) ** 2).sum(axis=1))]
+    way = head - foot
+    length = float(np.sqrt(way @ way))
+    along = np.abs(np.array(turn).T @ way) / max(length, 1e-9)
     # How far the housing's box reaches from its middle towards the vehicle.
-    reach = float(np.min(np.array(housing.size) / 2.0 / np.maximum(own, 1e-9)))
-    if length - reach < GAP_M:
-        return None
-    along = _turned(post / length, lathe([(RADIUS_M, 0.0), (RADIUS_M, length)]))
-    return PaintedMesh(pe.Vehicle(along + foot), (STEEL,))
+    reach = float(np.min(np.array(housing.size) / 2.0 / np.maximum(along, 1e-9)))
+    return None if length - reach < GAP_M else Post(foot, head)
+
+
+def painted_post(post: Post) -> PaintedMesh:
+    """Return a post as a thin cylinder of steel."""
+    way = post.head - post.foot
+    length = float(np.sqrt(way @ way))
+    upright = lathe([(RADIUS_M, 0.0), (RADIUS_M, length)])
+    return PaintedMesh(pe.Vehicle(_turned(way / length, upright) + post.foot), (STEEL,))
 
 
 def _turned(axis: Floats, triangles: Floats) -> Floats:

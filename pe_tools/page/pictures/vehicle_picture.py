@@ -13,7 +13,7 @@ from pe_core.base.arrays import Floats
 from ... import advice, graphics, jobs
 from ...templating import Markup
 from ..report_context import MAX_TRIANGLES, ReportContext
-from .brackets import bracket
+from .brackets import painted_post, post_of
 from .painted_mesh import PaintedMesh, lathe, painted_vehicle, rounded_box
 from .ray_scene import RayScene, Viewpoint
 from .rendering import Environment, render
@@ -82,8 +82,9 @@ def rendered(
     colors = graphics.sensor_colors_on_paper(rig)
     solids = [_solid(sensor, colors[sensor.name]) for sensor in rig]
     if vehicle is not None:
-        posts = (bracket(vehicle, housing_of(sensor), sensor.pose) for sensor in rig)
-        solids = [painted_vehicle(vehicle), *solids, *(post for post in posts if post is not None)]
+        posts = (post_of(vehicle, housing_of(sensor), sensor.pose) for sensor in rig)
+        held = [painted_post(post) for post in posts if post is not None]
+        solids = [painted_vehicle(vehicle), *solids, *held]
     bodies = RayScene(solids, vehicle is not None)
     return render(view.camera(*size), bodies, _studio(_bounds(vehicle, rig)))
 

@@ -17,6 +17,7 @@ from pe_core import catalog
 from pe_core import sensors as kinds
 
 from ... import graphics
+from ..pictures.brackets import post_of
 from ..pictures.painted_mesh import look_of
 from ..pictures.sensor_views import sensor_view
 from ..report_context import ReportContext
@@ -243,8 +244,18 @@ def sensor_data(
         "drawn_as": "beams" if drawing.beams else "view",
         "share": score.occluded / score.beams if score and score.beams else None,
         "housing": housing_data(sensor.model.name),
+        "post": _post(sensor, vehicle),
         "layers": layers(sensor, vehicle, color),
     }
+
+
+def _post(sensor: pe.Sensor, vehicle: pe.Vehicle | None) -> list[list[float]] | None:
+    """Return the two ends of the post that holds a sensor off the vehicle; None without one."""
+    housing = catalog.housing(sensor.model.name)
+    if vehicle is None or housing is None:
+        return None
+    post = post_of(vehicle, housing, sensor.pose)
+    return None if post is None else [post.foot.tolist(), post.head.tolist()]
 
 
 def _beam_layers(

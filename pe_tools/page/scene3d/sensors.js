@@ -8,6 +8,8 @@ const STYLES = {
 const GHOST = { width: 1.7, order: 4, dashed: true, through: true, strength: 0.28 };
 const OCCLUDED_COLOR = "rgb(214 94 0)";
 const UNKNOWN_SIZE = 0.035;
+const POST_RADIUS = 0.014;
+const POST_COLOR = 0x767c85;
 
 function matrixOf(sensor) {
   const [[a, b, c], [d, e, f], [g, h, i]] = sensor.axes;
@@ -22,6 +24,17 @@ function housingShape(housing) {
     ? new T.BoxGeometry(length, width, height)
     : new T.CylinderGeometry(length / 2, length / 2, height, 40).rotateX(Math.PI / 2);
   return shape.translate(...housing.center);
+}
+
+/* Return the post that holds a sensor off the vehicle. */
+function postOf([foot, head]) {
+  const way = new T.Vector3(...head).sub(new T.Vector3(...foot));
+  const length = way.length();
+  const shape = new T.CylinderGeometry(POST_RADIUS, POST_RADIUS, length, 16).translate(0, length / 2, 0);
+  const post = new T.Mesh(shape, new T.MeshLambertMaterial({ color: POST_COLOR }));
+  post.quaternion.setFromUnitVectors(new T.Vector3(0, 1, 0), way.normalize());
+  post.position.set(...foot);
+  return post;
 }
 
 function housingOf(sensor) {
@@ -54,7 +67,9 @@ function layerOf(layer, style) {
 function sensorOf(sensor) {
   const layers = {};
   for (const name of Object.keys(STYLES)) layers[name] = layerOf(sensor.layers[name] || {}, STYLES[name]);
-  const body = housingOf(sensor);
+  const body = new T.Group();
+  body.add(housingOf(sensor));
+  if (sensor.post) body.add(postOf(sensor.post));
   const dot = dotsOf(new Float32Array(sensor.at), plainColor(sensor.color), {
     size: 12, edge: 0.2, through: true, order: 6,
   });

@@ -164,7 +164,7 @@ WARNINGS: Mapping[str, Callable[..., str]] = {
         f"the cover {part} takes {db:g} dB one way from {percent(share)} of its field"
     ),
     "inside": lambda _: "it is inside the body and sees next to nothing",
-    "clear": lambda _, gap: f"it is {metres(gap)} clear of the vehicle: what holds it?",
+    "clear": lambda _, gap: f"it floats {metres(gap)} off the vehicle; mount it on a surface",
     "underground": lambda _, depth: f"it is {metres(depth)} under the ground",
     "outside": lambda _, x, y, z: f"it is outside the perception space, at ({x:g}, {y:g}, {z:g}) m",
     "upside_down": lambda _, kind: f"the {kind} is upside down",
@@ -226,14 +226,14 @@ def unseen_text(unseen_by: Mapping[str, Reason]) -> str:
 
 
 def margin_text(verdict: VerdictSummary, noun: str = "") -> str:
-    """Say a margin: "0.42 m", "fails 0.15 m inside", "blind 0.40 m2, at least 0.30 m". `noun`
+    """Say a margin: "0.42 m", "fails in the outer 0.15 m", "blind 0.40 m2, at least 0.30 m". `noun`
     stands before the margin of a requirement that is met."""
     parts = [] if verdict.blind_m2 is None else [f"blind {verdict.blind_m2:.2f} m2"]
     if verdict.margin_m is not None:
         at_least = "at least " if verdict.margin_at_least else ""
         grows = f"{noun}{at_least}{verdict.margin_m:.2f} m"
         fails = f"{-verdict.margin_m:.2f} m"
-        parts.append(grows if verdict.met else f"fails {fails} inside")
+        parts.append(grows if verdict.met else f"fails in the outer {fails}")
     elif verdict.blind_m2 is None and not verdict.met:
         parts.append(f"fails at {verdict.failing:,} of {verdict.samples:,} places")
     return ", ".join(parts)

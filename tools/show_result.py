@@ -55,7 +55,7 @@ def main() -> int:
     made = [f"{folder / name} {where}" for name, where in files.items() if (folder / name).exists()]
     print(f"Moved:   {moved(result['placements'])}")
     print(f"Better:  {better(result)}")
-    print(f"Cost:    {result['cost'].removeprefix('It cost ')}")
+    print(f"Worse:   {result['cost'].removeprefix('Worse: ')}")
     print(f"More:    {'; '.join(made[:2])}")
     return 0
 

@@ -67,17 +67,17 @@ def _as_drawn(scene: bpy.types.Scene, shown: document.Fingerprint) -> document.F
 
 
 def update_result() -> None:
-    """Set `result_stale` of every scene that has a result; clear stale results of stories."""
+    """Set `result_stale` of every scene that has a result; clear stale results of scenarios."""
     for scene in bpy.data.scenes:
         settings = scene.perception_entropy
-        driven = any(row.result for row in settings.stories)
+        driven = any(row.result for row in settings.scenarios)
         if not (settings.has_result or driven) or document.view_layer_of(scene).depsgraph is None:
             continue
         now = _as_drawn(scene, _fingerprint_shown(scene))
         if now is None:  # a file that was saved with another state shown: its mark holds
             continue
         stale = settings.has_result and now.text != settings.result_signature
-        changed = driven and document.clear_stale_stories(settings, now.text)
+        changed = driven and document.clear_stale_scenarios(settings, now.text)
         if stale != settings.result_stale:
             settings.result_stale = stale
             changed = True

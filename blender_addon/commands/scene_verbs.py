@@ -14,21 +14,21 @@ from .scene_source import SceneStudies
 
 
 def check_scene(source: SceneStudies, args: argparse.Namespace) -> app.Answer:
-    """Hold the scene to its requirements and stories; one story is rendered as a film, where the
-    output is one."""
+    """Hold the scene to its requirements and scenarios; one scenario is rendered as a film, where
+    the output is one."""
     path = Path(args.output or "")
     if path.suffix not in film.FORMATS:
         return app.check(source, args)
     study = source.study(args)
-    story, *others = app.chosen_stories(study, app.story_names(args.stories))
+    scenario, *others = app.chosen_scenarios(study, app.scenario_names(args.scenarios))
     text.require_new(path, replace=args.replace)
     if others:
-        raise pe.InputError("check", "stories", "one for a film", 1 + len(others))
+        raise pe.InputError("check", "scenarios", "one for a film", 1 + len(others))
     args.output = None
-    args.stories = args.stories or ""
+    args.scenarios = args.scenarios or ""
     answer = app.check_study(study, args, source)
     with quiet_blender():
-        film.write_film(bpy.context.scene, study, story, path)
+        film.write_film(bpy.context.scene, study, scenario, path)
     app.tell(f"wrote {path}")
     return answer
 

@@ -106,12 +106,12 @@ from .study_table import (
 )
 from .time import (
     body_place,
-    clear_stale_stories,
+    clear_stale_scenarios,
     frame_rate,
+    scenario_of,
+    scenario_signatures,
     store_driven,
-    story_of,
-    story_signatures,
-    write_story,
+    write_scenario,
 )
 from .transform_constraints import holder_of, ticked_axes
 from .variant_results import (

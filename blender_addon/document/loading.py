@@ -24,7 +24,7 @@ from .rig import place_at, view_layer_of
 from .scene_study import study_from_scene, vehicle_of_scene
 from .sensor_records import SensorRecord, record_of_sensor
 from .study_table import TableData, value_at, write_table
-from .time import write_stories
+from .time import write_scenarios
 from .vehicle import make_body, paint_area, same_body
 
 RACK = "rack {}"
@@ -62,7 +62,7 @@ def load_into(scene: Scene, study: pe.Study) -> list[str]:
     write_prior(settings, study.prior)
     write_requirements(settings, study.requirements)
     write_conditions(settings, study.conditions)
-    write_stories(settings, study.stories)
+    write_scenarios(settings, study.scenarios)
     _show_curves(settings)
     settings.start_variants = False
     _write_mounts(scene, mounting.mounts)
@@ -85,7 +85,7 @@ def scene_table(study: pe.Study) -> TableData:
     """Return the table of a study's file without what Blender holds: sensors, mesh, prior, and what
     is a list in the panel."""
     table = studies.study_to_dict(study)
-    for key in ("sensor", "requirement", "weather", "state", "story", "prior"):
+    for key in ("sensor", "requirement", "weather", "state", "scenario", "prior"):
         table.pop(key, None)
     for path in HELD:
         owner = table.get(path[0], {})

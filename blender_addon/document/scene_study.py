@@ -18,7 +18,7 @@ from .requirements import requirements_of
 from .rig import sensor_objects, view_layer_of
 from .sensor_records import SensorRecord, record_of_object, record_of_sensor, records_of, rig_of
 from .study_table import TableData, document_of
-from .time import stories_of
+from .time import scenarios_of
 from .transform_constraints import unlocked_axes
 from .vehicle import vehicle_from_collection
 
@@ -101,7 +101,7 @@ def study_of(
         requirement=requirements_of(settings),
         state=tuple(conditions.states),
         weather=tuple(conditions.weathers),
-        story=stories_of(settings),
+        scenario=scenarios_of(settings),
         optimize=studies.Optimize(search=replace(wanted, mounting=mounting, goals=goals)),
         selection=replace(document.selection, choices=choices),
     )

@@ -1,4 +1,4 @@
-"""Time in a scene: frames, how tracks are confirmed, and stories, a row each."""
+"""Time in a scene: frames, how tracks are confirmed, and scenarios, a row each."""
 
 import json
 import math
@@ -11,28 +11,30 @@ from ..engine import motion, studies
 from .study_table import read_row, store_row, value_at
 
 
-def stories_of(settings: PropertyGroup) -> tuple[motion.Story, ...]:
-    """Return the stories of a scene that are switched on. `InputError` when a value is wrong."""
-    return tuple(story_of(row) for row in settings.stories if row.enabled)
+def scenarios_of(settings: PropertyGroup) -> tuple[motion.Scenario, ...]:
+    """Return the scenarios of a scene that are switched on. `InputError` when a value is wrong."""
+    return tuple(scenario_of(row) for row in settings.scenarios if row.enabled)
 
 
-def story_of(row: PropertyGroup) -> motion.Story:
-    """Return the story of a row; `InputError` when a value is wrong."""
-    return read_row(motion.Story, row, f"story {row.name!r}", name=row.name)
+def scenario_of(row: PropertyGroup) -> motion.Scenario:
+    """Return the scenario of a row; `InputError` when a value is wrong."""
+    return read_row(motion.Scenario, row, f"scenario {row.name!r}", name=row.name)
 
 
-def write_stories(settings: PropertyGroup, stories: Sequence[motion.Story]) -> None:
-    """Write stories to a scene, in place of its own."""
-    settings.stories.clear()
-    for story in stories:
-        write_story(settings.stories.add(), story)
+def write_scenarios(settings: PropertyGroup, scenarios: Sequence[motion.Scenario]) -> None:
+    """Write scenarios to a scene, in place of its own."""
+    settings.scenarios.clear()
+    for scenario in scenarios:
+        write_scenario(settings.scenarios.add(), scenario)
 
 
-def write_story(row: PropertyGroup, story: motion.Story) -> None:
-    """Write a story to a row; what its preset has, too, as it is changed there."""
+def write_scenario(row: PropertyGroup, scenario: motion.Scenario) -> None:
+    """Write a scenario to a row; what its preset has, too, as it is changed there."""
     row.result = ""
-    declared = studies.settings_of(motion.Story)
-    store_row(row, story, name=story.name, **{name: getattr(story, name) for name in declared})
+    declared = studies.settings_of(motion.Scenario)
+    store_row(
+        row, scenario, name=scenario.name, **{name: getattr(scenario, name) for name in declared}
+    )
 
 
 def frame_rate(scene: Scene) -> float:
@@ -47,19 +49,19 @@ def body_place(obj: Object) -> tuple[float, float, float]:
     return x, y, math.degrees(matrix.to_euler().z)
 
 
-def story_signatures(settings: PropertyGroup, scene: str) -> dict[str, str]:
+def scenario_signatures(settings: PropertyGroup, scene: str) -> dict[str, str]:
     """Return by name what the result of each row depends on; `scene` is the scene's fingerprint."""
     rule = value_at(settings.table, ("time",))
-    return {row.name: f"{scene} {rule} {row.table}" for row in settings.stories}
+    return {row.name: f"{scene} {rule} {row.table}" for row in settings.scenarios}
 
 
 def store_driven(
     settings: PropertyGroup, driven: Sequence[motion.DriveBy], signatures: Mapping[str, str]
 ) -> None:
-    """Store in the rows of stories when their tracks are confirmed; other rows have nothing.
+    """Store in the rows of scenarios when their tracks are confirmed; other rows have nothing.
     `signatures` are those of the scene that was driven."""
-    found = {each.story.name: each.summary() for each in driven}
-    for row in settings.stories:
+    found = {each.scenario.name: each.summary() for each in driven}
+    for row in settings.scenarios:
         data = found.get(row.name)
         row.result = (
             json.dumps(data | {"signature": signatures[row.name]})
@@ -68,12 +70,12 @@ def store_driven(
         )
 
 
-def clear_stale_stories(settings: PropertyGroup, scene: str) -> bool:
-    """Clear the results of stories that are not of the scene any more; return if there was one."""
-    now = story_signatures(settings, scene)
+def clear_stale_scenarios(settings: PropertyGroup, scene: str) -> bool:
+    """Clear the results of scenarios that left the scene; return whether there was one."""
+    now = scenario_signatures(settings, scene)
     stale = [
         row
-        for row in settings.stories
+        for row in settings.scenarios
         if row.result and json.loads(row.result)["signature"] != now[row.name]
     ]
     for row in stale:

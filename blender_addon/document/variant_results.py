@@ -17,7 +17,7 @@ from .result import FrontRow, ShownFront, score_from_dict, scored_data, store_ou
 from .scene_diagnostics import check_placeable, scene_advice
 from .sensor_records import SCORED, SensorRecord, records_of, records_of_scene, rig_of
 from .study_table import SCORED_PARTS, document_of
-from .time import story_signatures
+from .time import scenario_signatures
 from .variants import Variant, find_or_add_variant, mark_active, study_of_variant
 
 BEFORE = "Before choosing"
@@ -204,8 +204,8 @@ def _note(design: jobs.Design, currency: str) -> str:
 
 def figures_signature(scene: Scene, now: Fingerprint) -> str:
     """Return what key figures of a variant depend on besides its sensors."""
-    stories = story_signatures(scene.perception_entropy, now.surroundings)
-    return " ".join(stories.values()) or now.surroundings
+    scenarios = scenario_signatures(scene.perception_entropy, now.surroundings)
+    return " ".join(scenarios.values()) or now.surroundings
 
 
 def write_figures(

@@ -9,7 +9,7 @@ from bpy_extras.io_utils import ImportHelper
 from .. import document
 from ..engine import advice, jobs, pe
 from ..queries import where_map
-from .declared import OperatorResult, Told, chosen_file, operator
+from .declared import OperatorResult, Report, chosen_file, operator
 from .imports import BY_NAME, FORMAT_OR_NAME, rig_of_file
 from .jobs import JobRow, Task, begin, of_study
 
@@ -32,12 +32,12 @@ def compare_built(context: bpy.types.Context, operator: Any) -> OperatorResult:
 def _task(_scene: bpy.types.Scene, study: pe.Study, _taken: document.Fingerprint) -> Task:
     job = jobs.BuiltJob(study, BUILT.asked["rig"], BUILT.asked["lines"])
 
-    def finish(scene: bpy.types.Scene, found: advice.AsBuilt) -> Told:
+    def finish(scene: bpy.types.Scene, found: advice.AsBuilt) -> Report:
         where_map.store_built(scene.name, found)
         first, *more = advice.built_sensor_lines(found)
         worst = [advice.pair_text(pair) for pair in found.worst_first[:1]]
         level: Any = "WARNING" if found.fallen else "INFO"
-        return Told("; ".join([first, *worst, *more]), level=level)
+        return Report("; ".join([first, *worst, *more]), level=level)
 
     return Task(job, finish, "result")
 

@@ -14,7 +14,7 @@ from ..live import SENSE_ICONS
 from ..panel_text import draw_label, worded
 from ..processes.own_jobs import ComparedVariant, CompareJob, PendingVariant
 from ..view import variant_pictures
-from .declared import INTERNAL, OperatorResult, Told, operator
+from .declared import INTERNAL, OperatorResult, Report, operator
 from .jobs import JobRow, Task
 from .variants import unless_variants
 
@@ -58,7 +58,7 @@ def compare_task(context: bpy.types.Context) -> Task | None:
         taken = result_staleness.fingerprint(scene, depsgraph)
         figures_of = document.figures_signature(scene, taken)
 
-    def finish(scene: bpy.types.Scene, found: dict[int, ComparedVariant]) -> Told:
+    def finish(scene: bpy.types.Scene, found: dict[int, ComparedVariant]) -> Report:
         for row in scene.perception_entropy.variants:  # those that still exist
             if row.key in found:
                 score, figures, picture = found[row.key]
@@ -66,7 +66,7 @@ def compare_task(context: bpy.types.Context) -> Task | None:
                     document.store_variant_score(row, score, taken.surroundings)
                 document.write_figures(row, figures, picture, figures_of)
         scored = sum(variant.score is not None for variant in found.values())
-        return Told(f"{scored} scored, {len(found)} compared", tuple(map(str, refused)))
+        return Report(f"{scored} scored, {len(found)} compared", tuple(map(str, refused)))
 
     return Task(CompareJob(pending), finish, "compared")
 

@@ -1,4 +1,4 @@
-"""States, weathers and stories in the panel: add, remove; show a state, read its motions again."""
+"""States, weathers and scenarios in the panel: add, remove; show a state, read it again."""
 
 import bpy
 from bpy.props import IntProperty
@@ -17,7 +17,7 @@ WEATHERS = (
     ("NIGHT", "Night", "Cameras see what headlamps light"),
 )
 STARTS = {"RAIN": ("rain_mm_h", 25.0), "SNOW": ("snow_mm_h", 2.5), "FOG": ("fog_mor_m", 100.0)}
-STORY_ITEMS = [(name, each.title, each.source) for name, each in motion.stories().items()]
+SCENARIO_ITEMS = [(name, each.title, each.source) for name, each in motion.scenarios().items()]
 
 
 def add_state(context: bpy.types.Context, _kind: str) -> str:
@@ -70,31 +70,31 @@ def add_weather(context: bpy.types.Context, weather: str) -> None:
         setattr(row, *STARTS[weather])
 
 
-def add_story(context: bpy.types.Context, story: str) -> None:
-    """Add a story of what moves: when is it confirmed, and does the vehicle stop in time?"""
-    row = new_row(context.scene, "stories", story)
+def add_scenario(context: bpy.types.Context, scenario: str) -> None:
+    """Add a scenario of what moves: when is it confirmed, and does the vehicle stop in time?"""
+    row = new_row(context.scene, "scenarios", scenario)
     name = row.name
-    document.write_story(row, motion.stories()[story])
+    document.write_scenario(row, motion.scenarios()[scenario])
     row.name = name
 
 
 row_list("states", "state", add=add_state)
 row_list("weathers", "weather", add=add_weather, kinds=WEATHERS)
-row_list("stories", "story", add=add_story, kinds=STORY_ITEMS)
+row_list("scenarios", "scenario", add=add_scenario, kinds=SCENARIO_ITEMS)
 
 
-@operator("Play", signal=signals.study_changed, unless=unless_selected("stories"))
-def play_story(context: bpy.types.Context) -> None:
-    """Play the selected story from its first frame. Again: stop"""
+@operator("Play", signal=signals.study_changed, unless=unless_selected("scenarios"))
+def play_scenario(context: bpy.types.Context) -> None:
+    """Play the selected scenario from its first frame. Again: stop"""
     scene = context.scene
     settings = context.scene.perception_entropy
-    row = settings.stories[settings.story_index]
+    row = settings.scenarios[settings.scenario_index]
     playing = context.screen is not None and context.screen.is_animation_playing
     if not playing:
-        story = document.story_of(row)
-        frames = round(-story.start_s * document.frame_rate(scene))
+        scenario = document.scenario_of(row)
+        frames = round(-scenario.start_s * document.frame_rate(scene))
         scene.frame_end = scene.frame_start + frames
         scene.frame_set(scene.frame_start)
-        settings.view.show_story = settings.show_overlay = True
+        settings.view.show_scenario = settings.show_overlay = True
     if not bpy.app.background:
         bpy.ops.screen.animation_play()

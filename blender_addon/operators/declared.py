@@ -51,7 +51,7 @@ class Stopped(Refused):
     level = "INFO"
 
 
-class Told(NamedTuple):
+class Report(NamedTuple):
     """What an operator reports: warnings, then a line. Blender shows only the last report."""
 
     text: str
@@ -59,9 +59,9 @@ class Told(NamedTuple):
     level: Literal["INFO", "WARNING"] = "INFO"
 
 
-Answer: TypeAlias = str | Told | OperatorResult | None
+Answer: TypeAlias = str | Report | OperatorResult | None
 """What a function of an operator returns: a report, nothing to report, or Blender's own result."""
-Unless: TypeAlias = Callable[[bpy.types.Context], str | None]
+PollReason: TypeAlias = Callable[[bpy.types.Context], str | None]
 """Why an operator is not possible now; an empty text gives no reason, None: it is possible."""
 
 
@@ -75,7 +75,7 @@ def operator(
     label: str,
     *,
     mode: str = "",
-    unless: Unless | None = None,
+    unless: PollReason | None = None,
     signal: signals.Signal | None = None,
     options: frozenset[str] = UNDO,
     tooltip: Callable[[str, Any], str] | None = None,
@@ -149,7 +149,7 @@ def report_answer(operator: bpy.types.Operator, answer: Answer) -> OperatorResul
     """Report what a function of an operator answered; return the operator's result."""
     if isinstance(answer, set):
         return answer
-    told = Told(answer) if isinstance(answer, str) else answer or Told("")
+    told = Report(answer) if isinstance(answer, str) else answer or Report("")
     for line in told.warnings:
         report(operator, "WARNING", line)
     if told.text:

@@ -8,7 +8,7 @@ from .. import document, signals
 from ..caches import vehicle_cache
 from ..engine import advice, pe
 from .add_sensor import select_only
-from .declared import INTERNAL, Refused, Told, chosen_sensor, operator
+from .declared import INTERNAL, Refused, Report, chosen_sensor, operator
 
 NAME = StringProperty(name="Name", description="Name of the sensor; the active one when empty")
 
@@ -35,7 +35,7 @@ def select_object(context: bpy.types.Context, name: str) -> None:
     options=INTERNAL | {"UNDO"},
     name=StringProperty(name="Name", description="Name of the sensor's object"),
 )
-def toggle_sensor(context: bpy.types.Context, name: str) -> Told | None:
+def toggle_sensor(context: bpy.types.Context, name: str) -> Report | None:
     """Show or hide this sensor, like the Outliner's eye. A hidden sensor is not scored"""
     obj = context.scene.objects.get(name)
     if obj is None or obj.name not in context.view_layer.objects:
@@ -46,7 +46,7 @@ def toggle_sensor(context: bpy.types.Context, name: str) -> Told | None:
     obj.hide_set(hide)
     if hide != obj.visible_get():
         return None
-    return Told(f"{name} is hidden by its collection, or by local view", level="WARNING")
+    return Report(f"{name} is hidden by its collection, or by local view", level="WARNING")
 
 
 @operator(

@@ -22,7 +22,7 @@ from ..processes import own_jobs
 from ..processes.own_jobs import ExportJob, WrittenFiles
 from ..view import film
 from . import running_job
-from .declared import Answer, OperatorResult, Refused, Stopped, Told, chosen_file, operator
+from .declared import Answer, OperatorResult, Refused, Report, Stopped, chosen_file, operator
 from .jobs import JobRow, Task, begin
 from .rows import unless_selected
 
@@ -87,10 +87,10 @@ def run(job: ExportJob, asked_in_window: bool) -> Answer:
     return told_of(job.written)
 
 
-def told_of(written: WrittenFiles) -> Told:
+def told_of(written: WrittenFiles) -> Report:
     """Return the report of written files."""
     paths = written.paths
-    return Told(f"Wrote {paths[0]}" if len(paths) == 1 else written.text, written.lines)
+    return Report(f"Wrote {paths[0]}" if len(paths) == 1 else written.text, written.lines)
 
 
 def _unless_running(_context: bpy.types.Context) -> str | None:
@@ -101,10 +101,10 @@ def _unless_rendering(context: bpy.types.Context) -> str | None:
     """Why no film can be begun; None: one can."""
     if bpy.app.is_job_running("RENDER"):
         return RENDERING
-    return unless_selected("stories")(context)
+    return unless_selected("scenarios")(context)
 
 
-def _write_study(asked: Asked) -> Told:
+def _write_study(asked: Asked) -> Report:
     study = document.study_as_drawn(asked.context.scene)
     jobs.export_study(study, asked.path, replace_study=True)  # the file dialog has confirmed it
     return told_of(WrittenFiles((asked.path,)))
@@ -136,12 +136,12 @@ def _write_picture(asked: Asked) -> Answer:
 def _write_film(asked: Asked) -> str:
     scene = asked.context.scene
     settings = scene.perception_entropy
-    story = document.story_of(settings.stories[settings.story_index])
+    scenario = document.scenario_of(settings.scenarios[settings.scenario_index])
     study = document.study_as_drawn(scene)
     if bpy.app.background or not asked.options.asked_in_window:
-        film.write_film(scene, study, story, asked.path)
+        film.write_film(scene, study, scenario, asked.path)
         return f"Wrote {asked.path}"
-    film.FilmRender(scene, study, story, asked.path)
+    film.FilmRender(scene, study, scenario, asked.path)
     return "Rendering: Esc ends it, and keeps what is done"
 
 
@@ -205,7 +205,7 @@ FORMATS = {
         named_after_scene=True,
     ),
     "film": ExportFormat(
-        title="Film of the Selected Story",
+        title="Film of the Selected Scenario",
         file=f"drive_by{film.WEBM}",
         write=_write_film,
         unless=_unless_rendering,

@@ -16,7 +16,7 @@ from .. import document, signals
 from ..caches import vehicle_cache
 from ..engine import catalog, exchange, graphics, pe, search, studies
 from ..sensor_kinds import mount_of
-from .declared import INTERNAL, Told, chosen_file, operator
+from .declared import INTERNAL, Report, chosen_file, operator
 from .named_places import places_of
 from .variants import stand_as_variant
 
@@ -108,7 +108,7 @@ def replace_sensors(
     sensors: Iterable[pe.Sensor],
     lines: Sequence[str],
     origin: str,
-) -> Told:
+) -> Report:
     """Replace the sensors of the scene, as a variant; return what to report. `InputError` when they
     cannot be put into the scene."""
     before = document.records_of_scene(scene)
@@ -125,7 +125,7 @@ def replace_sensors(
     name = stand_as_variant(scene, title, records, f"{origin}. {' '.join(lines)}", before=before)
     signals.study_changed.emit()
     count = len(records)
-    return Told(f"Added {name}: {count} sensor{'s' if count > 1 else ''}", tuple(lines))
+    return Report(f"Added {name}: {count} sensor{'s' if count > 1 else ''}", tuple(lines))
 
 
 def _known_sensor(scene: bpy.types.Scene, sensor: pe.Sensor) -> catalog.KnownSensor:
@@ -158,7 +158,7 @@ def copy_rig(context: bpy.types.Context) -> str:
     mode="Rigs are added in Object Mode",
     text=StringProperty(name="Text", description="A line of Copy as Text; empty: the clipboard"),
 )
-def paste_rig(context: bpy.types.Context, text: str) -> Told:
+def paste_rig(context: bpy.types.Context, text: str) -> Report:
     """Replace the sensors of the scene by those of a copied line or study, as a variant.
 
     Present sensors that are no variant yet are saved as one"""
@@ -181,7 +181,7 @@ def _draw(self: bpy.types.Operator, _context: bpy.types.Context) -> None:
         items=FORMAT_OR_NAME, name="Format", description="The format of the file", default=BY_NAME
     ),
 )
-def import_file(context: bpy.types.Context, filepath: str, format: str) -> Told:
+def import_file(context: bpy.types.Context, filepath: str, format: str) -> Report:
     """Load a study, or replace the sensors by those of another program's file.
 
     A study brings its vehicle, mounts and settings; a vehicle that is already the same stays.
@@ -200,13 +200,13 @@ def import_file(context: bpy.types.Context, filepath: str, format: str) -> Told:
     )
 
 
-def _load_study(scene: bpy.types.Scene, path: Path) -> Told:
+def _load_study(scene: bpy.types.Scene, path: Path) -> Report:
     study = pe.load_study(path)
     if lost := document.load_into(scene, study):
-        return Told(f"The scene differs from the file in: {', '.join(lost)}", level="WARNING")
+        return Report(f"The scene differs from the file in: {', '.join(lost)}", level="WARNING")
     if study.mesh_notes:
-        return Told(f"Imported {path}; {study.mesh}: {'; '.join(study.mesh_notes)}")
-    return Told(f"Imported {path} without any loss")
+        return Report(f"Imported {path}; {study.mesh}: {'; '.join(study.mesh_notes)}")
+    return Report(f"Imported {path} without any loss")
 
 
 def rig_of_file(scene: bpy.types.Scene, path: Path, format_name: str) -> exchange.ImportedRig:

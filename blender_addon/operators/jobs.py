@@ -26,10 +26,10 @@ from .declared import (
     Failed,
     OperatorMixin,
     OperatorResult,
+    PollReason,
     Refused,
+    Report,
     Stopped,
-    Told,
-    Unless,
     declared,
     operator,
     report_answer,
@@ -66,7 +66,7 @@ class JobRow:
     """Of its own operator: name, what the button says, and tooltip."""
     read: Callable[[bpy.types.Context], Task | None]
     """Reads the scene and makes the task; None where there is nothing to do."""
-    unless: Unless | None = None
+    unless: PollReason | None = None
     """Says why the job is not possible in a context."""
     show: Callable[[], object] | None = None
     """Called in a window once the job has ended, and where there is nothing to do."""
@@ -282,12 +282,12 @@ def optimize_task(scene: bpy.types.Scene, study: pe.Study, taken: document.Finge
     document.check_placeable(scene, study)
     job = jobs.OptimizeJob(study, before=cached_score(scene, study, taken))
 
-    def finish(scene: bpy.types.Scene, outcome: jobs.Outcome) -> Told:
+    def finish(scene: bpy.types.Scene, outcome: jobs.Outcome) -> Report:
         gone = store_search(scene, outcome, taken)
         if not gone:
-            return Told(search_line(outcome))
+            return Report(search_line(outcome))
         line = f"Sensors that were removed meanwhile are not placed: {', '.join(gone)}"
-        return Told(line, level="WARNING")
+        return Report(line, level="WARNING")
 
     def rescue(scene: bpy.types.Scene, job: jobs.OptimizeJob) -> None:
         if job.best is not study:
@@ -348,10 +348,10 @@ def check_task(scene: bpy.types.Scene, study: pe.Study, taken: document.Fingerpr
     """Check all requirements that the rig can be held to; verdicts are stored as they are found.
     After Esc those that were found before it are kept; a requirement that was changed meanwhile has
     no verdict."""
-    if not study.requirements and not study.stories:
-        raise pe.InputError("scene", "requirements", "at least one, or a story", "none")
+    if not study.requirements and not study.scenarios:
+        raise pe.InputError("scene", "requirements", "at least one, or a scenario", "none")
     tables = {*document.requirements_key(scene.perception_entropy)}
-    signatures = document.story_signatures(scene.perception_entropy, taken.text)
+    signatures = document.scenario_signatures(scene.perception_entropy, taken.text)
     document.store_verdicts(scene.perception_entropy, ())
     known = (0, 0)
 
@@ -368,16 +368,16 @@ def check_task(scene: bpy.types.Scene, study: pe.Study, taken: document.Fingerpr
             known = now
             store(scene, job)
 
-    def finish(scene: bpy.types.Scene, found: jobs.Checked) -> Told:
+    def finish(scene: bpy.types.Scene, found: jobs.Checked) -> Report:
         store(scene, found)
         missed = [verdict.name for verdict in found.verdicts if not verdict.met]
-        missed += [driven.story.name for driven in found.driven if not driven.is_met]
+        missed += [driven.scenario.name for driven in found.driven if not driven.is_met]
         unchecked = [*found.unchecked, *found.missing]
         more = f"; not met: {', '.join(missed)}" if missed else ""
         more += f"; not checked: {', '.join(unchecked)}" if unchecked else ""
         of = len(found.verdicts) + len(found.driven)
-        text = f"{of - len(missed)} of {of} requirements and stories are met{more}"
-        return Told(text, level="WARNING" if missed or unchecked else "INFO")
+        text = f"{of - len(missed)} of {of} requirements and scenarios are met{more}"
+        return Report(text, level="WARNING" if missed or unchecked else "INFO")
 
     return Task(jobs.CheckJob(study, fitting=True), finish, "checked", progressed)
 

@@ -9,7 +9,7 @@ from bpy.props import FloatVectorProperty
 from .. import document
 from ..queries import location_query
 from . import modes
-from .declared import OperatorResult, Unless, operator, report
+from .declared import OperatorResult, PollReason, operator, report
 from .surface_pose import ViewUnderMouse, ray_of, view_under
 
 STANDS_M = 0.45
@@ -20,7 +20,7 @@ HINT = "Query Location: click the ground or a surface. Esc: done"
 
 
 def clicking(
-    hint: str, *, once: bool = False, without: Unless = lambda _context: None
+    hint: str, *, once: bool = False, without: PollReason = lambda _context: None
 ) -> dict[str, Any]:
     """Return members of an operator that is executed at each click on a surface: a mode. With
     `once` it ends with the first click that does something: an undo step of its own. It ends, too,

@@ -397,20 +397,20 @@ def _requirements(request: ViewRequest, cache: LayerCache, _name: str) -> ShapeS
     return zones_of(verdicts)
 
 
-def _story_keys(request: ViewRequest) -> dict[str, Hashable]:
-    if request.story is None:
+def _scenario_keys(request: ViewRequest) -> dict[str, Hashable]:
+    if request.scenario is None:
         return {}
     rule = request.confirmation, request.rates, request.prior_key
-    chosen = request.story, request.rate_hz, rule
+    chosen = request.scenario, request.rate_hz, rule
     return {name: (key, chosen) for name, key in _rig_keys(prior=False)(request).items()}
 
 
-def _story(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.LayerShape:
+def _scenario(request: ViewRequest, _cache: LayerCache, _name: str) -> graphics.LayerShape:
     rig = _counted_rig(request)
     vehicle = request.vehicle
-    assert request.story is not None  # the layer has no key without one
+    assert request.scenario is not None  # the layer has no key without one
     driven = motion.drive_by(
-        request.story,
+        request.scenario,
         rig,
         vehicle,
         request.model,
@@ -493,7 +493,7 @@ LAYERS = (
     Layer("frustums", "Camera Views", _view_keys, _views),
     Layer("beams", "Beams", _beam_keys, _beams, rough=True),
     Layer("heat", "Occluded Beams", _heat_keys, _heat, rough=True),
-    Layer("story", "Drive-by", _story_keys, _story, line_px=1.8, edged=True),
+    Layer("scenario", "Drive-by", _scenario_keys, _scenario, line_px=1.8, edged=True),
     Layer("axles", "Axles", _axle_keys, _axles, line_px=1.6, edged=True),
     Layer("front", "Front", _front_keys, _front, line_px=2.2, edged=True),
     Layer("ghosts", "Other Variant", _ghost_keys, _ghosts, line_px=1.6, edged=True),

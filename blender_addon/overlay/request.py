@@ -65,7 +65,7 @@ class ViewRequest:
     score, of all voxels, where the scene has not changed since. `ghosts` are the sensors of another
     variant; with `ghosts_title` those of a running search, or of suggestions. `compared` are the
     sensors that the difference map compares with. `requirement` is the name of the selected
-    requirement, `story` the selected story, which is played with `rate_hz` frames a second.
+    requirement, `scenario` the selected scenario, which is played with `rate_hz` frames a second.
     """
 
     sensors: tuple[SceneSensor, ...]
@@ -93,7 +93,7 @@ class ViewRequest:
     requirements: tuple[requirements.Requirement, ...] = ()
     requirements_key: Hashable = None
     requirement: str = ""
-    story: motion.Story | None = None
+    scenario: motion.Scenario | None = None
     confirmation: motion.Confirmation | None = None
     rates: tuple[tuple[str, float], ...] = ()
     rate_hz: float = 24.0

@@ -188,7 +188,7 @@ def _legend(
     """Return "7 of 9 requirements met", what was lost or won, and those that are not met."""
     met = sum(verdict.met for verdict in verdicts)
     preview = ", preview" if any(verdict.preview for verdict in verdicts) else ""
-    asked = [verdict.requirement.under for verdict in verdicts]
+    asked = [verdict.requirement.robust_to for verdict in verdicts]
     others = sum(bool(under.states or under.weathers or under.mounting) for under in asked)
     shown = ", as shown" if others else ""
     title = f"{met} of {len(verdicts)} requirements met{preview}{shown}"

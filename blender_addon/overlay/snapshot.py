@@ -90,7 +90,7 @@ class SnapshotReader:
             where=where_map.maps.get(scene.name),
             region=where_map.regions.get(scene.name),
             steered=self._steered_sensor(scene, depsgraph, sensors, vehicle, moving=moving),
-            **(_requirements(scene) | _story(scene)),
+            **(_requirements(scene) | _scenario(scene)),
         )
 
     def _mounts(
@@ -331,16 +331,16 @@ def _reference(scene: bpy.types.Scene) -> pe.Reference | None:
     return None
 
 
-def _story(scene: bpy.types.Scene) -> dict[str, Any]:
-    """Return the selected story of a scene; none where it is wrong: a check says what is."""
+def _scenario(scene: bpy.types.Scene) -> dict[str, Any]:
+    """Return the selected scenario of a scene; none where it is wrong: a check says what is."""
     settings = scene.perception_entropy
-    if settings.story_index >= len(settings.stories):
+    if settings.scenario_index >= len(settings.scenarios):
         return {}
     try:
-        found = document.story_of(settings.stories[settings.story_index])
+        found = document.scenario_of(settings.scenarios[settings.scenario_index])
         time = document.document_of(settings, "time").time
     except pe.InputError:
         return {}
-    shown = {"story": found, "confirmation": time.confirmation}
+    shown = {"scenario": found, "confirmation": time.confirmation}
     rates = tuple(time.frames.rates.items())
     return {**shown, "rates": rates, "rate_hz": document.frame_rate(scene)}

@@ -1,4 +1,4 @@
-"""Conditions: states and weathers, with scores under them; and stories of what moves."""
+"""Conditions: states and weathers, with scores under them; and scenarios of what moves."""
 
 import json
 from typing import Any
@@ -36,7 +36,7 @@ def weathers_rows(_context: Context, layout: UILayout, _settings: Any, item: Any
 
 @panel("Conditions", bl_ui_units_x=17)
 def conditions(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
-    """States and weathers in which the rig is scored, too; and stories of what moves"""
+    """States and weathers in which the rig is scored, too; and scenarios of what moves"""
     for name, title, draw in SECTIONS:
         inside = section(layout, name, title, count=str(len(getattr(settings, name)) or ""))
         if inside is not None:
@@ -66,9 +66,9 @@ def draw_weathers(layout: UILayout, settings: PropertyGroup, _context: Context) 
         draw_declared(layout, settings.weathers[settings.weather_index], "weather")
 
 
-@row_list("PE_UL_stories")
-def stories_rows(_context: Context, layout: UILayout, _settings: Any, item: Any) -> None:
-    """The stories: used, name, and the smallest margin"""
+@row_list("PE_UL_scenarios")
+def scenarios_rows(_context: Context, layout: UILayout, _settings: Any, item: Any) -> None:
+    """The scenarios: used, name, and the smallest margin"""
     row = layout.row(align=True)
     row.prop(item, "enabled", text="")
     found = json.loads(item.result) if item.result else None
@@ -82,22 +82,22 @@ def stories_rows(_context: Context, layout: UILayout, _settings: Any, item: Any)
         draw_label(margin, "never" if seconds is None else f"{seconds:+.1f} s")
 
 
-def draw_stories(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
-    """Draw the stories: when a track is confirmed, and whether the vehicle stops in time."""
-    draw_list(layout, stories_rows, settings, "stories")
-    if settings.stories:
+def draw_scenarios(layout: UILayout, settings: PropertyGroup, context: Context) -> None:
+    """Draw the scenarios: when a track is confirmed, and whether the vehicle stops in time."""
+    draw_list(layout, scenarios_rows, settings, "scenarios")
+    if settings.scenarios:
         row = layout.row(align=True)
         row.operator("pe.check_requirements", text="Check", icon="VIEWZOOM")
-        row.operator("pe.play_story", text="", icon="PLAY")
+        row.operator("pe.play_scenario", text="", icon="PLAY")
         row.operator("pe.export_file", text="", icon="RENDER_ANIMATION").format = "film"
-    if settings.story_index < len(settings.stories):
-        row = settings.stories[settings.story_index]
+    if settings.scenario_index < len(settings.scenarios):
+        row = settings.scenarios[settings.scenario_index]
         told = json.loads(row.result or "{}")
         if told:
             draw_sentence(layout, context, f"Stops in {sight.shown_end(told['stop_m']):.1f} m")
         for body in told.get("bodies", ()):
             draw_sentence(layout, context, _body_text(body))
-        draw_declared(layout, row, "story")
+        draw_declared(layout, row, "scenario")
         layout.separator()
     draw_declared(layout, settings, "time")
 
@@ -132,7 +132,7 @@ def _draw_row(layout: UILayout, item: PropertyGroup) -> UILayout:
 SECTIONS = (
     ("states", "States", draw_states),
     ("weathers", "Weathers", draw_weathers),
-    ("stories", "Seen in Time", draw_stories),
+    ("scenarios", "Seen in Time", draw_scenarios),
 )
 """By the property of the rows: title, and what draws the list."""
-CLASSES = (states_rows, weathers_rows, stories_rows, conditions)
+CLASSES = (states_rows, weathers_rows, scenarios_rows, conditions)

@@ -88,7 +88,7 @@ def draw_requirement(layout: UILayout, context: Context, row: PropertyGroup) -> 
         draw_properties(layout, row, ("bodies", "headings"))
     _draw_zone(layout, row)
     _draw_criterion(layout, row)
-    draw_declared(layout, row, "requirement.under")
+    draw_declared(layout, row, "requirement.robust_to")
 
 
 def _draw_source(layout: UILayout, context: Context, check: str, source: str) -> None:

@@ -125,7 +125,7 @@ def known_entropies(study: pe.Study) -> dict[str, tuple[float, float]]:
     found = {}
     for key, rig in catalog.known_rigs().items():
         on_vehicle = catalog.rig_on(rig, study.vehicle)
-        score = evaluator.summary(study.with_other_rig(on_vehicle).rig)
+        score = evaluator.summary(study.with_unrelated_rig(on_vehicle).rig)
         found[key] = score.entropy, score.stderr
     return found
 

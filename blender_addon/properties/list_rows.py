@@ -213,12 +213,12 @@ class PE_Weather(WeatherFields, Switched, Tabled, PropertyGroup):
     """A weather. At most one of rain, snow and fog is above 0."""
 
 
-StoryFields: Any = table_group(motion.Story, is_explicit=True)
+ScenarioFields: Any = table_group(motion.Scenario, is_explicit=True)
 
 
-class PE_Story(StoryFields, Switched, Tabled, PropertyGroup):
-    """A story of what moves round the vehicle; the row has its name. Its table has all fields, as
-    those that are absent are the preset's."""
+class PE_Scenario(ScenarioFields, Switched, Tabled, PropertyGroup):
+    """A scenario of what moves round the vehicle; the row has its name. Its table has all fields,
+    as those that are absent are the preset's."""
 
     result: text("Result", "When its tracks are confirmed, as JSON")
 

@@ -43,13 +43,13 @@ SHAPE_KEYS = ("x", "y", "polygon", "ring", "path", "spots")
 USUAL_BODY = "adult"
 USUAL_BLIND_M2 = 0.5
 NOT_OF_GROUND = ("sensors", "kinds", "of", "points", "pixels", "share", "ap")
-OF_GROUND = ("blind_m2", "blind_out", "blind_height")
+OF_GROUND = ("blind_m2", "max_blind_distance", "blind_height")
 ZERO_COUNTS = ("blind_m2",)
 """Settings that are asked for at 0, too."""
 SECTIONS = {
     "zone": requirements.Zone,
     "criterion": requirements.Criterion,
-    "under": requirements.Under,
+    "robust_to": requirements.RobustTo,
 }
 
 
@@ -109,7 +109,7 @@ def _declared_view(section: str, setting: studies.Setting) -> dict[str, Any]:
 def asked_for(table: document.TableData) -> str:
     """Return whether test bodies or blind ground are asked for."""
     criterion = table.get("criterion", {})
-    return GROUND_ASKED if {"blind_m2", "blind_out"} & criterion.keys() else BODIES_ASKED
+    return GROUND_ASKED if {"blind_m2", "max_blind_distance"} & criterion.keys() else BODIES_ASKED
 
 
 def ask_for(table: document.TableData, what: str) -> None:

@@ -18,8 +18,8 @@ from .list_rows import (
     PE_FocusSettings,
     PE_MountSettings,
     PE_OwnSensorSettings,
+    PE_Scenario,
     PE_State,
-    PE_Story,
     PE_Variant,
     PE_Weather,
 )
@@ -45,7 +45,7 @@ LISTS = (
     ("requirements", "requirement_index", "Zones where bodies have to be seen", PE_Requirement),
     ("states", "state_index", "States of the vehicle: frames of the scene", PE_State),
     ("weathers", "weather_index", "Weathers in which the rig is scored, too", PE_Weather),
-    ("stories", "story_index", "What moves, and when it is confirmed", PE_Story),
+    ("scenarios", "scenario_index", "What moves, and when it is confirmed", PE_Scenario),
     ("variants", "variant_index", "Saved sets of sensors for this vehicle", PE_Variant),
 )
 """Lists of rows: the properties of the rows and of the selected row's place, what they are, and a

@@ -419,8 +419,8 @@ class PE_ObjectSettings(GroundPose, CurveFields, SheetFields, PropertyGroup):
 
     body: menu(
         "Test Body",
-        "What this object is: the 3D view says which sensors see such a body there. In a story of "
-        "its own animation its size is that of the object",
+        "What this object is: the 3D view says which sensors see such a body there. In a scenario "
+        "of its own animation its size is that of the object",
         BODY_ITEMS,
         update=changed,
     )
@@ -431,7 +431,7 @@ class PE_ObjectSettings(GroundPose, CurveFields, SheetFields, PropertyGroup):
     )
     cover_loss_db: number(
         "Radar Cover",
-        "Radars measure through this object and lose so many decibels one way; 0: it occludes them",
+        "One-way loss of a radar through this object; 0: it occludes radars",
         min=0.0,
         max=100.0,
         soft_max=10.0,

@@ -56,11 +56,14 @@ NEAR_TO = 0.024  # Height of a name, as a share of its distance from the camera
 GOP = 12  # Frames from one key frame to the next: a page jumps to any moment
 
 
-def write_film(scene: bpy.types.Scene, study: pe.Study, story: motion.Story, path: Path) -> None:
-    """Render a story as a film, and write the file once it is complete; its scene is left. Render
-    Animation renders that scene again. `InputError` where the suffix is none of `FORMATS`."""
+def write_film(
+    scene: bpy.types.Scene, study: pe.Study, scenario: motion.Scenario, path: Path
+) -> None:
+    """Render a scenario as a film, and write the file once it is complete; its scene is left.
+    Render Animation renders that scene again. `InputError` where the suffix is none of
+    `FORMATS`."""
     check_suffix(path)
-    film = film_scene(scene, study, story)
+    film = film_scene(scene, study, scenario)
     with tempfile.TemporaryDirectory() as folder:
         made = _rendered_to(film, folder, path.suffix)
         bpy.ops.render.render(animation=True, scene=film.name)
@@ -74,10 +77,10 @@ class FilmRender:
     keeps the frames that are done. The file is written in the end."""
 
     def __init__(
-        self, scene: bpy.types.Scene, study: pe.Study, story: motion.Story, path: Path
+        self, scene: bpy.types.Scene, study: pe.Study, scenario: motion.Scenario, path: Path
     ) -> None:
         check_suffix(path)
-        film = film_scene(scene, study, story)
+        film = film_scene(scene, study, scenario)
         self.path = path
         self._folder = tempfile.TemporaryDirectory()
         self._made = _rendered_to(film, self._folder.name, path.suffix)
@@ -128,12 +131,14 @@ def check_suffix(path: Path) -> None:
         raise pe.InputError("film", "file", f"a name that ends in {' or '.join(FORMATS)}", path)
 
 
-def film_scene(scene: bpy.types.Scene, study: pe.Study, story: motion.Story) -> bpy.types.Scene:
-    """Return a new scene that shows a story as the rig of a study sees it."""
-    driven = study.drive_by(story)
+def film_scene(
+    scene: bpy.types.Scene, study: pe.Study, scenario: motion.Scenario
+) -> bpy.types.Scene:
+    """Return a new scene that shows a scenario as the rig of a study sees it."""
+    driven = study.drive_by(scenario)
     render = scene.render
     moving = graphics.BodiesInTime.of(driven, study.vehicle, render.fps / render.fps_base)
-    film = bpy.data.scenes.new(f"Drive-by {story.name}")
+    film = bpy.data.scenes.new(f"Drive-by {scenario.name}")
     for obj in scene.objects:
         shown = obj.type in SHOWN or obj.instance_type == "COLLECTION"
         shown = shown and not document.in_surroundings(obj)
@@ -142,7 +147,7 @@ def film_scene(scene: bpy.types.Scene, study: pe.Study, story: motion.Story) -> 
     stage = _Stage(film, scene.frame_start, len(moving.times))
     _set_up(film, scene, driven, len(moving.times))
     camera = stage.camera(scene, driven, moving, study.vehicle)
-    _street(stage, story)
+    _street(stage, scenario)
     places = {sensor.name: Vector(sensor.pose.position) for sensor in study.rig}
     for body in moving.bodies:
         _body(stage, camera, moving, body, places=places)
@@ -241,7 +246,7 @@ class _Stage(NamedTuple):
         data = bpy.data.cameras.new("Film")
         data.angle = FOV
         data.clip_start = 0.05
-        way = -1.0 if driven.story.speed < 0.0 else 1.0
+        way = -1.0 if driven.scenario.speed < 0.0 else 1.0
         seen = [body.positions for body in moving.bodies if body.seen is not None]
         side = -1.0 if float(np.mean([at[:, 1].mean() for at in seen])) > 0.0 else 1.0
         reach = 2.4 if vehicle is None else float(np.abs(np.array(vehicle.bounds)[:, 0]).max())
@@ -266,7 +271,7 @@ def _linear(color: graphics.Rgba) -> tuple[float, ...]:
     return (*graphics.linear_of_srgb(np.array(color[:3])).tolist(), color[3])
 
 
-def _street(stage: _Stage, story: motion.Story) -> None:
+def _street(stage: _Stage, scenario: motion.Scenario) -> None:
     """Add the ground, and dashes that go by with the vehicle's own speed."""
     corners = [(-FAR_M, -FAR_M, -0.03), (FAR_M, -FAR_M, -0.03), (FAR_M, FAR_M, -0.03)]
     stage.mesh("ground", [*corners, (-FAR_M, FAR_M, -0.03)], [(0, 1, 2, 3)], GROUND)
@@ -276,8 +281,8 @@ def _street(stage: _Stage, story: motion.Story) -> None:
     dashes = np.concatenate([np.add(dash, (x, y, 0.0)) for x, y in starts])
     faces = np.arange(len(dashes)).reshape(-1, 4).tolist()
     lines = stage.mesh("lane", dashes, faces, DASH)
-    rate = -story.start_s / max(stage.frames - 1, 1)
-    gone = [-story.speed * rate * k for k in range(stage.frames)]
+    rate = -scenario.start_s / max(stage.frames - 1, 1)
+    gone = [-scenario.speed * rate * k for k in range(stage.frames)]
     stage.keys(lines, "location", [(math.fmod(x, DASH_M + GAP_M), 0.0, 0.0) for x in gone])
 
 
@@ -322,7 +327,7 @@ def _body(
         stage.keys(ray, "scale", [(w.length, t, t) for w, t in zip(ways, thick, strict=True)])
         shades = [_linear(graphics.color_of_ap(ap)) for ap in found]
         stage.keys(ray.data.materials[0], "diffuse_color", shades)
-    for row, mark in enumerate(graphics.marks_of(moving.driven.story, body.seen)):
+    for row, mark in enumerate(graphics.marks_of(moving.driven.scenario, body.seen)):
         k = min(int(np.searchsorted(moving.times, mark.time_s - 1e-6)), stage.frames - 1)
         post = stage.box(mark.text, mark.color)
         post.scale = (POST_M, POST_M, 2.0 * middle)

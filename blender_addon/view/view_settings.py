@@ -119,11 +119,11 @@ class ViewSettings:
         "Requirements",
         "Draw the zones of requirements: filled where they are met, hatched where they are not",
     )
-    show_story: bool = _switch(
+    show_scenario: bool = _switch(
         True,
         "Drive-by",
-        "Show the selected story at the frame of the timeline: bodies, and lines from each sensor "
-        "that sees one; below, AP over time",
+        "Show the selected scenario at the frame of the timeline: bodies, and lines from each "
+        "sensor that sees one; below, AP over time",
     )
     show_mounts: bool = _switch(
         True, "Mounts", "Tint the surfaces of mounts; no-go areas and bounds are boxes"

@@ -1,9 +1,9 @@
-"""Time: stories of what moves round the vehicle, tracks, and when they are confirmed."""
+"""Time: scenarios of what moves round the vehicle, tracks, and when they are confirmed."""
 
 from ..lazy_faces import lazy_face
 
 with lazy_face(__name__):
     from ..metric.frames import Frames
     from .drive_by import DriveBy, Moment, SeenBody, drive_by
-    from .story import CHANCE, RATE_HZ, Actor, Story, checked_stories, stories
+    from .scenario import CHANCE, RATE_HZ, Actor, Scenario, checked_scenarios, scenarios
     from .tracks import CORRELATION_TIME_S, WINDOW, Confirmation

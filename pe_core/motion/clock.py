@@ -1,7 +1,7 @@
-"""When sensors have frames, on the frames of a story, and which sensors a track's frames are of.
+"""When sensors have frames, on the frames of a scenario, and which sensors a track's frames are of.
 
-A sensor of a lower rate than the story's has a new frame at some of the story's frames, and what it
-saw is as old as its last one until then. A faster one has one at each.
+A sensor of a lower rate than the scenario's has a new frame at some of the scenario's frames, and
+what it saw is as old as its last one until then. A faster one has one at each.
 
 A track is confirmed by M of N frames of a `Stream`: all sensors of at least a rate, at the frames
 of this rate, so that each of its frames has a new one of each of them. There is a stream for each
@@ -18,15 +18,15 @@ from ..base.arrays import Floats, Ints
 from ..scene.rig import Rig, Sensor
 
 SAME_FRAME = 1e-6
-"""A frame that is later by less than this share of a story's frame is at the story's frame."""
+"""A frame that is later by less than this share of a scenario's frame is at that frame."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FrameClock:
-    """The frames of a sensor or a stream on the K frames of a story.
+    """The frames of a sensor or a stream on the K frames of a scenario.
 
-    `frames` (F,): The story's frames at which there is a new one.
-    `last` (K,): Which one is the last at each of the story's frames.
+    `frames` (F,): The scenario's frames at which there is a new one.
+    `last` (K,): Which one is the last at each of the scenario's frames.
     `frame_s`: The time between two of them [s].
     """
 
@@ -35,10 +35,10 @@ class FrameClock:
     frame_s: float
 
     @classmethod
-    def of(cls, count: int, story_hz: float, rate_hz: float) -> "FrameClock":
-        """Return the clock of a rate on so many frames of a story; it is at most the story's."""
-        rate = min(rate_hz, story_hz)
-        step = story_hz / rate
+    def of(cls, count: int, scenario_hz: float, rate_hz: float) -> "FrameClock":
+        """Return the clock of a rate on `count` frames, at most that of the scenario."""
+        rate = min(rate_hz, scenario_hz)
+        step = scenario_hz / rate
         ticks = np.arange(int((count - 1) / step + SAME_FRAME) + 1)
         frames = np.ceil(ticks * step - SAME_FRAME).astype(np.int64)
         frames = frames[frames < count]
@@ -50,9 +50,9 @@ class FrameClock:
         return values[..., self.last]
 
 
-def frame_rate(sensor: Sensor, rates: Mapping[str, float], story_hz: float) -> float:
-    """Return the frames of a sensor in a second [Hz], at most the story's; `rates` are by kind."""
-    return min(rates.get(sensor.kind, story_hz), story_hz)
+def frame_rate(sensor: Sensor, rates: Mapping[str, float], scenario_hz: float) -> float:
+    """Return a sensor's frames in a second [Hz], at most the scenario's; `rates` are by kind."""
+    return min(rates.get(sensor.kind, scenario_hz), scenario_hz)
 
 
 def streams(rig: Rig, hz: Mapping[str, float]) -> dict[float, list[str]]:

@@ -1,4 +1,4 @@
-"""The drive-by: what a rig sees of the bodies of a story at each frame, and when it is enough.
+"""The drive-by: what a rig sees of the bodies of a scenario at each frame, and when it is enough.
 
 A frame is a scene of objects, measured by the kernels of objects in traffic. AP follows by eqs. 4
 to 8 and counts as the probability that a detector finds the body at the frame.
@@ -16,8 +16,8 @@ from ..base.values import rounded
 from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..sensors import PerceptionModel
-from .story import CHANCE, RATE_HZ, Story, outline
-from .story_sight import StorySight
+from .scenario import CHANCE, RATE_HZ, Scenario, outline
+from .scenario_sight import ScenarioSight
 from .tracks import KEPT, Confirmation, first_frame, longest_run
 
 CHANCES = (CHANCE, 0.99)
@@ -40,10 +40,10 @@ class SeenBody:
         track is confirmed by then.
     `by_sensor`: AP of each sensor alone.
     `positions` (K, 2): In the ground frame [m].
-    `moments`: When it is confirmed, by probability; None: never in the story.
+    `moments`: When it is confirmed, by probability; None: never in the scenario.
     `lost_s`: Longest time for which it is lost after it was confirmed, by `CHANCE` [s].
     `margin_s`: How long before the last moment at which the vehicle can stop, less the time that
-        the story asks for [s]; negative: too late. None: never confirmed.
+        the scenario asks for [s]; negative: too late. None: never confirmed.
     """
 
     name: str
@@ -84,9 +84,9 @@ class SeenBody:
 
 @dataclass(frozen=True, slots=True)
 class DriveBy:
-    """A story as a rig sees it, body by body."""
+    """A scenario as a rig sees it, body by body."""
 
-    story: Story
+    scenario: Scenario
     bodies: tuple[SeenBody, ...]
 
     @property
@@ -104,47 +104,47 @@ class DriveBy:
     def summary(self) -> dict[str, Any]:
         """Return verdicts and moments, with the stop that they are held to, as plain JSON data."""
         return {
-            "name": self.story.name,
-            "title": self.story.title,
+            "name": self.scenario.name,
+            "title": self.scenario.title,
             "met": self.is_met,
             "margin_s": self.margin_s,
             "shown_margin_s": shown_margin(self.margin_s),
-            "brake_s": rounded(self.story.brake_s),
-            "stop_m": rounded(self.story.stop_m),
+            "brake_s": rounded(self.scenario.brake_s),
+            "stop_m": rounded(self.scenario.stop_m),
             "bodies": [body.summary() for body in self.bodies],
         }
 
     def to_dict(self) -> dict[str, Any]:
         """Return all of it as plain JSON data, frame by frame."""
         bodies = [body.to_dict() for body in self.bodies]
-        return self.summary() | {"times_s": _listed(self.story.times), "bodies": bodies}
+        return self.summary() | {"times_s": _listed(self.scenario.times), "bodies": bodies}
 
 
 def drive_by(
-    story: Story,
+    scenario: Scenario,
     rig: Rig,
     vehicle: Vehicle | None = None,
     model: PerceptionModel | None = None,
     confirmation: Confirmation | None = None,
     rates: Mapping[str, float] | None = None,
 ) -> DriveBy:
-    """Return a story as a rig sees it.
+    """Return a scenario as a rig sees it.
 
-    `rates` are the frames of sensors by kind [Hz]; a kind without one has the story's. A
-    sensor of a lower rate than the story's has fewer frames that confirm a track (`clock`).
+    `rates` are the frames of sensors by kind [Hz]; a kind without one has the scenario's. A
+    sensor of a lower rate than the scenario's has fewer frames that confirm a track (`clock`).
 
     `InputError` when a sensor has an AP curve of its own, or a class has none.
     """
     confirmation = confirmation or Confirmation()
-    sight = StorySight(story, rig, vehicle, model or PerceptionModel(), rates=rates or {})
+    sight = ScenarioSight(scenario, rig, vehicle, model or PerceptionModel(), rates=rates or {})
     whole = sight.ap()
     alone = {sensor.name: sight.ap([sensor.name]) for sensor in rig}
     track = sight.track(confirmation)
     away = _distance(sight.positions, vehicle)
     bodies = []
-    for k, actor in enumerate(actor for actor in story.actors if actor.watched):
-        moments = _moments(story, track.confirmed[k], away[k])
-        margin_s, lost_s = _margin_and_loss(story, track.confirmed[k], track.kept[k])
+    for k, actor in enumerate(actor for actor in scenario.actors if actor.watched):
+        moments = _moments(scenario, track.confirmed[k], away[k])
+        margin_s, lost_s = _margin_and_loss(scenario, track.confirmed[k], track.kept[k])
         bodies.append(
             SeenBody(
                 name=actor.name,
@@ -157,25 +157,27 @@ def drive_by(
                 margin_s=margin_s,
             )
         )
-    return DriveBy(story, tuple(bodies))
+    return DriveBy(scenario, tuple(bodies))
 
 
-def _moments(story: Story, confirmed: Floats, away: Floats) -> dict[float, Moment | None]:
+def _moments(scenario: Scenario, confirmed: Floats, away: Floats) -> dict[float, Moment | None]:
     """Return when a track is confirmed by each probability; `away` (K,) is its distance [m]."""
     moments: dict[float, Moment | None] = {}
     for chance in CHANCES:
         k = first_frame(confirmed, chance)
-        at = None if k is None else Moment(float(story.times[k]), rounded(float(away[k])))
+        at = None if k is None else Moment(float(scenario.times[k]), rounded(float(away[k])))
         moments[chance] = at
     return moments
 
 
-def _margin_and_loss(story: Story, confirmed: Floats, kept: Floats) -> tuple[float | None, float]:
+def _margin_and_loss(
+    scenario: Scenario, confirmed: Floats, kept: Floats
+) -> tuple[float | None, float]:
     """Return a track's margin (None: never confirmed), and for how long it is lost [s]."""
     first = first_frame(confirmed, CHANCE)
     if first is None:
         return None, 0.0
-    margin_s = story.brake_s - story.before_s - float(story.times[first])
+    margin_s = scenario.brake_s - scenario.before_s - float(scenario.times[first])
     return rounded(margin_s), rounded(longest_run(kept[first:] < KEPT) / RATE_HZ)
 
 

@@ -13,17 +13,17 @@ from ..base.arrays import Flags, Floats, Ints
 from ..base.errors import InputError
 from ..scene.objects import Objects
 from ..scene.rig import Rig
-from .story import Story
+from .scenario import Scenario
 
 OTHER = "other"  # Class of bodies that only occlude
 MAX_BOXES = 200_000
-"""Boxes in the scenes of a story: they take a camera about a minute, a LiDAR some seconds."""
+"""Boxes in the scenes of a scenario: they take a camera about a minute, a LiDAR some seconds."""
 MARGIN_RAD = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class StoryScenes:
-    """Boxes of a story, in scenes; `rows` (W, K) are those of the watched bodies at each frame."""
+class ScenarioScenes:
+    """Boxes of a scenario, in scenes; `rows` (W, K): those of the watched bodies at each frame."""
 
     objects: Objects
     rows: Ints
@@ -34,36 +34,43 @@ class StoryScenes:
         return self.objects.some(self.rows.ravel())
 
 
-def story_scenes(story: Story, where: Floats, headings: Floats, rig: Rig) -> StoryScenes:
-    """Return the scenes of a story as a rig may see them.
+def scenario_scenes(
+    scenario: Scenario, where: Floats, headings: Floats, rig: Rig
+) -> ScenarioScenes:
+    """Return the scenes of a scenario as a rig may see them.
 
-    `where, headings`: `Story.positions`. `InputError` when there are more than `MAX_BOXES` boxes.
+    `where, headings`: `Scenario.positions`. `InputError` when there are more than `MAX_BOXES`
+    boxes.
     """
-    groups = _members(story)
+    groups = _members(scenario)
     rows = np.zeros(where.shape[:2], np.int64)
     parts: list[Ints] = []
     total = 0
     for number, members in enumerate(groups):
-        part = _scenes_of(members, number, story, where, rig=rig)
+        part = _scenes_of(members, number, scenario, where, rig=rig)
         parts.append(part)
-        watched = np.arange(len(members) * len(story.times)).reshape(len(members), -1)
+        watched = np.arange(len(members) * len(scenario.times)).reshape(len(members), -1)
         rows[members] = total + watched
         total += len(part)
         if total > MAX_BOXES:
             expected = f"bodies and frames of at most {MAX_BOXES} boxes: each may hide others"
-            found = f"more: {len(story.actors)} bodies, {len(story.times)} frames"
-            raise InputError(f"story {story.name!r}", "body", expected, found)
+            found = f"more: {len(scenario.actors)} bodies, {len(scenario.times)} frames"
+            raise InputError(f"scenario {scenario.name!r}", "body", expected, found)
     rows = rows[sorted(k for members in groups for k in members)]
     seen = np.zeros(total, bool)
     seen[rows] = True
-    return StoryScenes(_objects(story, where, headings, np.concatenate(parts), seen=seen), rows)
+    return ScenarioScenes(
+        _objects(scenario, where, headings, np.concatenate(parts), seen=seen), rows
+    )
 
 
-def _scenes_of(members: list[int], number: int, story: Story, where: Floats, rig: Rig) -> Ints:
+def _scenes_of(
+    members: list[int], number: int, scenario: Scenario, where: Floats, rig: Rig
+) -> Ints:
     """Return body, frame and scene (N, 3) of the boxes of some watched bodies, body by body, and
     then of what may hide them."""
-    frames = np.arange(len(story.times))
-    before = np.logical_or.reduce([_may_hide(k, story, where, rig) for k in members])
+    frames = np.arange(len(scenario.times))
+    before = np.logical_or.reduce([_may_hide(k, scenario, where, rig) for k in members])
     before[members] = False
     others, at = np.nonzero(before)
     body = np.concatenate([np.repeat(members, len(frames)), others])
@@ -71,20 +78,20 @@ def _scenes_of(members: list[int], number: int, story: Story, where: Floats, rig
     return np.column_stack([body, frame, number * len(frames) + frame])
 
 
-def _members(story: Story) -> list[list[int]]:
+def _members(scenario: Scenario) -> list[list[int]]:
     """Return the watched bodies that share their scenes: those that hide as they are seen."""
-    watched = [k for k, actor in enumerate(story.actors) if actor.watched]
-    bodies = [actor.body for actor in story.actors]
+    watched = [k for k, actor in enumerate(scenario.actors) if actor.watched]
+    bodies = [actor.body for actor in scenario.actors]
     alike = [k for k in watched if bodies[k].hiding == bodies[k].box]
     alone = [[k] for k in watched if k not in alike]
     return [alike, *alone] if alike else alone
 
 
-def _may_hide(k: int, story: Story, where: Floats, rig: Rig) -> Flags:
+def _may_hide(k: int, scenario: Scenario, where: Floats, rig: Rig) -> Flags:
     """Return which bodies (A, K) overlap body k from above, as a sensor sees them, and are not
     behind it."""
     flags = np.zeros(where.shape[:2], bool)
-    sides = np.array([actor.body.hiding[:2] for actor in story.actors])
+    sides = np.array([actor.body.hiding[:2] for actor in scenario.actors])
     radii = np.hypot(sides[:, :1], sides[:, 1:]) / 2.0  # (A, 1), of circles round the bodies
     for sensor in rig:
         away = where - np.array(sensor.pose.position[:2])
@@ -98,12 +105,14 @@ def _may_hide(k: int, story: Story, where: Floats, rig: Rig) -> Flags:
     return flags
 
 
-def _objects(story: Story, where: Floats, headings: Floats, boxes: Ints, seen: Flags) -> Objects:
+def _objects(
+    scenario: Scenario, where: Floats, headings: Floats, boxes: Ints, seen: Flags
+) -> Objects:
     """Return boxes (body, frame, scene) as objects; `seen` (N,): whether one has to be seen."""
     actor = boxes[:, 0]
     frame = boxes[:, 1]
     scenes = boxes[:, 2]
-    bodies = [each.body for each in story.actors]
+    bodies = [each.body for each in scenario.actors]
     small = np.array([body.box for body in bodies])
     large = np.array([body.hiding for body in bodies])
     sizes = np.where(seen[:, None], small[actor], large[actor])

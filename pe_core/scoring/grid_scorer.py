@@ -27,8 +27,8 @@ from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
 from ..sensors import GridKernel, kind_of
 from ..sensors.kernels import BLOCK_PLANES, Planes, block_voxels
+from .rig_batch import Members, RigBatch, fused_early, members_of, parts_by_sums, parts_of
 from .sampling import FIRST_SAMPLES, MIN_SAMPLES, outside_masses
-from .scenarios import Members, Scenarios, fused_early, members_of, parts_by_sums, parts_of
 from .score import (
     PartScore,
     Score,
@@ -159,7 +159,7 @@ class GridScorer:
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the entropy of each of several rigs [nats]."""
-        return [self.entropy(part) for part in Scenarios(rigs).parts]
+        return [self.entropy(part) for part in RigBatch(rigs).parts]
 
     def score(self, rig: Rig, watch: Watch | None = None, by_sensor: bool = True) -> Score:
         """Return the full score; without the part by sensor if that is not asked for."""

@@ -18,8 +18,8 @@ from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
 from ..sensors import MeasurementCache, Voxels
 from .leave_one_out import adds_up, mean_without_each
+from .rig_batch import RigBatch, fused_early, members_of
 from .sampling import BLOCKS, CENTERED, Shift, VoxelSample, draw, outside_masses
-from .scenarios import Scenarios, fused_early, members_of
 from .score import (
     ALIKE,
     FigureKey,
@@ -124,19 +124,19 @@ class SampledScorer:
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the entropy of each of several rigs; sensors that they share are measured once."""
-        scenarios = Scenarios(rigs)
+        batch = RigBatch(rigs)
         with self._lock:
-            self._sensors.measure(scenarios.all)
+            self._sensors.measure(batch.all)
             m = self._sensors.m
-            return [self._entropy_of(part, m) for part in scenarios.parts]
+            return [self._entropy_of(part, m) for part in batch.parts]
 
     def residuals(self, rigs: Sequence[Rig]) -> Floats:
         """Return by rig what each run of the sequence adds to the entropy above its mean."""
-        scenarios = Scenarios(rigs)
+        batch = RigBatch(rigs)
         with self._lock:
-            self._sensors.measure(scenarios.all)
+            self._sensors.measure(batch.all)
             rows = []
-            for part in scenarios.parts:
+            for part in batch.parts:
                 values, _ = self._entropies(part, [s.name for s in part])
                 rows.append(residuals(values, None, self._sample.run, BLOCKS))
             return np.array(rows)

@@ -27,7 +27,7 @@ PRICE = "price"
 WORST_LOSS = "worst_loss"
 MARGIN = "margin"
 BLIND_ZONES = "blind_zones"
-STORY_MARGIN = "story_margin"
+SCENARIO_MARGIN = "scenario_margin"
 AP_RINGS = {"ap_near": "near", "ap_mid": "mid", "ap_far": "far", TRAFFIC_AP: ""}
 """Figures that are expected AP in traffic, and their rings; empty: all distances."""
 UNSEEN = "where no sensor sees what is"
@@ -126,8 +126,8 @@ _SCORE = (
         on_front=False,
     ),
     Figure(
-        STORY_MARGIN,
-        "Margin of stories",
+        SCENARIO_MARGIN,
+        "Margin of scenarios",
         "s",
         "Time left when what moves is confirmed; none: never confirmed",
         decimals=1,

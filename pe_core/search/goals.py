@@ -29,7 +29,7 @@ class Stop:
     seconds: float | None = setting(
         None,
         Number(0.0, above=True, cap=1e9, unit="s"),
-        "The search ends after so many seconds; the result then depends on the machine",
+        "Time limit of the search; the result then depends on the machine",
         Panel(
             "stop_seconds",
             "Seconds",

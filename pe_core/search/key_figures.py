@@ -52,7 +52,7 @@ class KeyFigures:
         0: it is not; and whether the space ends there: the true reach may be longer. Empty where
         objects are scored: that score already has it.
     `over_frames`: Entropy over the study's frames [nats]; None for one frame.
-    `margins`: By story, where a study has some: its margin [s]; None: never confirmed.
+    `margins`: By scenario, where a study has some: its margin [s]; None: never confirmed.
     `unknown`: Of what can be built, by the names of `BUILD_FIGURES`: of which sensors it is not
         known.
     """

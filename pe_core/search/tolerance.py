@@ -28,7 +28,7 @@ from ..base.setting import FLAG, Panel, check_settings, setting
 from ..base.values import Angle, Number, Whole, degrees_in_file, error_text, rounded
 from ..geometry.poses import FARTHEST_M, Pose, rotate, rotation_matrix, rpy_from_matrix
 from ..scene.rig import Rig
-from ..scoring.scenarios import mean_or_worst
+from ..scoring.rig_batch import mean_or_worst
 from ..scoring.score import NO_DIFFERENCE, RigEvaluator, is_noise, standard_error
 from .domains import AXES, pose_from_values
 from .objective import Objective

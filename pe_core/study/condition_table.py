@@ -25,8 +25,8 @@ from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_state import State
 from ..scoring import Score
+from ..scoring.rig_batch import mean_or_worst
 from ..scoring.sampling import SEARCHED, Shift
-from ..scoring.scenarios import mean_or_worst
 from ..scoring.score import RigEvaluator, Watch
 from ..scoring.targets import OBJECTS, ObjectEvaluator
 from ..scoring.targets.object_evaluator import MByName
@@ -165,7 +165,7 @@ def condition_table(
         return None
     samples = study.samples or DEFAULT_SEARCH_SAMPLES
     rows: list[ConditionScore] = []
-    evaluators = StateEvaluators(study, samples, workers)
+    evaluators = EvaluatorsByState(study, samples, workers)
     conditions = study.conditions.all
     as_drawn = evaluators.in_state(None)[0].score(study.rig) if study.conditions.states else None
     drawn = {} if as_drawn is None else _occluded(as_drawn)
@@ -183,7 +183,7 @@ def condition_table(
     return ConditionTable(tuple(rows), evaluators.in_state(None)[0].samples, names, below)
 
 
-class StateEvaluators:
+class EvaluatorsByState:
     """The evaluators of a study by state of the vehicle; each is made once. `make` returns one of a
     study, a number of samples and a number of workers."""
 
@@ -268,7 +268,7 @@ class ConditionFigure:
         self._worst = study.search.conditions == WORST
         self._conditions = [c for c in study.conditions.all if c.weight > 0.0]
         make = partial(search_evaluator, shift=shift)
-        self._evaluators = StateEvaluators(study, samples, workers, make)
+        self._evaluators = EvaluatorsByState(study, samples, workers, make)
 
     def __reduce__(self) -> tuple[object, ...]:
         return ConditionFigure, self._given

@@ -2,9 +2,10 @@
 
 In the study file conditions are `[[state]]` and `[[weather]]`.
 
-Of `[requirement.under] states, weathers`: a requirement has to be met as drawn and in clear air,
-and in each named state and weather, and in both together. Its zone stays where the vehicle as drawn
-puts it: an open door moves no zone. Requirements have mounting errors and classes of a study, too.
+Of `[requirement.robust_to] states, weathers`: a requirement has to be met as drawn and in clear
+air, and in each named state and weather, and in both together. Its zone stays where the vehicle as
+drawn puts it: an open door moves no zone. Requirements have mounting errors and classes of a study,
+too.
 """
 
 from collections.abc import Iterable, Iterator, Sequence, Set
@@ -220,7 +221,7 @@ class ConditionedChecker(RequirementChecker):
 def conditions_of(requirement: Requirement, conditions: Conditions) -> Iterator[StateInWeather]:
     """Yield the conditions under which a requirement has to be met, besides as drawn. `InputError`
     for an unknown state or weather; the nearest names are offered."""
-    under = requirement.under
+    under = requirement.robust_to
     states = _expanded(under.states, [each.name for each in conditions.states])
     weathers = _expanded(under.weathers, [each.name for each in conditions.weathers])
     for state in (None, *states):
@@ -268,6 +269,6 @@ def mounting_cases(
     requirements: Sequence[Requirement], rig: Rig, tolerance: Tolerance, seed: int
 ) -> list[Rig]:
     """Return the rig with each draw of the mounting errors, if a requirement asks for them."""
-    if not any(each.under.mounting for each in requirements):
+    if not any(each.robust_to.mounting for each in requirements):
         return []
     return mounted_off(rig, tolerance, seed)[: tolerance.draws]

@@ -16,7 +16,7 @@ from ..base.values import A_NAME, A_PATH, listed
 from ..geometry.grids import PerceptionSpace
 from ..geometry.poses import METRES, ROTATION
 from ..metric.frames import Frames
-from ..motion import Confirmation, Story
+from ..motion import Confirmation, Scenario
 from ..prior.prior import Prior
 from ..scene.mesh import MeshAxes, require_vehicle_size
 from ..scene.rig import POSITION_AXES, Rig, Sensor
@@ -198,7 +198,7 @@ class Document:
     weather: tuple[Weather, ...] = ()
     state: tuple[State, ...] = ()
     time: TimeTable = field(default_factory=TimeTable)
-    story: tuple[Story, ...] = ()
+    scenario: tuple[Scenario, ...] = ()
     limits: Limits = field(default_factory=Limits)
     optimize: Optimize = field(default_factory=Optimize)
     selection: Selection = field(default_factory=Selection)
@@ -222,7 +222,7 @@ class Document:
             weather=tuple(study.conditions.weathers),
             state=tuple(study.conditions.states),
             time=TimeTable(study.frames, study.confirmation),
-            story=study.stories,
+            scenario=study.scenarios,
             limits=study.limits,
             optimize=Optimize(search=study.search),
             selection=study.selection,
@@ -264,7 +264,7 @@ class Document:
             returns=self.measurement.returns,
             frames=self.time.frames,
             confirmation=self.time.confirmation,
-            stories=self.story,
+            scenarios=self.scenario,
             limits=self.limits,
         )
 

@@ -22,7 +22,7 @@ from ..scoring.requirements import BODIES, Body, Requirement
 
 CONFIDENCE = {"A": "the text of the standard or maker was read", "B": "a secondary source"}
 SHAPES = ("x", "y", "polygon", "ring", "path", "spots")
-TABLES = ("zone", "criterion", "under")
+TABLES = ("zone", "criterion", "robust_to")
 
 
 @dataclass(frozen=True)

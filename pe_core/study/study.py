@@ -18,7 +18,7 @@ from ..base.setting import OneOf, Panel, Part, Several, check_settings, setting
 from ..base.values import A_NAME, A_PATH, Whole
 from ..geometry.grids import PerceptionSpace
 from ..metric.frames import Frames
-from ..motion import Confirmation, DriveBy, Story, checked_stories, drive_by
+from ..motion import Confirmation, DriveBy, Scenario, checked_scenarios, drive_by
 from ..prior import HIGHWAY_CLASSES, ROAD_CLASSES
 from ..prior.prior import Prior
 from ..scene.mesh import MeshAxes, require_vehicle_size
@@ -209,7 +209,7 @@ class Study(Tabular):
     `rig`, and what they cost. `targets` says what is evaluated, `requirements` what has to be met,
     `conditions` the states of the vehicle and the weathers that count, `returns` which beams of the
     rig's LiDARs return. `frames` are those that the entropy over frames is of, `confirmation` says
-    when a track is confirmed, in `stories` of what moves. `edges` are those of the vehicle that
+    when a track is confirmed, in `scenarios` of what moves. `edges` are those of the vehicle that
     have names of their own, beside those that `vehicle_edges` finds. `figures` are the key figures
     that a score shows: it computes no others, but those that have a limit.
 
@@ -255,7 +255,7 @@ class Study(Tabular):
     limits: Limits = field(default_factory=Limits)
     frames: Frames = field(default_factory=Frames)
     confirmation: Confirmation = field(default_factory=Confirmation)
-    stories: tuple[Story, ...] = ()
+    scenarios: tuple[Scenario, ...] = ()
     edges: tuple[Edge, ...] = ()
     figures: tuple[str, ...] = setting(
         tuple(SHOWN),
@@ -271,7 +271,7 @@ class Study(Tabular):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "requirements", checked_requirements(self.requirements))
-        object.__setattr__(self, "stories", checked_stories(self.stories))
+        object.__setattr__(self, "scenarios", checked_scenarios(self.scenarios))
         object.__setattr__(self, "edges", checked_edges(self.edges))
         for name, kind in FIELDS.items():
             value = getattr(self, name)
@@ -342,7 +342,7 @@ class Study(Tabular):
                     self.space,
                     self.prior,
                     self.vehicle,
-                    targets=replace(self.targets, scenes=self.looks_at(samples)),
+                    targets=replace(self.targets, scenes=self.scene_count(samples)),
                     model=self.model,
                     shift=shift[0],
                 )
@@ -356,7 +356,7 @@ class Study(Tabular):
                 workers=workers,
             )
 
-    def looks_at(self, samples: int) -> int:
+    def scene_count(self, samples: int) -> int:
         """Return the number of voxels (0: all) or scenes that a score with so many samples uses."""
         if not self.targets.are_objects:
             return samples
@@ -389,20 +389,20 @@ class Study(Tabular):
             )
 
     def key_figures(self, known: KeyFigures | None = None) -> KeyFigures:
-        """Return the key figures of this study's rig, with the margins of its stories.
+        """Return the key figures of this study's rig, with the margins of its scenarios.
 
         `known` are those without margins, where a score has them already.
         """
-        margins = {story.name: self.drive_by(story).margin_s for story in self.stories}
+        margins = {scenario.name: self.drive_by(scenario).margin_s for scenario in self.scenarios}
         found = known
         if found is None:
             found = KeyFigures.of_rig(self.sight(), self.rig, self.shown_figures)
         return replace(found, margins=margins)
 
-    def drive_by(self, story: Story, rig: Rig | None = None) -> DriveBy:
-        """Return a story as a rig, the study's by default, sees it."""
+    def drive_by(self, scenario: Scenario, rig: Rig | None = None) -> DriveBy:
+        """Return a scenario as a rig, the study's by default, sees it."""
         return drive_by(
-            story,
+            scenario,
             rig or self.rig,
             self.vehicle,
             self.model,
@@ -422,14 +422,14 @@ class Study(Tabular):
         wanted = self.requirements
         check_classes(wanted, self._known_classes())
         options: Any = {"model": self.model, "reference": self.reference, "space": self.space}
-        if any(each.under.states or each.under.weathers for each in wanted):
+        if any(each.robust_to.states or each.robust_to.weathers for each in wanted):
             as_drawn = ConditionedChecker(
                 self.requirements, self.vehicle, self.conditions, as_drawn, **options
             )
         checker = as_drawn or RequirementChecker(self.requirements, self.vehicle, **options)
         checker.check_rig(self.rig)
         for each in wanted:
-            if each.under.mounting and not self.search.tolerance.mounts_off:
+            if each.robust_to.mounting and not self.search.tolerance.mounts_off:
                 who = f"requirement {each.name!r}"
                 raise InputError(who, "under.mounting", "errors in [optimize.tolerance]", "none")
         return checker
@@ -470,14 +470,14 @@ class Study(Tabular):
         as the zones of its requirements, stays where the vehicle as drawn puts it."""
         rig, vehicle = condition(self.rig, self.vehicle)
         bare = [
-            replace(each, under=replace(each.under, states=(), weathers=()))
+            replace(each, robust_to=replace(each.robust_to, states=(), weathers=()))
             for each in self.requirements
         ]
         return replace(
             self, rig=rig, vehicle=vehicle, conditions=Conditions(), requirements=tuple(bare)
         )
 
-    def with_other_rig(self, rig: Rig) -> "Study":
+    def with_unrelated_rig(self, rig: Rig) -> "Study":
         """Return the study of another rig, which is scored in the same way. What names the sensors,
         or the search, does not stay."""
         bare = replace(self, requirements=(), conditions=Conditions())

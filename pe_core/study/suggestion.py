@@ -173,7 +173,7 @@ def with_blind_spot(study: Study, x: float, y: float) -> Study:
 def suggestions(study: Study) -> dict[str, Suggestion | None]:
     """Return by requirement that is not met the nearest placement found that meets it. None where
     no placement that was tried is enough."""
-    mender = _Mender(study, (), None)
+    mender = _Repairer(study, (), None)
     mender.move()
     return {name: mender.moved.get(name) for name in mender.names}
 
@@ -187,7 +187,7 @@ def mended(
     sensor has that with the lowest entropy. Either may be missing, where nothing that was tried is
     enough. Of `names` alone, where there are some. `ScoreStopped` where `watch` says so.
     """
-    mender = _Mender(study, names, watch)
+    mender = _Repairer(study, names, watch)
 
     def move() -> None:
         with suppress(InputError):  # nothing may move: a sensor may be added
@@ -210,7 +210,7 @@ def with_free_name(study: Study, sensor: Sensor) -> Sensor:
     return study.with_rig(Rig([*study.rig, replace(sensor, name=name)])).rig[name]
 
 
-class _Mender:
+class _Repairer:
     """The requirements that a study's rig does not meet, and what was found that meets them."""
 
     def __init__(self, study: Study, names: Sequence[str], watch: Watch | None) -> None:
@@ -344,7 +344,7 @@ class _Mender:
 
     def _is_met_mounted(self, each: Requirement, rig: Rig) -> bool:
         """Whether a requirement that is met is met with the mounting errors that it asks for."""
-        if not each.under.mounting:
+        if not each.robust_to.mounting:
             return True
         return not self._alone.made(each.name, lambda: self._held_to((each,))).violation(rig)
 

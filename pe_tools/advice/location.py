@@ -19,7 +19,7 @@ from pe_core.prior.prior import Prior
 from pe_core.scene.rig import Rig, Sensor
 from pe_core.scene.vehicle import Vehicle
 from pe_core.scoring.requirements import part_in_the_way
-from pe_core.scoring.scenarios import fused_early
+from pe_core.scoring.rig_batch import fused_early
 from pe_core.sensors import PerceptionModel, kind_named, kind_of, measure
 from pe_tools.wording import times
 

@@ -15,7 +15,7 @@ from .summary import WHERE
 
 ZONES_NAMED = 2
 SENSORS_NAMED = 3
-NOTHING = "It cost nothing"
+NOTHING = "Nothing became worse"
 RANKED = (ENTROPY, COVERAGE, AP)  # Figures that rank rigs
 
 
@@ -108,9 +108,10 @@ def search_cost(before: Score, after: Score, start: KeyFigures, result: KeyFigur
     losses = [*_figure_losses(start, result), *_score_losses(before, after)]
     losses += _zone_losses(before, after)
     if losses:
-        return f"It cost {joined(losses)}"
+        return f"Worse: {joined(losses)}"
     told = ["key figures"] if start.values and result.values else []
-    return f"{NOTHING}: {joined([*told, 'coverage', 'all zones'])} are no worse beyond their errors"
+    unharmed = joined([*told, "coverage", "all zones"])
+    return f"{NOTHING} beyond its error: {unharmed}"
 
 
 def _figure_losses(start: KeyFigures, result: KeyFigures) -> Iterator[str]:

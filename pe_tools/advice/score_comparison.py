@@ -31,12 +31,12 @@ from pe_core.search.figures import (
     COVERAGE,
     ENTROPY,
     REACH,
-    STORY_MARGIN,
+    SCENARIO_MARGIN,
 )
 
 CERTAINTY = 0.95
 TRAFFIC = "in traffic"
-NEVER = -math.inf  # Margin of a story that is never confirmed: there is no worse one
+NEVER = -math.inf  # Margin of a scenario that is never confirmed: there is no worse one
 OTHER_HARDWARE = (
     "The rigs differ in models or numbers of sensors. On simulated rigs of LiDARs entropy was not "
     "shown to rank better than the number of beams, and it can prefer a rig with a blind sector; "
@@ -119,10 +119,10 @@ def _error(score: Score, figure: FigureKey) -> float:
 class ComparedRow:
     """One figure of several rigs: a row of a comparison table. `group`, `name`: "rig", "zone",
     "class" or "in traffic", and the name of the zone or class. `measure`: A key of `FIGURES`.
-    `values`: by score; None for a score without this zone, class or story; `NEVER` for a story that
-    is not confirmed. `errors`: (N, N) standard errors of the differences of each two values; 0
-    where nothing is sampled. `factor`: number of standard errors beyond which a difference is
-    significant (`sure_factor`)."""
+    `values`: by score; None for a score without this zone, class or scenario; `NEVER` for a
+    scenario that is not confirmed. `errors`: (N, N) standard errors of the differences of each two
+    values; 0 where nothing is sampled. `factor`: number of standard errors beyond which a
+    difference is significant (`sure_factor`)."""
 
     group: str
     name: str
@@ -257,11 +257,11 @@ def compare_figures(figures: Mapping[str, KeyFigures]) -> tuple[ComparedRow, ...
     over_frames = tuple(f.over_frames for f in columns)
     if any(value is not None for value in over_frames):
         rows.append(ComparedRow("rig", "over frames", ENTROPY, over_frames, errors=none))
-    for story in dict.fromkeys(name for own in columns for name in own.margins):
-        told = [shown_margin(own.margins.get(story)) for own in columns]
-        never = [own.margins.get(story, 0.0) is None for own in columns]
+    for scenario in dict.fromkeys(name for own in columns for name in own.margins):
+        told = [shown_margin(own.margins.get(scenario)) for own in columns]
+        never = [own.margins.get(scenario, 0.0) is None for own in columns]
         margins = (NEVER if lost else margin for margin, lost in zip(told, never, strict=True))
-        rows.append(ComparedRow("story", story, STORY_MARGIN, tuple(margins), errors=none))
+        rows.append(ComparedRow("scenario", scenario, SCENARIO_MARGIN, tuple(margins), errors=none))
     height_text = f"{columns[0].height:g} m tall, within {columns[0].within:g} m"
     apart = {BLIND_GROUND: height_text}
     detailed = {BLIND_SECTOR, REACH, *AP_RINGS}

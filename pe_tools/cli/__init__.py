@@ -22,7 +22,7 @@ with lazy_face(__name__):
     from .serve_verb import serve
     from .set_verb import set_keys
     from .shipped_verbs import review, verify
-    from .story_text import chosen_stories, story_names
+    from .scenario_text import chosen_scenarios, scenario_names
     from .study_source import NONE, ONE, PERHAPS, SOME, StudyFiles
     from .sweep_verb import sweep
     from .terminal import (

@@ -114,23 +114,23 @@ class ExplainAnswer:
 
 @dataclass(frozen=True, slots=True)
 class CheckAnswer:
-    """A study held to its requirements, stories and limits. `met`: how many requirements are;
+    """A study held to its requirements, scenarios and limits. `met`: how many requirements are;
     `unchecked`: why others have no verdict; `suggestions`: by requirement, what would mend it."""
 
     met: int
     requirements: tuple[VerdictRow, ...]
     unchecked: Mapping[str, str]
     suggestions: Mapping[str, OpenRows]
-    stories: OpenRows
+    scenarios: OpenRows
     limits: tuple[ReadingRow, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class PresetsAnswer:
-    """Requirement presets, and the shipped stories by name."""
+    """Requirement presets, and the shipped scenarios by name."""
 
     requirements: OpenRows
-    stories: Mapping[str, OpenTable]
+    scenarios: Mapping[str, OpenTable]
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""`pe check`: a study held to its requirements and stories; presets and shipped stories."""
+"""`pe check`: a study held to its requirements and scenarios; presets and shipped scenarios."""
 
 import argparse
 from collections.abc import Sequence
@@ -9,7 +9,7 @@ from pe_core.base import dump_json, record
 from pe_core.base.errors import InputError
 from pe_core.base.files import csv_text
 from pe_core.base.table_reader import finite
-from pe_core.motion import stories
+from pe_core.motion import scenarios
 from pe_core.scoring.requirements import Verdict, checkable
 from pe_core.search import Limits
 from pe_core.study import Study
@@ -22,7 +22,7 @@ from ..wording import aligned, margin_text, percent, reason_text, unseen_text
 from .answers import CheckAnswer, PresetsAnswer
 from .interrupts import stop_at_first
 from .run_job import drive, output_file, print_vehicle, save_text
-from .story_text import chosen_stories, story_lines, story_names
+from .scenario_text import chosen_scenarios, scenario_lines, scenario_names
 from .study_source import StudyFiles
 from .terminal import DONE, NOT_MET, Answer, answered, tell
 
@@ -48,16 +48,16 @@ LONGEST = 34  # Longer names are cut in the table
 
 
 def check(source: StudyFiles, args: argparse.Namespace) -> Answer:
-    """Hold a study to its requirements and stories; the exit status says whether all are met."""
+    """Hold a study to its requirements and scenarios; the exit status says whether all are met."""
     if args.list is not None:
         return list_checks(args)
     return check_study(source.study(args), args, source)
 
 
 def list_checks(args: argparse.Namespace) -> Answer:
-    """List the requirement presets and the shipped stories, or show one preset with its source."""
+    """List requirement presets and shipped scenarios, or show one preset with its source."""
     chosen = [preset(args.list, "check", "--list")] if args.list else list(presets().values())
-    shipped = {} if args.list else stories()
+    shipped = {} if args.list else scenarios()
     rows = tuple({"id": p.id, "confidence": p.confidence, **p.table} for p in chosen)
     told = {name: {"title": s.title, "source": s.source} for name, s in shipped.items()}
     data = PresetsAnswer(rows, told)
@@ -71,16 +71,17 @@ def list_checks(args: argparse.Namespace) -> Answer:
 
 
 def check_study(study: Study, args: argparse.Namespace, source: StudyFiles) -> Answer:
-    """Hold a study to its requirements, stories and limits, and to the presets that are named; with
-    ``--stories`` to stories alone. After Ctrl-C the verdicts that were found are printed, and
+    """Hold a study to its requirements, scenarios and limits, and to the presets that are named;
+    with
+    ``--scenarios`` to scenarios alone. After Ctrl-C the verdicts that were found are printed, and
     written to the file."""
-    if args.stories is not None:
-        chosen = chosen_stories(study, story_names(args.stories))
-        study = replace(study, requirements=(), stories=tuple(chosen), limits=Limits())
+    if args.scenarios is not None:
+        chosen = chosen_scenarios(study, scenario_names(args.scenarios))
+        study = replace(study, requirements=(), scenarios=tuple(chosen), limits=Limits())
     output = output_file(args.output, args)
     study, unchecked = with_presets(study, args.preset)
-    if not (study.requirements or study.stories or study.limits.with_number):
-        expected = "[[requirement]], [[story]] or [limits] in the study, or --preset ID"
+    if not (study.requirements or study.scenarios or study.limits.with_number):
+        expected = "[[requirement]], [[scenario]] or [limits] in the study, or --preset ID"
         raise InputError("check", "requirements", expected, "none")
     print_vehicle(study)
     if note := curve_note([study]):
@@ -102,7 +103,7 @@ def check_study(study: Study, args: argparse.Namespace, source: StudyFiles) -> A
         requirements=tuple(v.row for v in verdicts),
         unchecked=unchecked,
         suggestions={n: tuple(each.to_dict() for each in own) for n, own in suggested.items()},
-        stories=tuple(each.to_dict() for each in driven),
+        scenarios=tuple(each.to_dict() for each in driven),
         limits=tuple(each.row for each in job.limits),
     )
     text = dump_json(finite(record(data)))
@@ -111,7 +112,7 @@ def check_study(study: Study, args: argparse.Namespace, source: StudyFiles) -> A
     if args.json:
         return text, status
     lines = verdict_lines(verdicts, unchecked) if verdicts or unchecked else []
-    lines += story_lines(driven) if driven else []
+    lines += scenario_lines(driven) if driven else []
     lines += [f"limit: {each.figure.name} {each.text}" for each in job.limits]
     lines += [line for name, own in suggested.items() for line in suggestion_lines(name, own)]
     return "\n".join(lines), status

@@ -222,7 +222,7 @@ def _beside(studies: Mapping[str, Study], key: str | None) -> dict[str, Study]:
     known = catalog.known_rig(key)
     first = next(iter(studies.values()))
     name = key if key not in studies else f"known rig {key}"
-    return {name: first.with_other_rig(catalog.rig_on(known, first.vehicle))}
+    return {name: first.with_unrelated_rig(catalog.rig_on(known, first.vehicle))}
 
 
 def scored(study: Study, workers: int | None, source: StudyFiles | None = None) -> Outcome:

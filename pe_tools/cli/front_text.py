@@ -48,7 +48,7 @@ def _figure(design: jobs.Design, name: str) -> str:
     value = design.figures[name]
     if name == PRICE:
         return f"{value:,.10g}"
-    if design.is_led_in:
+    if design.is_infeasible:
         return "infeasible"
     return figure_of(name).number(value)
 

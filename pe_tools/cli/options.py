@@ -199,8 +199,10 @@ def _of_questions() -> dict[str, OptionRow]:
     suggest = "say which small move, or one more sensor, would mend what is not seen"
     body = "with --at: a test body there (child, adult, cyclist, car, pole, cone ...): m by sensor"
     preset = "a preset besides the study's requirements (--list); all: each one; any number"
-    listed = "list requirement presets and stories, or show one preset"
-    stories = "stories alone: the study's; or by name, of a TOML file, all shipped (all); commas"
+    listed = "list requirement presets and scenarios, or show one preset"
+    scenarios = (
+        "scenarios alone: the study's; or by name, of a TOML file, all shipped (all); commas"
+    )
     return {
         "at": row("--at", type=number, nargs="+", metavar=("X Y", "Z"), about=at),
         "suggest": switch("--suggest", suggest),
@@ -217,7 +219,7 @@ def _of_questions() -> dict[str, OptionRow]:
         ),
         "preset": several("--preset", metavar="ID", about=preset),
         "list": row("--list", nargs="?", const="", metavar="ID", about=listed),
-        "stories": row("--stories", nargs="?", const="", metavar="NAME,...", about=stories),
+        "scenarios": row("--scenarios", nargs="?", const="", metavar="NAME,...", about=scenarios),
         "built": row(
             "--built",
             metavar="FILE",

@@ -36,7 +36,7 @@ EXIT_STATUSES = {
     DONE: "done",
     BAD_INPUT: "bad input, or a result that could not be written",
     USAGE: "wrong usage",
-    NOT_MET: "a requirement or a story is not met, or a case of verify is wrong",
+    NOT_MET: "a requirement or a scenario is not met, or a case of verify is wrong",
     INTERRUPTED: "interrupted: 128 plus the signal's number",
 }
 """What each exit status means."""

@@ -231,7 +231,7 @@ VERBS = (
         SCORE,
         "hold a study to its requirements; 3: some are not met",
         PERHAPS,
-        options="preset stories list suggest set file replace",
+        options="preset scenarios list suggest set file replace",
         function="check",
         prints="CheckAnswer PresetsAnswer",
     ),

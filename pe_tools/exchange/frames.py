@@ -53,7 +53,9 @@ AXES = (
     "NAME_optical looks along z, x right, y down (REP 103). "
 )
 """Comment in new files of ROS, after the name of the root."""
-Hung = Mapping[str, tuple[str, Pose]]  # Parent frame and pose in the parent frame, by frame name
+ParentFrames = Mapping[
+    str, tuple[str, Pose]
+]  # Parent frame and pose in the parent frame, by frame name
 TURNED = (
     "a frame of this name, or whose y axis points up or down, is optical: z is taken as forward"
 )
@@ -241,7 +243,9 @@ def pose_from_quaternion(
     return pose if within is None else composed(within, pose)
 
 
-def poses_from_root(path: Path, hung: Hung, frames: Collection[str], noun: str) -> dict[str, Pose]:
+def poses_from_root(
+    path: Path, hung: ParentFrames, frames: Collection[str], noun: str
+) -> dict[str, Pose]:
     """Return the poses of all `frames` in the root frame, by name, ordered by depth. Frames of
     equal depth are in the order of `hung`. Each pose is computed once, from that of its parent, so
     the time is linear in the number of frames. `noun` is the word for a frame in this format. More
@@ -334,7 +338,7 @@ def linked(
 
 
 def new_places(
-    hung: Hung, poses: Mapping[str, Pose], wanted: Mapping[str, Pose]
+    hung: ParentFrames, poses: Mapping[str, Pose], wanted: Mapping[str, Pose]
 ) -> tuple[dict[str, Pose], dict[str, Pose]]:
     """Return the poses in their parents of the frames that have to be changed, so that the frames
     of `wanted` have these poses in the root frame, and the new poses of all frames in it. Frames

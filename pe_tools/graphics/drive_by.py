@@ -14,7 +14,7 @@ import numpy as np
 
 from pe_core.base import dump_json
 from pe_core.base.arrays import Floats
-from pe_core.motion import CHANCE, RATE_HZ, Actor, DriveBy, SeenBody, Story
+from pe_core.motion import CHANCE, RATE_HZ, Actor, DriveBy, Scenario, SeenBody
 from pe_core.scene import Rig, Vehicle
 
 from .colors import CIVIDIS, Rgba, on_scale, with_alpha
@@ -70,7 +70,7 @@ def _cells(values: Floats) -> Iterator[ShadeRun]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MovingBody:
-    """A body of a story, K frames: its size [m], positions (K, 2), headings (K,), AP (K,) and by
+    """A body of a scenario, K frames: its size [m], positions (K, 2), headings (K,), AP (K,) and by
     sensor; `seen` is None where it only hides."""
 
     actor: Actor
@@ -106,15 +106,15 @@ class BodiesInTime:
     @classmethod
     def of(cls, driven: DriveBy, vehicle: Vehicle | None, rate_hz: float) -> BodiesInTime:
         """Return bodies so many times a second; AP is that of the last frame of the sensors."""
-        story = driven.story
-        rate = min(rate_hz, MAX_RATE_HZ, MAX_TIMES / -story.start_s)
-        times = story.times_at(rate)
-        where, headings = story.positions(vehicle, times)
-        found = ((times - story.start_s) * RATE_HZ + 1e-6).astype(int)
-        frame = np.minimum(found, len(story.times) - 1)
+        scenario = driven.scenario
+        rate = min(rate_hz, MAX_RATE_HZ, MAX_TIMES / -scenario.start_s)
+        times = scenario.times_at(rate)
+        where, headings = scenario.positions(vehicle, times)
+        found = ((times - scenario.start_s) * RATE_HZ + 1e-6).astype(int)
+        frame = np.minimum(found, len(scenario.times) - 1)
         seen = {body.name: body for body in driven.bodies}
         bodies = []
-        for k, actor in enumerate(story.actors):
+        for k, actor in enumerate(scenario.actors):
             own = seen.get(actor.name) if actor.watched else None
             ap = np.zeros(len(frame)) if own is None else own.ap[frame]
             alone = {} if own is None else {n: v[frame] for n, v in own.by_sensor.items()}
@@ -136,16 +136,16 @@ class Mark(NamedTuple):
     color: Rgba
 
 
-def strip_ends(story: Story) -> tuple[float, float]:
+def strip_ends(scenario: Scenario) -> tuple[float, float]:
     """Return the times at both ends of a strip [s], in which each frame has an equal width."""
     half = 0.5 / RATE_HZ
-    return float(story.times[0]) - half, float(story.times[-1]) + half
+    return float(scenario.times[0]) - half, float(scenario.times[-1]) + half
 
 
-def marks_of(story: Story, body: SeenBody) -> list[Mark]:
+def marks_of(scenario: Scenario, body: SeenBody) -> list[Mark]:
     """Return when a body is confirmed, and when the vehicle has to brake, the first one first."""
     moment = body.moments[CHANCE]
-    marks = [Mark(max(story.brake_s, story.start_s), "must brake here", BRAKE)]
+    marks = [Mark(max(scenario.brake_s, scenario.start_s), "must brake here", BRAKE)]
     if moment is not None:
         marks.append(Mark(moment.time_s, f"confirmed here {CHANCE:.0%}", CONFIRMED))
     return sorted(marks)
@@ -172,7 +172,7 @@ class TimeStrip:
 
 def time_strip(driven: DriveBy) -> TimeStrip:
     """Return the strip of the body with the least margin; sensors that never see it have no row."""
-    story = driven.story
+    scenario = driven.scenario
     never = -np.inf
     body = min(driven.bodies, key=lambda b: never if b.margin_s is None else b.margin_s)
     rows = {
@@ -180,7 +180,7 @@ def time_strip(driven: DriveBy) -> TimeStrip:
         for name, cells in strip_rows(body).items()
         if name not in body.by_sensor or any(cell.ap > 0.0 for cell in cells)
     }
-    count = len(story.times)
+    count = len(scenario.times)
     parts = []
     for number, cells in enumerate(rows.values()):
         top = 1.0 - (number + 0.1) / len(rows)
@@ -193,12 +193,12 @@ def time_strip(driven: DriveBy) -> TimeStrip:
     margin = body.shown_margin_s
     told = "never confirmed" if margin is None else f"margin {margin:+.1f} s"
     return TimeStrip(
-        f"{story.name}: {body.name}, {told}",
+        f"{scenario.name}: {body.name}, {told}",
         tuple(rows),
         LayerShape(faces=Primitives.joined(parts)),
-        tuple(marks_of(story, body)),
-        first_s=float(story.times[0]),
-        ends=strip_ends(story),
+        tuple(marks_of(scenario, body)),
+        first_s=float(scenario.times[0]),
+        ends=strip_ends(scenario),
     )
 
 
@@ -255,7 +255,7 @@ def _moments(moving: BodiesInTime, body: MovingBody) -> tuple[Primitives, list[T
     path = np.column_stack([body.positions, np.full(len(moving.times), 0.02)])
     parts = [Primitives.of(polyline(path), with_alpha(NEVER, PATH_ALPHA))]
     tags = []
-    for mark in marks_of(moving.driven.story, body.seen):
+    for mark in marks_of(moving.driven.scenario, body.seen):
         k = int(np.searchsorted(moving.times, mark.time_s - 1e-6).clip(0, len(path) - 1))
         foot = path[k]
         top = foot + np.array((0.0, 0.0, MARK_M))

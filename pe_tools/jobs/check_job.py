@@ -1,4 +1,4 @@
-"""The jobs of requirements: hold a study to them and its stories; look for what would mend it."""
+"""The jobs of requirements: hold a study to them and its scenarios; look for what would mend it."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -25,7 +25,7 @@ class Checked(NamedTuple):
 
 
 class CheckJob(Job):
-    """Holds the rig of a study to requirements, with mounting errors, to its stories and limits.
+    """Holds the rig of a study to requirements, with mounting errors, to its scenarios and limits.
     `limits` are the figures that have a number to keep; `pe score` has the same. A job
     that is stopped keeps the `verdicts` that it has found, in the order of the requirements; they
     come before their margins, `margins` is how many have theirs. With `fitting`, requirements that
@@ -51,15 +51,15 @@ class CheckJob(Job):
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """Names of the stories and requirements without an answer: the job was stopped before."""
+        """Names of the scenarios and requirements without an answer: the job was stopped before."""
         known = {*self.unchecked, *(verdict.name for verdict in self.verdicts)}
-        late = [each.name for each in self.study.stories[len(self.driven) :]]
+        late = [each.name for each in self.study.scenarios[len(self.driven) :]]
         return *late, *(each.name for each in self.study.requirements if each.name not in known)
 
     def __iter__(self) -> Iterator[Progress]:
         yield self._progress
-        for story in self.study.stories:
-            work = begun(partial(self.study.drive_by, story))
+        for scenario in self.study.scenarios:
+            work = begun(partial(self.study.drive_by, scenario))
             if (driven := (yield from self._awaited(work, lambda: self._progress))) is not None:
                 self.driven.append(driven)
         steps = self._steps()

@@ -121,7 +121,7 @@ def _design_dict(design: Design, on_front: bool, file: str | None) -> dict[str, 
     keeps requirements, or went by expected AP, has no entropy. A design that was only screened was
     not held to requirements."""
     score = design.score
-    no_entropy = design.is_led_in or math.isnan(design.entropy)
+    no_entropy = design.is_infeasible or math.isnan(design.entropy)
     met = len(design.verdicts) - len(design.broken)
     asked = {"requirements_met": met, "requirements_not_met": list(design.broken)}
     return {
@@ -136,6 +136,6 @@ def _design_dict(design: Design, on_front: bool, file: str | None) -> dict[str, 
         "placements": record(placements(design.study.rig, design.study)),
         "warnings": [warning.to_dict() for warning in design.warnings],
         "study": file,
-        "figures": {} if design.is_led_in else dict(design.figures),
+        "figures": {} if design.is_infeasible else dict(design.figures),
         **(asked if design.verdicts else {}),
     }

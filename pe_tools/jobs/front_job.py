@@ -166,7 +166,7 @@ class FrontJob(Job):
         ordered = self._named()
         compared = [d for d in ordered if d.score is not None] or ordered
         if self.study.limits.keeps_requirements:  # those that break the fewest
-            broken = [len(design.broken) + design.is_led_in for design in compared]
+            broken = [len(design.broken) + design.is_infeasible for design in compared]
             fewest = min(broken)
             compared = [d for d, n in zip(compared, broken, strict=True) if n == fewest]
         front = sorted(pareto_front([tuple(d.costs(self.names)) for d in compared]))

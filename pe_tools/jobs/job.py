@@ -363,7 +363,7 @@ class StudyEvaluators:
 
     def on(self, samples: int, shift: Shift = CENTERED) -> RigEvaluator:
         """Return the evaluator of the study's own targets, with a number of samples."""
-        count = self._study.looks_at(samples)
+        count = self._study.scene_count(samples)
         has_sample = count or self._study.targets.are_objects
         key = count, shift if has_sample else CENTERED
         if key not in self._own:

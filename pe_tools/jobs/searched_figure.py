@@ -80,7 +80,7 @@ def level_sizes(study: Study) -> list[str]:
     """Return how many voxels or scenes each level of a study's search has: "16,384", "all"."""
     searched = searched_study(study)
     few = [searched_samples(study, samples) for samples in study.level_samples]
-    looks = [searched.looks_at(samples) for samples in few]
+    looks = [searched.scene_count(samples) for samples in few]
     return [f"{n:,}" if n else "all" for n in looks]
 
 

@@ -177,7 +177,7 @@ class Design(ShortRepr):
         return [cost if name in SUMS else Value(self.violation, cost) for name, cost in costs]
 
     @property
-    def is_led_in(self) -> bool:
+    def is_infeasible(self) -> bool:
         """Whether its value is no figure: the screening found no placement to keep."""
         return self.violation > 0.0
 

@@ -29,8 +29,8 @@ class ReportContext:
     `command`: command line that reproduces the results; empty if unknown. `versions`: versions of
     programs besides the engine's, by name. `cache`: derived values by name, filled by `cached`;
     pages that show the same study share it. `folder`: folder of the page, where films of its
-    stories may be. `study_count`: number of studies on the page. `regions`: free regions of sensors
-    of `study`. `built`: the comparison with a built rig."""
+    scenarios may be. `study_count`: number of studies on the page. `regions`: free regions of
+    sensors of `study`. `built`: the comparison with a built rig."""
 
     name: str
     outcome: jobs.Outcome

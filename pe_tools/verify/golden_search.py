@@ -10,7 +10,7 @@ from pe_core.scoring.requirements import (
     Criterion,
     Requirement,
     RequirementChecker,
-    Under,
+    RobustTo,
     Zone,
 )
 from pe_core.study import study_from_dict, study_to_dict
@@ -32,7 +32,7 @@ def verdict_cases() -> Sequence[GoldenCase]:
     """Return the cases of requirements, met and not met."""
     area = "verdicts"
     child = (BODIES["child"],)
-    lost = Under(one_lost=True)
+    lost = RobustTo(one_lost=True)
     low = Criterion(blind_m2=3.9, blind_height=0.0)
     return (
         _hand(
@@ -54,7 +54,7 @@ def verdict_cases() -> Sequence[GoldenCase]:
             "not met with a sensor lost",
             "the only sensor is lost: no sample passes without it",
             [0, 0],
-            found=lambda: _verdict(Requirement("lost", AHEAD, child, under=lost)),
+            found=lambda: _verdict(Requirement("lost", AHEAD, child, robust_to=lost)),
         ),
         _hand(
             area,

@@ -107,7 +107,7 @@ def seen_rig(car) -> bpy.types.Scene:
     car.perception_entropy.axles_known = True
     bpy.ops.pe.add_row(rows="focus", kind="front")
     bpy.ops.pe.add_row(rows="requirements", kind="OWN")
-    bpy.ops.pe.add_row(rows="stories", kind="cyclist_from_right")
+    bpy.ops.pe.add_row(rows="scenarios", kind="cyclist_from_right")
     return car
 
 

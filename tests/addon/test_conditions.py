@@ -78,7 +78,7 @@ def test_a_frame_is_a_state_and_its_motions_are_those_of_the_hinge(car):
 
 
 def test_a_shown_state_moves_nothing_that_stands_on_the_ground(car):
-    """Zones, blind ground and stories are placed round the vehicle as drawn, at any frame."""
+    """Zones, blind ground and scenarios are placed round the vehicle as drawn, at any frame."""
     depsgraph = bpy.context.evaluated_depsgraph_get()
     drawn = vehicle_cache.shared.read(car, depsgraph).vehicle
     add_open_state(car)

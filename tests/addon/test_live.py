@@ -86,7 +86,7 @@ def told(summary):
 
 
 def test_a_drag_is_exact_and_compared_with_where_it_began(live, monkeypatch):
-    """The story of two moves: every score is that of a study, to the bit."""
+    """The scenario of two moves: every score is that of a study, to the bit."""
     roof = live.objects["roof"]
     start = reading(live).summary
     assert told(start) == told(exact()) and reading(live).exact and reading(live).before is None

@@ -116,7 +116,7 @@ def test_shapes_are_uploaded_once(window, rig):
     bpy.context.view_layer.update()
     scenes.drawn(rig)
     redraw()
-    # its frustum and name; map, blind ground, its view from above, reach, requirements, story
+    # its frustum and name; map, blind ground, its view from above, reach, requirements, scenario
     assert window.card.uploaded == 14 + 8
     rig.perception_entropy.view.show_ground = False
     scenes.drawn(rig)

@@ -100,7 +100,7 @@ def test_a_moved_sensor_is_worked_out_alone_and_the_vehicle_is_not_read(rig, wor
     bpy.context.view_layer.update()
     scenes.drawn(rig)
     of_the_rig = {("ground", ""), ("blind", ""), ("reach", ""), ("requirements", "")}
-    of_the_rig |= {("story", ""), ("birds_eye", "")}
+    of_the_rig |= {("scenario", ""), ("birds_eye", "")}
     assert set(worked) == {("frustums", "eye"), ("labels", "eye"), *of_the_rig}
 
 

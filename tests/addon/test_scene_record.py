@@ -132,8 +132,8 @@ def rich(car):
     settings.track_needed = 2
     settings.track_window = 4
     settings.track_correlation = 0.5
-    bpy.ops.pe.add_row(rows="stories", kind="cut_in")
-    settings.stories[0].speed_kmh = 50.0
+    bpy.ops.pe.add_row(rows="scenarios", kind="cut_in")
+    settings.scenarios[0].speed_kmh = 50.0
     settings.limit_price = 9000.0
     settings.max_sensors = 9
     settings.currency = "EUR"

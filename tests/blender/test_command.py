@@ -29,11 +29,11 @@ assert bpy.ops.pe.add_row(rows="weathers", kind="FOG") == {"FINISHED"}
 bpy.ops.wm.save_as_mainfile(filepath=saved)  # with the hood open
 assert bpy.ops.pe.export_file(filepath=folder + "/study.toml") == {"FINISHED"}
 """
-SHORT_STORY = """
-[[story]]
+SHORT_SCENARIO = """
+[[scenario]]
 name = "crossing_child"
 speed_kmh = 30.0
-[[story.body]]
+[[scenario.body]]
 name = "child"
 body = "child"
 path = [[-0.3, 0.0, -0.5], [0.0, 0.0, 0.0]]
@@ -120,25 +120,25 @@ def alone(*arguments) -> dict:
 
 @pytest.mark.thorough
 def test_a_film_without_a_window_is_that_of_its_drive_by(installed, sedan, tmp_path):
-    story = tmp_path / "story.toml"
+    scenario = tmp_path / "scenario.toml"
     film = tmp_path / "film.webm"
-    story.write_text(SHORT_STORY)
-    answer = installed.pe(sedan, ["check", "--stories", story, "-o", film, "--json"])
+    scenario.write_text(SHORT_SCENARIO)
+    answer = installed.pe(sedan, ["check", "--scenarios", scenario, "-o", film, "--json"])
     assert answer.returncode in (0, 3), output_of(answer)
     data = film.read_bytes()
     assert data.startswith(b"\x1a\x45\xdf\xa3") and b"webm" in data[:64]
-    (of,) = document_in(answer.stdout)["stories"]
+    (of,) = document_in(answer.stdout)["scenarios"]
     assert of["name"] == "crossing_child"
     assert b"perception-entropy " in data
-    again = installed.pe(sedan, ["check", "--stories", story, "-o", film])
+    again = installed.pe(sedan, ["check", "--scenarios", scenario, "-o", film])
     assert again.returncode == 1 and film.read_bytes() == data, output_of(again)
 
 
 @pytest.mark.thorough
 def test_a_film_is_of_the_kind_that_its_name_says(installed, sedan, tmp_path):
-    story = tmp_path / "story.toml"
+    scenario = tmp_path / "scenario.toml"
     film = tmp_path / "film.mp4"
-    story.write_text(SHORT_STORY)
-    answer = installed.pe(sedan, ["check", "--stories", story, "-o", film])
+    scenario.write_text(SHORT_SCENARIO)
+    answer = installed.pe(sedan, ["check", "--scenarios", scenario, "-o", film])
     assert answer.returncode in (0, 3), output_of(answer)
     assert b"ftyp" in film.read_bytes()[:16]

@@ -11,17 +11,17 @@ bpy.ops.pe.add_sensor(model="Pandar64")
 bpy.context.object.name, bpy.context.object.location = "corner", (2.2, 0.8, 0.7)
 for each in ("beams", "frustums", "ground", "blind", "reach"):
     setattr(settings.view, "show_" + each, False)
-bpy.ops.pe.add_row(rows="stories", kind="crossing_child")
+bpy.ops.pe.add_row(rows="scenarios", kind="crossing_child")
 look = area.spaces.active.region_3d
 look.view_location, look.view_distance = (6.0, 0.0, 0.5), 24.0
 """
 SHAPE = f"""
 from {NAME}.overlay.layer_cache import shown_of
 from {NAME}.overlay import draw_handler, scheduler
-items = shown_of(window.scene.name, "story")
+items = shown_of(window.scene.name, "scenario")
 kept["frames"] = [len(item.shape.frames) for item in items.values()]
 kept["made"] = [id(item) for item in items.values()]
-kept["old"] = [scheduler.is_preview(window.scene.name, "story", n, i) for n, i in items.items()]
+kept["old"] = [scheduler.is_preview(window.scene.name, "scenario", n, i) for n, i in items.items()]
 """
 PLAY = f"""
 from {NAME}.overlay import draw_handler
@@ -32,7 +32,7 @@ def noted():
 draw_handler._handlers.hide()
 draw_handler._handlers.show((noted, "POST_VIEW"), (draw_handler.draw_text, "POST_PIXEL"))
 with bpy.context.temp_override(window=window, area=area, region=region):
-    bpy.ops.pe.play_story()
+    bpy.ops.pe.play_scenario()
 """
 STOP = f"""
 with bpy.context.temp_override(window=window, area=area, region=region):
@@ -48,8 +48,8 @@ from {NAME}.view import film
 window.scene.render.fps = 4
 with bpy.context.temp_override(window=window, area=area, region=region):
     study = document.study_as_drawn(window.scene)
-    story = document.story_of(window.scene.perception_entropy.stories[0])
-    film.FilmRender(window.scene, study, story, Path({{path!r}}))
+    scenario = document.scenario_of(window.scene.perception_entropy.scenarios[0])
+    film.FilmRender(window.scene, study, scenario, Path({{path!r}}))
 kept["shown"] = window.screen.areas[0].type
 """
 RENDERING = "bpy.app.is_job_running('RENDER')"
@@ -69,7 +69,7 @@ def test_a_film_is_rendered_beside_the_window_and_esc_keeps_what_is_done(stage, 
 
 
 @pytest.mark.thorough
-def test_a_story_is_played_from_its_cache(stage, screenshots):
+def test_a_scenario_is_played_from_its_cache(stage, screenshots):
     stage.do(SHOW)
     stage.wait_for(
         lambda: stage.do(SHAPE, redraw=False)["frames"] == [145], EFFECT_TIMEOUT_S, "the cache"

@@ -152,7 +152,7 @@ def test_a_blind_place_is_mended_by_the_job_and_by_the_command(study, capsys):
 
 
 def test_limits_with_a_number_are_checked_as_a_score_has_them(study, capsys):
-    """Also where nothing else is asked for; stories alone have none."""
+    """Also where nothing else is asked for; scenarios alone have none."""
     study.write_text(STUDY.partition("[[requirement]]")[0] + LIMITS)
     outcome = pt.ScoreJob(pe.load_study(study), 1).run()
     capsys.readouterr()

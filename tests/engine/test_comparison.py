@@ -168,16 +168,16 @@ def test_errors_of_objects_that_are_not_paired_are_their_own():
         ((0.2, None), [0, 1], ["0.2*", "none"]),
         ((None, -3.0), [0, -1], ["none", "-3.0*"]),
         ((None, None), [0, 0], ["none", "none"]),
-        ((0.2, "no such story"), [0, 0], ["0.2", "-"]),
+        ((0.2, "no such scenario"), [0, 0], ["0.2", "-"]),
     ],
 )
-def test_a_story_that_is_never_confirmed_is_the_worst_there_is(margins, senses, cells):
-    stories = [{} if own == "no such story" else {"child": own} for own in margins]
+def test_a_scenario_that_is_never_confirmed_is_the_worst_there_is(margins, senses, cells):
+    scenarios = [{} if own == "no such scenario" else {"child": own} for own in margins]
     by_rig = {
         name: advice.KeyFigures(None, (), 0.5, 10.0, margins=own)
-        for name, own in zip("ab", stories, strict=True)
+        for name, own in zip("ab", scenarios, strict=True)
     }
-    (row,) = (r for r in advice.compare_figures(by_rig) if r.measure == "story_margin")
+    (row,) = (r for r in advice.compare_figures(by_rig) if r.measure == "scenario_margin")
     assert [row.sense(0), row.sense(1)] == senses
     (line,) = (line for line in comparison(["a", "b"], [row]) if line.startswith("  child"))
     assert line.split()[1:] == cells

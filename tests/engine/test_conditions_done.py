@@ -57,7 +57,7 @@ def parked(radar):
     # about its hinge, ahead, the door's rear edge swings out: to the left, clockwise from above
     opened = pe.Motion(["door_*"], (0.0, 0.0, math.radians(-65.0)), (0.8, 0.9, 0.6))
     dooring = replace(
-        preset("ncap26_dooring").requirement(), under=pe.requirements.Under(states=("*",))
+        preset("ncap26_dooring").requirement(), robust_to=pe.requirements.RobustTo(states=("*",))
     )
     return pe.Study(
         pe.Rig([mirror, wing, *[side] * radar]),

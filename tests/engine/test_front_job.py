@@ -112,7 +112,7 @@ def test_a_path_that_fails_and_mounting_errors_count_in_the_margin():
         return FrontFigures(given, names, given.evaluator(1024))(given.rig)["margin"]
 
     assert margin(ahead, of("far", spots, [body])) == pytest.approx(-15.0)
-    off = replace(ahead, under=pe.requirements.Under(mounting=True))
+    off = replace(ahead, robust_to=pe.requirements.RobustTo(mounting=True))
     loose = pe.Tolerance(angle=math.radians(40.0), draws=4)
     assert margin(off, tolerance=loose) < margin(ahead, tolerance=loose)
 

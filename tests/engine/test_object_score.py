@@ -251,7 +251,7 @@ def test_a_study_s_keys_make_its_evaluator():
     assert study.model.object_curve("lidar", "car") == pe.ApCurve(0.3, -0.5)
     evaluator = study.evaluator()
     assert len(evaluator.drawn.objects) == 16 and evaluator.targets.traffic
-    assert study.looks_at(0) == study.looks_at(65_536) == 8
+    assert study.scene_count(0) == study.scene_count(65_536) == 8
 
 
 def test_reach_by_hand():

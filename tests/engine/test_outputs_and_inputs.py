@@ -11,11 +11,11 @@ from pe_tools.cli.verbs import main
 from tests.engine import shapes
 from tests.engine.processes import pe as run_pe
 
-STORY = """
-[[story]]
+SCENARIO = """
+[[scenario]]
 name = "crossing"
 speed_kmh = 30.0
-[[story.body]]
+[[scenario.body]]
 name = "child"
 body = "child"
 path = [[-6.0, 0.0, -10.0], [0.0, 0.0, 0.0]]
@@ -30,7 +30,7 @@ INFO = """
 """
 CALLS = {
     "check": "check car.toml --preset r159_crossing -o",
-    "stories": "check car.toml --stories story.toml -o",
+    "scenarios": "check car.toml --scenarios scenario.toml -o",
     "where": "where car.toml --model Pandar40 --places 2 --workers 1 -o",
     "export a rig": "export car.toml --to csv --rear-axle info.param.yaml -o",
     "export a scene": "export car.toml --to gltf -o",
@@ -48,7 +48,7 @@ FOLDERS = {
 """Verbs that write a folder of results, and where they read a study."""
 ALONE = {"review", "verify"}
 """Verbs that write a folder in which no file has a name that is read."""
-FILES = "car.toml", "car.npz", "rig.csv", "story.toml", "info.param.yaml"
+FILES = "car.toml", "car.npz", "rig.csv", "scenario.toml", "info.param.yaml"
 
 
 @pytest.fixture
@@ -60,7 +60,7 @@ def folder(tmp_path, monkeypatch, capsys):
     study = pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search, samples=1024)
     pt.export_study(study, "car.toml")
     assert main(["export", "car.toml", "--to", "csv", "-o", "rig.csv"]) == 0
-    Path("story.toml").write_text(STORY)
+    Path("scenario.toml").write_text(SCENARIO)
     Path("info.param.yaml").write_text(INFO)
     capsys.readouterr()
     return tmp_path

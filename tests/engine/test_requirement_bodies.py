@@ -11,7 +11,7 @@ from pe_core.scoring.requirements import (
     Body,
     Criterion,
     Requirement,
-    Under,
+    RobustTo,
     Zone,
     body_met,
     sees,
@@ -41,7 +41,9 @@ def test_verdicts_are_those_of_the_definition():
     """
     bodies = (BODIES["child"], BODIES["cyclist"], BODIES["pole_ring"])
     requirements = [
-        Requirement("k", AHEAD, bodies[:2], Criterion(sensors=2), under=Under(one_lost=True)),
+        Requirement(
+            "k", AHEAD, bodies[:2], Criterion(sensors=2), robust_to=RobustTo(one_lost=True)
+        ),
         Requirement("kinds", AHEAD, bodies[:1], Criterion(kinds=2, points=4, pixels=4000.0)),
         Requirement("share", AHEAD, (BODIES["cylinder"],), Criterion(share=0.6)),
         Requirement("ring", AHEAD, bodies[2:], Criterion(share=1.0, of=("camera",))),
@@ -63,7 +65,7 @@ def test_verdicts_are_those_of_the_definition():
                 for b in requirement.bodies
                 for h in b.headings
             ]
-            lost = [s.name for s in whole] if requirement.under.one_lost else []
+            lost = [s.name for s in whole] if requirement.robust_to.one_lost else []
             cases = [seen, *([{**row, name: False} for row in seen] for name in lost)]
             passed.append(
                 all(body_met(row, whole, requirement.criterion) for case in cases for row in case)

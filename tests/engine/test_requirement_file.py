@@ -8,7 +8,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.scoring.requirements import BODIES, Criterion, Requirement, Under, checkable
+from pe_core.scoring.requirements import BODIES, Criterion, Requirement, RobustTo, checkable
 from pe_core.study import Node, read, write
 from pe_core.study.requirement_file import presets
 from pe_core.study.study_file import study_from_dict, study_to_dict
@@ -45,7 +45,7 @@ BAD = {
     "preset": ({"preset": "r000"}, "26 names, such as r15"),
     "ap": ({"body": "pole_ring", "criterion": {"ap": 0.5}}, "a class"),
     "twice": ({}, "each name once"),
-    "mounting": ({"under": {"mounting": True}}, "tolerance"),
+    "mounting": ({"robust_to": {"mounting": True}}, "tolerance"),
     "heading": ({"headings": "north"}, "angles"),
 }
 
@@ -57,7 +57,7 @@ def test_presets_have_sources_and_come_back_from_a_file_the_same():
             found.append(f"{key}: confidence or source")
         requirement = each.requirement()
         for name in (key, "another name"):
-            changed = replace(requirement, name=name, under=Under(one_lost=name != key))
+            changed = replace(requirement, name=name, robust_to=RobustTo(one_lost=name != key))
             again = read(Requirement, Node(write(changed), "file"))
             if again != changed:
                 found.append(f"{key}: {write(changed)}")

@@ -13,8 +13,8 @@ from pe_core.scoring.requirements import (
     Reason,
     Requirement,
     RequirementChecker,
+    RobustTo,
     Samples,
-    Under,
     VerdictSummary,
     Zone,
     margin_of,
@@ -32,8 +32,8 @@ GROWN = {
     "most": {"criterion": Criterion(kinds=2, zone_share=0.8)},
     "cameras": {"criterion": Criterion(of=("camera",), zone_share=0.95)},
     "in part": {"criterion": Criterion(share=0.3, zone_share=0.9)},
-    "one lost": {"under": Under(one_lost=True)},
-    "mounted off": {"under": Under(mounting=True), "criterion": Criterion(zone_share=0.97)},
+    "one lost": {"robust_to": RobustTo(one_lost=True)},
+    "mounted off": {"robust_to": RobustTo(mounting=True), "criterion": Criterion(zone_share=0.97)},
     "by AP": {"criterion": Criterion(ap=0.5)},
 }
 SLOW = pytest.param("in part", marks=pytest.mark.thorough)
@@ -48,7 +48,7 @@ def test_blind_ground_of_a_zone_is_that_of_sight():
         zone,
         bodies=(),
         criterion=Criterion(blind_m2=1.0, blind_height=0.4),
-        under=Under(True),
+        robust_to=RobustTo(True),
     )
     space = pe.PerceptionSpace((-10, 10), (-8, 8), (0, 3), 0.1)
     (verdict,) = RequirementChecker([own], van(), space=space).check(rig())
@@ -56,7 +56,9 @@ def test_blind_ground_of_a_zone_is_that_of_sight():
     assert 0.0 < verdict.blind_m2 <= whole.area + 0.01
     assert verdict.met is (verdict.blind_m2 <= 1.0 and all(verdict.without.values()))
     (tight,) = RequirementChecker(
-        [replace(own, criterion=Criterion(blind_out=0.0, blind_height=0.4))], van(), space=space
+        [replace(own, criterion=Criterion(max_blind_distance=0.0, blind_height=0.4))],
+        van(),
+        space=space,
     ).check(rig())
     assert not tight.met
 
@@ -96,9 +98,13 @@ def test_blind_ground_with_the_only_sensor_lost_is_all_of_it():
     """As of bodies; with two sensors the one that is left counts."""
     zone = Zone(x=("front + 1", "front + 3"), y=(-1, 1))
     space = pe.PerceptionSpace((-9, 9), (-6, 6))
-    for under in (Under(), Under(one_lost=True)):
+    for under in (RobustTo(), RobustTo(one_lost=True)):
         own = Requirement(
-            "g", zone, bodies=(), criterion=Criterion(blind_m2=0.5, blind_height=0.8), under=under
+            "g",
+            zone,
+            bodies=(),
+            criterion=Criterion(blind_m2=0.5, blind_height=0.8),
+            robust_to=under,
         )
         checker = RequirementChecker([own], van(), space=space)
         (found,) = checker.check(pe.Rig([rig()["front"]]))
@@ -137,8 +143,8 @@ def test_margins_of_blind_ground_are_those_of_its_squares():
     assert not beside.met and beside.margin < 0.0 and beside.ground.spare_m2 < 0.0
     inner = verdict(replace(zone, x=(-2.0, 2.0), y=("left + 0.2", "left + 2")), blind_m2=1e3)
     assert inner.met and inner.summary.blind_m2 is not None
-    out = verdict(zone, blind_m2=None, blind_out=0.0)
-    assert out.ground.spare_out == pytest.approx(-out.ground.blind_out, abs=0.011)
+    out = verdict(zone, blind_m2=None, max_blind_distance=0.0)
+    assert out.ground.spare_out == pytest.approx(-out.ground.blind_distance, abs=0.011)
 
 
 def test_losses_hidden_parts_and_the_worst_place_are_named():
@@ -162,7 +168,7 @@ def test_losses_hidden_parts_and_the_worst_place_are_named():
 def test_mounting_errors_count_where_they_are_asked_for():
     """A case that sees nothing breaks the requirement under mounting errors, and that one alone."""
     two = [
-        Requirement(name, MIDDLE, (BODIES["child"],), under=Under(mounting=name == "off"))
+        Requirement(name, MIDDLE, (BODIES["child"],), robust_to=RobustTo(mounting=name == "off"))
         for name in ("as built", "off")
     ]
     blind = pe.Rig([replace(s, pose=pe.Pose((0.0, 0.0, 1.0))) for s in rig()])  # inside the body
@@ -249,5 +255,5 @@ def test_texts_come_from_values_that_survive_json():
     found = texts(margin_m=0.3, margin_at_least=True, blind_m2=0.4, condition="rain", check="R159")
     checked = "geometric check after R159: met, blind 0.40 m2, margin at least 0.30 m, in rain"
     assert found == ("blind 0.40 m2, at least 0.30 m", checked)
-    assert texts(met=False, margin_m=-0.15)[0] == "fails 0.15 m inside"
+    assert texts(met=False, margin_m=-0.15)[0] == "fails in the outer 0.15 m"
     assert texts(met=False)[0] == "fails at 2,000 of 4,000 places"

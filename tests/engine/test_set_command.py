@@ -82,7 +82,10 @@ def test_a_change_replaces_one_place_and_leaves_the_rest(path, change, capsys):
         ("samples=", "command line: samples: expected a value, found"),
         ("sensor.roof=1", "sensor.roof: expected a key of this table, found 1"),
         ("sensor=1", "sensor: expected a key of this table, found 1"),
-        ("story.cut.speed_kmh=9", "story.cut.speed_kmh: expected cut_in, or one of crossing_child"),
+        (
+            "scenario.cut.speed_kmh=9",
+            "scenario.cut.speed_kmh: expected cut_in, or one of crossing_child",
+        ),
         ("sensor.roof.model=None", "study.toml: sensor.roof.model: expected one of"),
         ("sensor.tail.bounds.q.w=1", "study.toml: sensor.tail.bounds.q: expected one of"),
         ("sensor.1.mount=1", "study.toml: sensor.1.mount: expected"),
@@ -91,11 +94,11 @@ def test_a_change_replaces_one_place_and_leaves_the_rest(path, change, capsys):
     ],
 )
 def test_a_change_that_fits_nothing_is_named_as_it_was_typed(path, change, message, capsys):
-    stories = '\n[[story]]\npreset = "crossing_child"\n[[story]]\npreset = "cut_in"\n'
-    path.write_text(COMMENTED + stories, "utf-8")
+    scenarios = '\n[[scenario]]\npreset = "crossing_child"\n[[scenario]]\npreset = "cut_in"\n'
+    path.write_text(COMMENTED + scenarios, "utf-8")
     assert main(["set", str(path), change]) == 1
     assert message in capsys.readouterr().err
-    assert path.read_text("utf-8") == COMMENTED + stories
+    assert path.read_text("utf-8") == COMMENTED + scenarios
 
 
 def leaves(data, path=()):

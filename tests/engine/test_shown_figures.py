@@ -113,7 +113,7 @@ def test_figures_do_not_depend_on_what_else_is_asked(study):
             assert found == {k: v for k, v in all_values.items() if k in (first, second)}
 
 
-@pytest.mark.parametrize("wrong", [["reach", "reach"], ["story_margin"], [3], "reach", None])
+@pytest.mark.parametrize("wrong", [["reach", "reach"], ["scenario_margin"], [3], "reach", None])
 def test_wrong_names_are_one_error_of_the_field(wrong, study):
     with pytest.raises(InputError) as error:
         replace(study, figures=wrong)

@@ -130,7 +130,10 @@ def parked(**under):
     """The car with a LiDAR on its left door's mirror, held to a cyclist who comes from behind."""
     zone = pe.requirements.Zone(path=((-7.0, 1.9), (-4.0, 1.9)))
     wanted = pe.requirements.Requirement(
-        "dooring", zone, (pe.requirements.BODIES["cyclist"],), under=pe.requirements.Under(**under)
+        "dooring",
+        zone,
+        (pe.requirements.BODIES["cyclist"],),
+        robust_to=pe.requirements.RobustTo(**under),
     )
     camera = pe.Camera("c", 640, 480, math.radians(40.0))
     back = pe.Sensor("back", camera, pe.Pose.from_degrees((0.6, 0.97, 1.1), (0, 0, 170)))
@@ -153,7 +156,7 @@ def test_a_requirement_is_met_under_each_state_and_weather_that_it_names():
     assert not foggy.met and foggy.condition == "dense fog"
     assert not both.met and both.to_dict()["condition"] in ("open", "open, dense fog", "dense fog")
     study = parked(states=["open"])
-    assert study_to_dict(study)["requirement"][0]["under"] == {"states": ["open"]}
+    assert study_to_dict(study)["requirement"][0]["robust_to"] == {"states": ["open"]}
     checker = pickle.loads(pickle.dumps(study.checker()))
     assert checker.shortfalls(study.rig)[0] > 0.0 == parked().checker().shortfalls(study.rig)[0]
     with pytest.raises(pe.InputError, match="open"):
@@ -177,7 +180,7 @@ def test_what_blind_ground_leaves_to_spare_is_the_least_of_all_conditions():
 
 @pytest.mark.parametrize("state", [OPEN, WIDE_OPEN, LIFTED], ids=lambda state: state.name)
 def test_what_stands_on_the_ground_does_not_move_with_the_vehicle(state):
-    """Zones, the rectangle from which blind ground is measured, and the bodies of a story.
+    """Zones, the rectangle from which blind ground is measured, and the bodies of a scenario.
 
     A door that is wide open makes the vehicle 0.93 m wider.
     """
@@ -185,7 +188,7 @@ def test_what_stands_on_the_ground_does_not_move_with_the_vehicle(state):
         "left",
         pe.requirements.Zone(x=("rear", "front"), y=("left + 0.5", "left + 1.5")),
         (pe.requirements.BODIES["child"],),
-        under=pe.requirements.Under(states=("*",)),
+        robust_to=pe.requirements.RobustTo(states=("*",)),
     )
     study = pe.Study(rig(), car(), shapes.small_space(), conditions=Conditions([state]))
     study = replace(study, requirements=(requirement,))
@@ -195,8 +198,10 @@ def test_what_stands_on_the_ground_does_not_move_with_the_vehicle(state):
     zones = [each.checker().zones[0].corners for each in (study, moved)]
     assert np.array_equal(*zones)
     assert body_rectangle(moved.vehicle) == body_rectangle(study.vehicle)
-    story = next(iter(pe.motion.stories().values()))
-    assert np.array_equal(story.positions(moved.vehicle)[0], story.positions(study.vehicle)[0])
+    scenario = next(iter(pe.motion.scenarios().values()))
+    assert np.array_equal(
+        scenario.positions(moved.vehicle)[0], scenario.positions(study.vehicle)[0]
+    )
     again = pickle.loads(pickle.dumps(moved.vehicle))
     assert body_rectangle(again) == body_rectangle(study.vehicle)
     undone = state.undone(moved.vehicle)

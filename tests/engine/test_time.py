@@ -1,4 +1,4 @@
-"""Entropy over frames, tracks and stories: equations T1 to T5, bits of the paper, the command."""
+"""Entropy over frames, tracks and scenarios: equations T1 to T5, bits of the paper, the command."""
 
 import itertools
 import json
@@ -14,7 +14,7 @@ from pe_core.base.setting import settings_of
 from pe_core.base.values import Number
 from pe_core.metric.entropy import BLIND_PRECISION, ap_of_entropy
 from pe_core.metric.frames import Frames, predicted, updated
-from pe_core.motion import Actor, Confirmation, Story, drive_by, stories
+from pe_core.motion import Actor, Confirmation, Scenario, drive_by, scenarios
 from pe_core.motion.clock import FrameClock
 from pe_core.motion.detector_rank import rank_chain
 from pe_core.motion.scan import factor_of, scan_factor
@@ -31,7 +31,7 @@ FORWARD = pe.Camera("cam", 1280, 720, 1.2)
 TIMES_S = (0.0, 0.3, 2.5, 1000.0)
 TENTH = 0.1
 """Time between two frames [s]."""
-STANDING = Story(
+STANDING = Scenario(
     "standing",
     speed_kmh=0.0,
     actors=(
@@ -210,7 +210,7 @@ def test_a_sensor_with_its_own_curve_has_the_rate_of_its_kind(samples):
     assert drawn[0] == pytest.approx(drawn[1], abs=1e-9)
 
 
-def test_a_story_at_rest_is_the_ap_of_objects_in_traffic():
+def test_a_scenario_at_rest_is_the_ap_of_objects_in_traffic():
     car = shapes.box_car()
     front = float(car.bounds[1][0])
     boxes = np.array([BODIES["adult"].box, BODIES["car"].hiding])
@@ -237,7 +237,7 @@ def test_what_hides_is_at_least_the_prior_s_and_what_is_seen_is_small():
     adult, wall = STANDING.actors
     car = shapes.box_car()
     seen_wall = replace(STANDING, actors=(adult, replace(wall, watched=True)))
-    hidden, both = (drive_by(story, rig(), car).bodies for story in (STANDING, seen_wall))
+    hidden, both = (drive_by(scenario, rig(), car).bodies for scenario in (STANDING, seen_wall))
     assert both[0].ap.tolist() == hidden[0].ap.tolist()  # what has to be seen hides as well
     alone = drive_by(replace(STANDING, actors=(replace(wall, watched=True),)), rig(), car)
     assert both[1].ap.tolist() != [] and both[1].ap.max() <= alone.bodies[0].ap.max()
@@ -246,15 +246,15 @@ def test_what_hides_is_at_least_the_prior_s_and_what_is_seen_is_small():
 @pytest.mark.parametrize("name", ["crossing_child", "cut_in"])
 def test_no_verdict_gets_better_with_a_larger_body_that_hides(name):
     car = shapes.box_car()
-    story = stories()[name]
-    watched = [actor for actor in story.actors if actor.watched]
+    scenario = scenarios()[name]
+    watched = [actor for actor in scenario.actors if actor.watched]
     base = np.array(BODIES["car"].hiding)
     before = None
     for scale in (0.5, 1.0, 1.05, 1.5):
         size = tuple((base * scale).tolist())
         beside = Actor("beside", Body("own", size), ((0.0, -3.5, -2.6),), watched=False)
         ahead = Actor("ahead", Body("own", size), ((-6.0, 20.0, 3.5), (0.0, 9.0, 3.5)), False)
-        driven = drive_by(replace(story, actors=(*watched, beside, ahead)), rig(), car)
+        driven = drive_by(replace(scenario, actors=(*watched, beside, ahead)), rig(), car)
         now = driven.bodies[0]
         if before is not None:
             assert (now.ap <= before.ap + 1e-12).all()
@@ -265,10 +265,10 @@ def test_no_verdict_gets_better_with_a_larger_body_that_hides(name):
 
 
 def near_body(start_s=-3.0, **changed):
-    """A story of a large body that stands near: each frame finds it with 0.999."""
+    """A scenario of a large body that stands near: each frame finds it with 0.999."""
     large = Body("large", (3.0, 5.0, 4.0), class_name="car")
     actor = Actor("large", large, ((start_s, 5.0, 0.0),))
-    return Story("near", speed_kmh=0.0, actors=(actor,), **changed)
+    return Scenario("near", speed_kmh=0.0, actors=(actor,), **changed)
 
 
 def confirmed_at(rates, of=None, **changed):
@@ -289,10 +289,10 @@ def test_a_slow_sensor_confirms_late():
 
 def test_ap_is_that_of_the_last_frame():
     moving = Actor("adult", BODIES["adult"], ((-3.0, 60.0, 0.0), (0.0, 3.0, 0.0)))
-    story = replace(near_body(), actors=(moving,))
+    scenario = replace(near_body(), actors=(moving,))
     roof = pe.Rig([rig()["roof"]])
     whole, slow = (
-        drive_by(story, roof, None, rates=rates).bodies[0].ap for rates in ({}, {"lidar": 2.0})
+        drive_by(scenario, roof, None, rates=rates).bodies[0].ap for rates in ({}, {"lidar": 2.0})
     )
     assert slow[:15].tolist() == np.repeat(whole[[0, 5, 10]], 5).tolist()
     clock = FrameClock.of(11, 10.0, 4.0)  # at 0, 0.25, 0.5, 0.75 and 1 s: at the next frame
@@ -309,12 +309,12 @@ def extremes(cls):
             yield from ({name: float(end)} for end in ends if math.isfinite(end))
 
 
-@pytest.mark.parametrize("change", [*extremes(Story)], ids=str)
-def test_a_story_at_the_ends_of_its_numbers_has_an_answer_or_one_line(change):
+@pytest.mark.parametrize("change", [*extremes(Scenario)], ids=str)
+def test_a_scenario_at_the_ends_of_its_numbers_has_an_answer_or_one_line(change):
     try:
-        story = replace(near_body(), **change)
-        assert math.isfinite(story.brake_s) and math.isfinite(story.stop_m)
-        json.dumps(drive_by(story, pe.Rig([rig()["front"]])).to_dict(), allow_nan=False)
+        scenario = replace(near_body(), **change)
+        assert math.isfinite(scenario.brake_s) and math.isfinite(scenario.stop_m)
+        json.dumps(drive_by(scenario, pe.Rig([rig()["front"]])).to_dict(), allow_nan=False)
     except pe.InputError as error:
         assert next(iter(change)) in str(error) or "frames" in str(error)
 
@@ -345,27 +345,27 @@ def test_bodies_move_as_the_vehicle_drives_on():
 def file(tmp_path):
     car = shapes.box_car()
     pt.write_mesh(tmp_path / "car.npz", pe.Mesh(car.triangles, car.parts, car.part_names))
-    pt.export_study(study(stories=(stories()["cyclist_from_right"],)), tmp_path / "study.toml")
+    pt.export_study(study(scenarios=(scenarios()["cyclist_from_right"],)), tmp_path / "study.toml")
     return tmp_path / "study.toml"
 
 
 def test_the_command_says_when_each_body_is_confirmed(file, tmp_path, capsys):
-    status = main(["check", str(file), "--stories", "--json", "-o", str(tmp_path / "out.json")])
+    status = main(["check", str(file), "--scenarios", "--json", "-o", str(tmp_path / "out.json")])
     data = json.loads(capsys.readouterr().out)
-    (story,) = data["stories"]
-    whole = study().drive_by(stories()["cyclist_from_right"])
-    assert story == json.loads(json.dumps(whole.to_dict()))
+    (scenario,) = data["scenarios"]
+    whole = study().drive_by(scenarios()["cyclist_from_right"])
+    assert scenario == json.loads(json.dumps(whole.to_dict()))
     assert json.loads((tmp_path / "out.json").read_text()) == data
     assert status == (0 if whole.is_met else 3)
-    assert main(["check", str(file), "--stories", "all"]) == 3  # the child behind the cars
+    assert main(["check", str(file), "--scenarios", "all"]) == 3  # the child behind the cars
     assert "crossing_child" in capsys.readouterr().out
     assert main(["check", str(file), "--json"]) == status
-    assert json.loads(capsys.readouterr().out)["stories"] == data["stories"]
+    assert json.loads(capsys.readouterr().out)["scenarios"] == data["scenarios"]
     assert main(["check", "--list", "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["stories"].keys() == stories().keys()
+    assert json.loads(capsys.readouterr().out)["scenarios"].keys() == scenarios().keys()
     own = tmp_path / "own.toml"
-    own.write_text('[[story]]\npreset = "crossing_child"\nspeed_kmh = 10.0\n')
-    assert main(["check", str(file), "--stories", str(own), "--json"]) in (0, 3)
-    slow = json.loads(capsys.readouterr().out)["stories"][0]["bodies"][0]["margin_s"]
+    own.write_text('[[scenario]]\npreset = "crossing_child"\nspeed_kmh = 10.0\n')
+    assert main(["check", str(file), "--scenarios", str(own), "--json"]) in (0, 3)
+    slow = json.loads(capsys.readouterr().out)["scenarios"][0]["bodies"][0]["margin_s"]
     assert slow is None or slow > -2.0
-    assert main(["check", str(file), "--stories", "crossing"]) == 1
+    assert main(["check", str(file), "--scenarios", "crossing"]) == 1

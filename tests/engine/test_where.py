@@ -77,8 +77,8 @@ def test_the_best_places_are_reported_on_a_larger_sample(study):
 def test_requirements_are_counted_with_their_mounting_errors(study):
     zone = pe.requirements.Zone(spots=((5.0, 0.0),))
     child = pe.requirements.BODIES["child"]
-    under = pe.requirements.Under(mounting=True)
-    wanted = pe.requirements.Requirement("child", zone, (child,), under=under)
+    under = pe.requirements.RobustTo(mounting=True)
+    wanted = pe.requirements.Requirement("child", zone, (child,), robust_to=under)
     loose = replace(study.search, tolerance=search.Tolerance(angle=np.radians(40.0)))
     held = replace(study, requirements=(wanted,), search=loose)
     assert held.verdicts()[0].met_whole and not held.verdicts()[0].met

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.motion import stories
+from pe_core.motion import scenarios
 from pe_tools.page import ReportContext, keyed_contexts
 from pe_tools.page.sections.traceability import (
     CURVE_SOURCES,
@@ -44,7 +44,7 @@ def test_the_verdict_on_validity_is_that_of_its_page():
     assert "detectors find more at a better score" in text and "a blind sector" in text  # OWN_STUDY
 
 
-def test_stories_say_of_how_many_frames_a_track_is_confirmed():
-    study = dataclasses.replace(small_study(), stories=(stories()["crossing_child"],))
+def test_scenarios_say_of_how_many_frames_a_track_is_confirmed():
+    study = dataclasses.replace(small_study(), scenarios=(scenarios()["crossing_child"],))
     html = html_of(drive_by, ReportContext("car", finished(pt.ScoreJob(study))))
     assert "3 of the last 5 frames" in html

@@ -15,7 +15,7 @@ BODIES = LOOK.format(center=(4.0, 0.0, 0.5), distance=19.0, rotation=(1.12, 0.0,
 WHERE = OURS.format("queries.where_map")
 PLACES = f"{WHERE}.maps.get(window.scene.name)"
 OFFERS = f"{WHERE}.offers.get(window.scene.name)"
-STORY = OURS.format("overlay.layer_cache") + ".shown_of(window.scene.name, 'story')"
+SCENARIO = OURS.format("overlay.layer_cache") + ".shown_of(window.scene.name, 'scenario')"
 NEAREST = f"""
 free = [each for each in {PLACES}.places if each.value is not None]
 eye = area.spaces.active.region_3d.view_matrix.inverted().translation
@@ -142,17 +142,17 @@ def searched(camera: Camera) -> None:
 
 
 def driven(camera: Camera) -> None:
-    """A story that is played: when is the child confirmed, and does the car stop?"""
+    """A scenario that is played: when is the child confirmed, and does the car stop?"""
     stage = camera.stage
     stage.do(f"""
         {SETTINGS.strip()}
         settings.view.ghost_key = 0
         for each in ("frustums", "ground", "blind"):
             setattr(settings.view, "show_" + each, False)
-        bpy.ops.pe.add_row(rows="stories", kind="crossing_child")
+        bpy.ops.pe.add_row(rows="scenarios", kind="crossing_child")
     """)
     stage.do(AHEAD)
-    stage.wait_until(STORY, 200)
+    stage.wait_until(SCENARIO, 200)
     settled(camera)
     camera.caption = "A child runs out: when is it confirmed, and does the car stop in time?"
     for frame in range(10, 130, 8):

@@ -5,7 +5,7 @@ from ...lazy_faces import lazy_face
 with lazy_face(__name__):
     from .bodies import BODIES, Body
     from .checker import CheckStep, RequirementChecker, checkable
-    from .criteria import Criterion, Requirement, Under, checked_requirements
+    from .criteria import Criterion, Requirement, RobustTo, checked_requirements
     from .definition import body_met, placed, sees
     from .planes import VehiclePlanes
     from .verdict import (

@@ -99,7 +99,7 @@ class BodyChecks:
         `cases` are the rig with mounting errors, for requirements that ask for them."""
         measured = self._measured(0, rig)
         found = [self._result(k, rig, measured) for k in range(len(self._wanted))]
-        asking = [k for k, (own, _) in enumerate(self._wanted) if own.under.mounting]
+        asking = [k for k, (own, _) in enumerate(self._wanted) if own.robust_to.mounting]
         for number, case in enumerate(cases if asking else (), start=1):
             measured = self._measured(number, case)
             for k in asking:
@@ -108,7 +108,7 @@ class BodyChecks:
 
     def measuring(self, rig: Rig, cases: Sequence[Rig] = ()) -> Iterator[None]:
         """Measure what `results` needs; yield after each sensor of each scene."""
-        asked = cases if any(own.under.mounting for own, _ in self._wanted) else ()
+        asked = cases if any(own.robust_to.mounting for own, _ in self._wanted) else ()
         for number, case in enumerate((rig, *asked)):
             for sensor in case if self._joined is not None else ():
                 for measurer in self._measurers_of(number, sensor):
@@ -136,7 +136,7 @@ class BodyChecks:
             for lost in names
         }
         passed = whole.copy()
-        if requirement.under.one_lost:
+        if requirement.robust_to.one_lost:
             passed &= np.logical_and.reduce(list(without.values()))
         return ZoneResult(passed, whole, without, seen)
 

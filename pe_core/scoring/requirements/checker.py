@@ -193,7 +193,7 @@ class _CheckedSet:
         """Yield the verdicts on a rig, and steps without one in between."""
         preview = self._which == PREVIEW
         done = 0
-        scenes = 1 + len(cases) * any(own.under.mounting for own, _ in self._pairs)
+        scenes = 1 + len(cases) * any(own.robust_to.mounting for own, _ in self._pairs)
         total = len(self._pairs) + len(self._grounds) + len(rig) * scenes * bool(self._pairs)
         for _ in self._bodies.measuring(rig, cases):
             done += 1
@@ -296,7 +296,7 @@ def shortfall(requirement: Requirement, samples: Samples, result: ZoneResult, ri
     if share >= criterion.zone_share:
         return 0.0
     counts, kinds = counted(rig, result.seen, criterion, [s.name for s in rig])
-    spare = int(requirement.under.one_lost)
+    spare = int(requirement.robust_to.one_lost)
     wanted = criterion.sensors + spare + criterion.kinds
     has = np.minimum(counts, criterion.sensors + spare) + np.minimum(kinds, criterion.kinds)
     lacks = 1.0 - float(has.mean()) / wanted

@@ -35,10 +35,13 @@ class Criterion:
     """
 
     sensors: int = setting(
-        1, COUNT, "At least so many sensors see the body", Panel("sensors", "Sensors", soft_max=6)
+        1,
+        COUNT,
+        "Minimum number of sensors that must see the body",
+        Panel("sensors", "Sensors", soft_max=6),
     )
     kinds: int = setting(
-        1, COUNT, "These sensors are of at least so many kinds", Panel("kinds", "Kinds", soft_max=3)
+        1, COUNT, "Minimum number of kinds among these sensors", Panel("kinds", "Kinds", soft_max=3)
     )
     of: tuple[str, ...] = setting(
         (), NAMES, "Only these kinds of sensors count; by default all", Panel("of", "Only Kinds")
@@ -70,14 +73,17 @@ class Criterion:
     blind_m2: float | None = setting(
         None, AREA, "Largest area of blind ground in the zone", Panel("blind_m2", "Blind Area")
     )
-    blind_out: float | None = setting(
+    max_blind_distance: float | None = setting(
         None,
         DISTANCE,
         "Blind ground in the zone is at most this far from the vehicle",
-        Panel("blind_out", "Blind At Most Out"),
+        Panel("max_blind_distance", "Max Blind Distance"),
     )
     blind_height: float = setting(
-        0.0, DISTANCE, "Blind ground is that of what is so tall", Panel("blind_height", "Height")
+        0.0,
+        DISTANCE,
+        "Height of the object that defines blind ground",
+        Panel("blind_height", "Height"),
     )
 
     def __post_init__(self) -> None:
@@ -86,7 +92,7 @@ class Criterion:
             kind_named(kind, "criterion", "of")
         changed = [k for k in OF_BODIES if getattr(self, k) != settings_of(Criterion)[k].default]
         if self.is_of_ground and changed:
-            expected = "no key of bodies: blind_m2 and blind_out are of ground"
+            expected = "no key of bodies: blind_m2 and max_blind_distance are of ground"
             raise InputError("criterion", changed[0], expected, getattr(self, changed[0]))
         if self.kinds > self.sensors:
             object.__setattr__(self, "sensors", self.kinds)
@@ -94,7 +100,7 @@ class Criterion:
     @property
     def is_of_ground(self) -> bool:
         """Whether the criterion is on blind ground, not on test bodies."""
-        return self.blind_m2 is not None or self.blind_out is not None
+        return self.blind_m2 is not None or self.max_blind_distance is not None
 
     def counts(self, kind: str) -> bool:
         """Whether sensors of a kind can meet the criterion."""
@@ -128,8 +134,8 @@ class Criterion:
 
 
 @dataclass(frozen=True)
-class Under:
-    """What a requirement has to be met under, besides the rig as it stands. `states` and `weathers`
+class RobustTo:
+    """What a requirement has to be robust to, beyond the rig as it stands. `states` and `weathers`
     are those of the study, by name; "*": all."""
 
     one_lost: bool = setting(
@@ -149,7 +155,7 @@ class Under:
     )
 
     def __post_init__(self) -> None:
-        check_settings(self, "under")
+        check_settings(self, "robust_to")
 
 
 @dataclass(frozen=True)
@@ -171,7 +177,7 @@ class Requirement(ShortRepr):
     zone: Zone
     bodies: Annotated[tuple[Body, ...], Part(key="body")] = ()
     criterion: Criterion = field(default_factory=Criterion)
-    under: Under = field(default_factory=Under)
+    robust_to: RobustTo = field(default_factory=RobustTo)
     preset: str | None = None
     source: str = ""
     check: str = ""
@@ -184,7 +190,7 @@ class Requirement(ShortRepr):
         put(self, "name", A_NAME.checked("requirement", "name", self.name))
         who = f"requirement {self.name!r}"
         put(self, "bodies", tuple(self.bodies))
-        for key, kind in (("zone", Zone), ("criterion", Criterion), ("under", Under)):
+        for key, kind in (("zone", Zone), ("criterion", Criterion), ("robust_to", RobustTo)):
             require_kind(who, key, getattr(self, key), kind)
         for key in ("source", "check"):
             if getattr(self, key):
@@ -202,8 +208,8 @@ class Requirement(ShortRepr):
         if own is None:
             return False
         zone = replace(self.zone, eyes=own.zone.eyes, near_side=own.zone.near_side)
-        wanted = zone, self.bodies, self.criterion, self.under
-        return wanted != (own.zone, own.bodies, own.criterion, own.under)
+        wanted = zone, self.bodies, self.criterion, self.robust_to
+        return wanted != (own.zone, own.bodies, own.criterion, own.robust_to)
 
     @property
     def after(self) -> str:

@@ -56,9 +56,9 @@ class GroundCheck:
         marks = ground.marks(rig)
         blind = ground.blind(marks.values())
         lost = {}
-        if own.under.one_lost or not preview:
+        if own.robust_to.one_lost or not preview:
             lost = {name: ground.blind_without(marks, name) for name in marks}
-        counted = [blind, *(lost.values() if own.under.one_lost else ())]
+        counted = [blind, *(lost.values() if own.robust_to.one_lost else ())]
         for number, case in self._asked(cases):
             counted += self._blinds(ground, ground.marks(case, number))
         met_whole = self._meets(blind)
@@ -99,12 +99,12 @@ class GroundCheck:
 
     def _asked(self, cases: Sequence[Rig]) -> list[tuple[int, Rig]]:
         """Return the rigs with mounting errors that count, with their numbers as scenes."""
-        return list(enumerate(cases, start=1)) if self.requirement.under.mounting else []
+        return list(enumerate(cases, start=1)) if self.requirement.robust_to.mounting else []
 
     def _blinds(self, ground: "_ZoneGround", marks: Mapping[str, Flags]) -> list[Flags]:
         """Return all blind squares that count: of a whole rig, and with each sensor lost."""
         found = [ground.blind(marks.values())]
-        if self.requirement.under.one_lost:
+        if self.requirement.robust_to.one_lost:
             found += [ground.blind_without(marks, name) for name in marks]
         return found
 
@@ -144,7 +144,9 @@ class GroundCheck:
             math.ceil(ground.area(blind) * 100.0 - 1e-6) / 100.0,
             math.ceil(ground.farthest_out(blind) * 100.0 - 1e-6) / 100.0,
             None if criterion.blind_m2 is None else rounded_down(criterion.blind_m2 - area),
-            None if criterion.blind_out is None else rounded_down(criterion.blind_out - out),
+            None
+            if criterion.max_blind_distance is None
+            else rounded_down(criterion.max_blind_distance - out),
             blind=blind,
             cells=ground.cells,
         )
@@ -159,8 +161,8 @@ class GroundCheck:
         if criterion.blind_m2 is not None:
             area = max(ground.area(blind) - criterion.blind_m2, 0.0) / most
         out = 0.0
-        if criterion.blind_out is not None:
-            out = max(ground.farthest_out(blind) - criterion.blind_out, 0.0) / FAR_OFF_M
+        if criterion.max_blind_distance is not None:
+            out = max(ground.farthest_out(blind) - criterion.max_blind_distance, 0.0) / FAR_OFF_M
         return min(1.0, max(area, out, 1e-6))
 
 
@@ -255,7 +257,7 @@ class _ZoneGround:
         if criterion.blind_m2 is not None:
             allowed = math.floor(criterion.blind_m2 / self.cells.step**2 + INSIDE_M)
             at = float(away[allowed]) if allowed < len(away) else math.inf
-        if criterion.blind_out is not None:
-            beyond = blind & (self.out > criterion.blind_out)
+        if criterion.max_blind_distance is not None:
+            beyond = blind & (self.out > criterion.max_blind_distance)
             at = min(at, float(self.distance[beyond].min(initial=math.inf)))
         return at

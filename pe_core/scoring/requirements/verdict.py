@@ -167,14 +167,15 @@ class ZoneResult:
 
 @dataclass(frozen=True, eq=False)
 class GroundFigures:
-    """Blind ground of a zone: `blind_m2` of it is blind [m2], to `blind_out` from the vehicle [m].
+    """Blind ground of a zone: `blind_m2` of it is blind [m2], to `blind_distance` from the vehicle
+    [m].
 
     Both limits could shrink by `spare_m2` and `spare_out` in the worst case that counts; negative:
     they are passed by so much; None where there is no such limit. `blind` (NX, NY) are the squares.
     """
 
     blind_m2: float
-    blind_out: float
+    blind_distance: float
     spare_m2: float | None
     spare_out: float | None
     blind: Flags
@@ -209,7 +210,7 @@ class VerdictRow:
     """A verdict as result.json has it: the summary, and why; other fields are as in `Verdict`.
 
     `preset`: Name of the requirement's preset, if it is one. `fewest_sensors`, `most_sensors`: that
-    see a body in the zone. `blind_out_m`, `spare_m2`, `spare_out_m`: as in `GroundFigures`.
+    see a body in the zone. `blind_distance_m`, `spare_m2`, `spare_out_m`: as in `GroundFigures`.
     `planes`: How the planes of the vehicle were found.
     """
 
@@ -223,7 +224,7 @@ class VerdictRow:
     without: Mapping[str, bool]
     fewest_sensors: int
     most_sensors: int
-    blind_out_m: float | None
+    blind_distance_m: float | None
     spare_m2: float | None
     spare_out_m: float | None
     planes: Mapping[str, Any]
@@ -323,7 +324,7 @@ class Verdict(ShortRepr):
             without=self.without,
             fewest_sensors=self.sensors[0],
             most_sensors=self.sensors[1],
-            blind_out_m=None if ground is None else ground.blind_out,
+            blind_distance_m=None if ground is None else ground.blind_distance,
             spare_m2=None if ground is None else ground.spare_m2,
             spare_out_m=None if ground is None else ground.spare_out,
             planes=self.samples.zone.planes.found,

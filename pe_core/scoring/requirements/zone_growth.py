@@ -128,7 +128,7 @@ class RingPart:
             self._whole = self._whole or self._checks(own, self.samples.points)
             return self._whole.results(rig, cases)[0].passed
         passing = np.arange(len(self.samples.points))
-        for number, case in enumerate((rig, *(cases if own.under.mounting else ()))):
+        for number, case in enumerate((rig, *(cases if own.robust_to.mounting else ()))):
             passing = self._passing(number, case, passing, saw)
         passed = np.zeros(len(self.samples.points), bool)
         passed[passing] = True
@@ -165,7 +165,7 @@ class RingPart:
             return np.asarray(enough.all(axis=1))
 
         enough = met(seen)
-        for lost in seen if self._requirement.under.one_lost else ():
+        for lost in seen if self._requirement.robust_to.one_lost else ():
             enough &= met(name for name in seen if name != lost)
         return enough
 

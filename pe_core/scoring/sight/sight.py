@@ -21,8 +21,8 @@ from ...scene.vehicle import Vehicle
 from ...sensors import PerceptionModel
 from ..checks import require_scene
 from ..evaluator import Evaluator
+from ..rig_batch import fused_early
 from ..sampling import CENTERED, Shift, VoxelSample, draw
-from ..scenarios import fused_early
 from ..score import RigEvaluator, TrafficAp
 from ..targets import OBJECTS, ObjectEvaluator, TargetRule, sample_objects
 from ..targets.object_metric import LoneObjects

@@ -24,8 +24,8 @@ from ...prior.prior import ClassDensity
 from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
 from ...sensors import MeasurementCache, Voxels
+from ..rig_batch import fused_early
 from ..sampling import VoxelSample
-from ..scenarios import fused_early
 from ..score import zone_masks
 from .ground_cells import ROUNDING, GroundCells, closed, gauss, without_specks
 

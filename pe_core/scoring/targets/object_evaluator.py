@@ -18,7 +18,7 @@ from ...scene.rig import Rig
 from ...scene.vehicle import Vehicle
 from ...sensors import ObjectMeasurementCache, PerceptionModel, kind_of
 from ..checks import require_scene
-from ..scenarios import Scenarios
+from ..rig_batch import RigBatch
 from ..score import ObjectScore, Score, ScoreProgress, SensorScore, TrafficAp, Watch
 from .object_metric import FusedObjects, LoneObjects, ObjectSums
 from .object_sampling import CENTERED, OBJECTS, SampledObjects, TargetRule, sample_objects
@@ -99,19 +99,19 @@ class ObjectEvaluator:
 
     def entropies(self, rigs: Sequence[Rig]) -> list[float]:
         """Return the object entropy of each of several rigs [nats], as `Evaluator.entropies`."""
-        scenarios = Scenarios(rigs)
+        batch = RigBatch(rigs)
         with self._lock:
-            self._fused.check(scenarios.all)
-            m = self._sensors.measure(scenarios.all)
-            return [self._value(part, m) for part in scenarios.parts]
+            self._fused.check(batch.all)
+            m = self._sensors.measure(batch.all)
+            return [self._value(part, m) for part in batch.parts]
 
     def residuals(self, rigs: Sequence[Rig]) -> Floats:
         """Return by rig what each batch of scenes adds to the object entropy above its mean."""
-        scenarios = Scenarios(rigs)
+        batch = RigBatch(rigs)
         with self._lock:
-            self._fused.check(scenarios.all)
-            m = self._sensors.measure(scenarios.all)
-            by_rig = [self._fused.entropies(part, m)[0] for part in scenarios.parts]
+            self._fused.check(batch.all)
+            m = self._sensors.measure(batch.all)
+            by_rig = [self._fused.entropies(part, m)[0] for part in batch.parts]
             return np.array([self._residuals(entropies) for entropies in by_rig])
 
     def summary(self, rig: Rig) -> Score:

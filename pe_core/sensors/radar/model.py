@@ -138,7 +138,7 @@ class Radar(SensorModel):
     `modes`: The scans of one frame; their detections add.
     `reference_rcs_dbsm`: RCS of the target that the modes' ranges are for [dBsm].
     `detection_probability, false_alarm`: Pd and Pfa of that target at that range.
-    `list_length`: A frame has at most so many detections.
+    `list_length`: The most detections that a frame has.
     `cover_loss_db`: Loss of a cover that is no part of the vehicle's mesh, one way [dB].
     `attenuation_db_km`: Attenuation of the air, one way [dB/km]: 0 in clear air.
     `rcs`: RCS of classes, in place of those of `reflectivity`.

@@ -1,6 +1,6 @@
 """A drive-by as a strip: AP of each sensor over time, and the moments of a body's track."""
 
-from pe_core.motion import SeenBody, Story
+from pe_core.motion import Scenario, SeenBody
 
 from ... import graphics
 from ...templating import Markup
@@ -20,21 +20,21 @@ INKS = {graphics.BRAKE: "#c4320a", graphics.CONFIRMED: "#1a7f4b"}
 """Colours of moments on a light ground, by those on a dark one."""
 
 
-def strip_data(story: Story) -> str:
+def strip_data(scenario: Scenario) -> str:
     """Return what moves a cursor: times and places of both ends, and the time of a film's start."""
-    return " ".join(map(str, (*graphics.strip_ends(story), LEFT, RIGHT, story.start_s)))
+    return " ".join(map(str, (*graphics.strip_ends(scenario), LEFT, RIGHT, scenario.start_s)))
 
 
-def time_strip(story: Story, body: SeenBody, alt: str) -> Markup:
+def time_strip(scenario: Scenario, body: SeenBody, alt: str) -> Markup:
     """Return rows of AP over time, of the rig and each sensor, and the probability of a track.
-    Vertical lines: confirmed with the story's probability; the last moment to brake."""
+    Vertical lines: confirmed with the scenario's probability; the last moment to brake."""
     rows = graphics.strip_rows(body)
     height = TOP + len(rows) * (ROW + GAP) + FOOT
     canvas = Canvas(WIDTH, height, alt, "curve")
-    start, end = graphics.strip_ends(story)
+    start, end = graphics.strip_ends(scenario)
     to_x = linear_map(start, end, LEFT, RIGHT)
     y = TOP
-    width = (RIGHT - LEFT) / len(story.times)
+    width = (RIGHT - LEFT) / len(scenario.times)
     for name, cells in rows.items():
         canvas.text(LEFT - 8.0, y + ROW - 4.0, name, text_anchor="end")
         for first, last, ap in cells:
@@ -45,7 +45,7 @@ def time_strip(story: Story, body: SeenBody, alt: str) -> Markup:
     for tick in ticks(start, end, 6):
         if start <= tick <= end:
             canvas.text(to_x(tick), height - 18.0, f"{number(tick, 1)} s", text_anchor="middle")
-    for row, mark in enumerate(graphics.marks_of(story, body)):
+    for row, mark in enumerate(graphics.marks_of(scenario, body)):
         x = to_x(mark.time_s)
         ink = INKS[mark.color]
         base = TOP - 9.0 - LETTERS * row

@@ -79,17 +79,21 @@ def visibility(context: ReportContext) -> dict[str, Any]:
 
 
 def drive_by(context: ReportContext) -> dict[str, Any] | None:
-    """Return the stories of a study, as its rig sees them; None for a study without stories."""
+    """Return the scenarios of a study, as its rig sees them; None for a study without scenarios."""
     folder = context.folder
     films = [p.read_bytes() for p in sorted(folder.glob("*.webm"))] if folder is not None else []
-    driven = [context.study.drive_by(each, context.rig) for each in context.study.stories]
+    driven = [context.study.drive_by(each, context.rig) for each in context.study.scenarios]
     strips = [
-        (each, body, time_strip(each.story, body, f"{body.name} in {each.story.name} over time"))
+        (
+            each,
+            body,
+            time_strip(each.scenario, body, f"{body.name} in {each.scenario.name} over time"),
+        )
         for each in driven
         for body in each.bodies
     ]
-    shown = {each.story.name: _film_of(each, films) for each in driven}
-    data = {each.story.name: strip_data(each.story) for each in driven}
+    shown = {each.scenario.name: _film_of(each, films) for each in driven}
+    data = {each.scenario.name: strip_data(each.scenario) for each in driven}
     if not driven:
         return None
     return {"driven": driven, "strips": strips, "films": shown, "data": data, "window": WINDOW}

@@ -1,4 +1,4 @@
-"""What a rig measures of the watched bodies of a story: AP and tracks, frame by frame."""
+"""What a rig measures of the watched bodies of a scenario: AP and tracks, frame by frame."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,39 +13,39 @@ from ..scoring.targets.object_metric import FusedObjects
 from ..sensors import ObjectMeasurementCache, PerceptionModel
 from .clock import FrameClock, frame_rate, streams
 from .scan import factor_of
-from .scenes import StoryScenes, story_scenes
-from .story import RATE_HZ, Story
+from .scenario import RATE_HZ, Scenario
+from .scenes import ScenarioScenes, scenario_scenes
 from .tracks import Confirmation
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Track:
-    """The probability (W, K) that tracks are confirmed by each frame of a story, and that M of the
-    last N frames find the bodies."""
+    """The probability (W, K) that tracks are confirmed by each frame of a scenario, and that M of
+    the last N frames find the bodies."""
 
     confirmed: Floats
     kept: Floats
 
 
-class StorySight:
-    """Measures the W watched bodies of a story at its K frames.
+class ScenarioSight:
+    """Measures the W watched bodies of a scenario at its K frames.
 
-    `rates`: Frames in a second by kind of sensor [Hz]; a kind without one has the story's.
+    `rates`: Frames in a second by kind of sensor [Hz]; a kind without one has the scenario's.
     `positions` (W, K, 2): Of the bodies in the ground frame [m].
     """
 
     def __init__(
         self,
-        story: Story,
+        scenario: Scenario,
         rig: Rig,
         vehicle: Vehicle | None,
         model: PerceptionModel,
         rates: Mapping[str, float],
     ) -> None:
-        where, headings = story.positions(vehicle)
-        watched = [k for k, actor in enumerate(story.actors) if actor.watched]
-        scenes = story_scenes(story, where, headings, rig)
-        self._story = story
+        where, headings = scenario.positions(vehicle)
+        watched = [k for k, actor in enumerate(scenario.actors) if actor.watched]
+        scenes = scenario_scenes(scenario, where, headings, rig)
+        self._scenario = scenario
         self._rig = rig
         self.positions = where[watched]
         self._bearings = {s.name: _bearings(s, self.positions) for s in rig}
@@ -77,7 +77,7 @@ class StorySight:
         return Track(np.max(confirmed, axis=0), np.max(kept, axis=0))
 
     def _clock(self, rate_hz: float) -> FrameClock:
-        return FrameClock.of(len(self._story.times), RATE_HZ, rate_hz)
+        return FrameClock.of(len(self._scenario.times), RATE_HZ, rate_hz)
 
     def _at_last_frame(self, sensor: Sensor, m: Floats) -> Floats:
         """Return m (W * K) of a sensor's last frame, with the factor of its scan, from m (W, K)."""
@@ -87,7 +87,7 @@ class StorySight:
         return np.asarray(clock.held(at_frames[:, clock.frames]).ravel())
 
 
-def _measured(rig: Rig, scenes: StoryScenes, vehicle: Vehicle | None) -> dict[str, Floats]:
+def _measured(rig: Rig, scenes: ScenarioScenes, vehicle: Vehicle | None) -> dict[str, Floats]:
     """Return m (W, K) of the watched bodies by sensor."""
     measured = ObjectMeasurementCache(scenes.objects, vehicle, True).measure(rig)
     return {sensor.name: measured[sensor.name][scenes.rows] for sensor in rig}

@@ -1,4 +1,4 @@
-"""Scenarios: several rigs that are scored together, and the parts of one rig.
+"""RigBatch: several rigs that are scored together, and the parts of one rig.
 
 A sensor that several rigs have at the same pose is measured once. The parts of a rig are each
 sensor alone, and the rig without each sensor.
@@ -21,7 +21,7 @@ from ..scene.rig import Rig, Sensor, SensorModel
 Members = tuple[str, ...]
 
 
-class Scenarios:
+class RigBatch:
     """Rigs of the same sensors, in the same or other poses; sensors may be missing.
 
     Sensors of one name and pose in several rigs are one sensor. `parts` are the rigs, with new

@@ -1,8 +1,8 @@
-"""Stories: what moves round the vehicle, and how the vehicle has to stop for it.
+"""Scenarios: what moves round the vehicle, and how the vehicle has to stop for it.
 
-At time 0 the vehicle, driving on at its speed, is where the story says: positions are metres beyond
-its foremost plane then (reversing: its rearmost one), and to the left of the centre line, on the
-ground that does not move. A story begins with the first path, and ends at time 0.
+At time 0 the vehicle, driving on at its speed, is where the scenario says: positions are metres
+beyond its foremost plane then (reversing: its rearmost one), and to the left of the centre line, on
+the ground that does not move. A scenario begins with the first path, and ends at time 0.
 """
 
 import math
@@ -28,7 +28,7 @@ from ..scoring.targets.scene_layout import CAR_SIZE_M
 KMH = 3.6
 SECOND = Number(-600.0, 600.0, unit="s", noun="time")
 METRE = Number(-1000.0, 1000.0, unit="m", noun="position")
-FILE = Path(__file__).with_name("stories.toml")
+FILE = Path(__file__).with_name("scenarios.toml")
 HEADING = Angle(-3600.0, 3600.0)
 RATE_HZ = 10.0
 """Frames in a second: most LiDARs'. Sensors with a rate of their own have a `FrameClock`."""
@@ -39,7 +39,7 @@ START_S = -6.0  # Time of the first frame where nothing moves
 
 @dataclass(frozen=True, slots=True)
 class Actor:
-    """A body of a story, and its path: (time [s], x [m], y [m]), straight between them.
+    """A body of a scenario, and its path: (time [s], x [m], y [m]), straight between them.
 
     It heads where it moves. Before the first and after the last it stands. `watched`: whether it
     has to be confirmed; else it only occludes.
@@ -53,7 +53,7 @@ class Actor:
     """While it stands [rad]."""
 
     def __post_init__(self) -> None:
-        who = f"body {A_NAME.checked('story', 'name', self.name)!r}"
+        who = f"body {A_NAME.checked('scenario', 'name', self.name)!r}"
         rows = [vector(who, "path", row, count=3, rule=METRE) for row in listed(self.path) or []]
         times = [SECOND.checked(who, "path", row[0]) for row in rows]
         if not rows or times != sorted(set(times)):
@@ -82,7 +82,7 @@ class Actor:
 
 
 @dataclass(frozen=True, slots=True)
-class Story:
+class Scenario:
     """A scene in time: the vehicle's own speed, how it stops, and what moves. `InputError` when a
     number is out of its range, or there is no body to watch."""
 
@@ -117,7 +117,7 @@ class Story:
     actors: Annotated[tuple[Actor, ...], Part(key="body")] = ()
 
     def __post_init__(self) -> None:
-        who = f"story {A_NAME.checked('story', 'name', self.name)!r}"
+        who = f"scenario {A_NAME.checked('scenario', 'name', self.name)!r}"
         check_settings(self, who)
         if not any(actor.watched for actor in self.actors):
             raise InputError(who, "body", "at least one that is watched", "none")
@@ -171,15 +171,15 @@ class Story:
         return np.array(where), np.array(headings)
 
 
-def checked_stories(stories: Sequence[Story]) -> tuple[Story, ...]:
-    """Return stories; raise `InputError` for two of one name, or what is none."""
+def checked_scenarios(scenarios: Sequence[Scenario]) -> tuple[Scenario, ...]:
+    """Return scenarios; raise `InputError` for two of one name, or what is none."""
     names: set[str] = set()
-    for each in stories:
-        require_kind("study", "stories", each, Story)
+    for each in scenarios:
+        require_kind("study", "scenarios", each, Scenario)
         if each.name in names:
-            raise InputError("study", "story", "each name once", f"{each.name!r} twice")
+            raise InputError("study", "scenario", "each name once", f"{each.name!r} twice")
         names.add(each.name)
-    return tuple(stories)
+    return tuple(scenarios)
 
 
 def outline(vehicle: Vehicle | None) -> tuple[Floats, Floats]:
@@ -193,42 +193,42 @@ def outline(vehicle: Vehicle | None) -> tuple[Floats, Floats]:
 
 
 @dataclass(frozen=True, slots=True)
-class StoryTable(Story):
-    """The keys of a story's table: a shipped one needs no name of its own."""
+class ScenarioTable(Scenario):
+    """The keys of a scenario's table: a shipped one needs no name of its own."""
 
     name: Named = ""
 
 
-def _read_story(node: Node) -> Story:
-    """Return a story from its table; a `preset` is changed by the other keys."""
+def _read_scenario(node: Node) -> Scenario:
+    """Return a scenario from its table; a `preset` is changed by the other keys."""
     preset = node.at("preset")
     base = None
     table = {**node.table, "name": node.table.get("name", preset.value)}
     if table["name"] is None:
         raise node.error("a name, or a preset", "none", "name")
     if preset.value is not None:
-        base = stories()[choice(preset.source, preset.path, preset.value, stories())]
-    return read_fields(Story, node.with_value(table, node.path), base)
+        base = scenarios()[choice(preset.source, preset.path, preset.value, scenarios())]
+    return read_fields(Scenario, node.with_value(table, node.path), base)
 
 
-def _write_story(story: Story) -> dict[str, Any]:
-    """Return the table of a story; of a shipped one its name alone, and what was changed."""
-    table = write_fields(story, stories().get(story.preset))
-    if story.preset in stories():
-        table = {"name": story.name, "preset": story.preset, **table}
-        table = table if story.name != story.preset else {**table, "name": None}
+def _write_scenario(scenario: Scenario) -> dict[str, Any]:
+    """Return the table of a scenario; of a shipped one its name alone, and what was changed."""
+    table = write_fields(scenario, scenarios().get(scenario.preset))
+    if scenario.preset in scenarios():
+        table = {"name": scenario.name, "preset": scenario.preset, **table}
+        table = table if scenario.name != scenario.preset else {**table, "name": None}
     return {key: value for key, value in table.items() if value is not None}
 
 
 @cache
-def stories() -> Mapping[str, Story]:
-    """Return the stories that are shipped, by name."""
-    tables = load_toml(FILE, "stories", decode_text(read_bytes(FILE)))
+def scenarios() -> Mapping[str, Scenario]:
+    """Return the scenarios that are shipped, by name."""
+    tables = load_toml(FILE, "scenarios", decode_text(read_bytes(FILE)))
     found = {}
     for name, table in tables.items():
         node = Node({"name": name, **table}, FILE.name, name)
-        found[name] = replace(read_fields(Story, node), preset=name)
+        found[name] = replace(read_fields(Scenario, node), preset=name)
     return found
 
 
-hook(Story, _read_story, _write_story, StoryTable)
+hook(Scenario, _read_scenario, _write_scenario, ScenarioTable)

@@ -20,7 +20,7 @@ IN_EVERY_RESULT = "entropy"
 
 @dataclass(frozen=True, slots=True)
 class Defect:
-    """A row of the table: `first` and `mended` are versions, "" where it is not mended yet;
+    """A row of the table: `first` and `fixed` are versions, "" where it is not fixed yet;
     `touches` are keys of result.json, `link` is a page below docs/."""
 
     id: str
@@ -28,13 +28,13 @@ class Defect:
     touches: Sequence[str]
     what: str
     link: str
-    mended: str = ""
+    fixed: str = ""
 
     def is_in(self, version: str) -> bool:
         """Whether a version has the defect."""
         number = _numbers(version)
         begun = _numbers(self.first) <= number
-        return begun and not (self.mended and _numbers(self.mended) <= number)
+        return begun and not (self.fixed and _numbers(self.fixed) <= number)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the row as plain data."""
@@ -57,17 +57,17 @@ def defects_of(version: str) -> list[Defect]:
     return [each for each in known_defects() if each.is_in(version)]
 
 
-def mended_since(
+def fixed_since(
     result: Mapping[str, Any], defects: Iterable[Defect] | None = None, version: str = __version__
 ) -> list[str]:
     """Return a line for each defect that a result may have and a later version, up to this one, has
-    mended; none for data that do not say their version."""
+    fixed; none for data that do not say their version."""
     made = made_by(result)
     rows = known_defects() if defects is None else defects
     if not made:
         return []
     return [
-        f"a result of version {made} may have a defect that {each.mended} mended: {each.what}"
+        f"a result of version {made} may have a defect that {each.fixed} fixed: {each.what}"
         for each in rows
         if each.is_in(made) and not each.is_in(version) and _is_touched(each, result)
     ]

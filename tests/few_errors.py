@@ -1,7 +1,7 @@
 """Less of what stands beside a result, where it is not what a test is about.
 
 Every search ends with the robustness of its result: a sensor is measured anew for each error. Every
-result has key figures, of many scenes of traffic. What mends a requirement is looked for at many
+result has key figures, of many scenes of traffic. What fixes a requirement is looked for at many
 places. In small studies each takes longer than the rest.
 """
 

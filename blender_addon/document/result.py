@@ -86,9 +86,9 @@ class Result:
 
     @cached_property
     def missing(self) -> tuple[str, ...]:
-        """What the scene lacked when it was scored, and defects that were mended since."""
+        """What the scene lacked when it was scored, and defects that were fixed since."""
         lacking = (each.text for each in self.warnings if each.code in MARKING)
-        return *lacking, *known_defects.mended_since(self.data)
+        return *lacking, *known_defects.fixed_since(self.data)
 
     @property
     def fragile(self) -> str:

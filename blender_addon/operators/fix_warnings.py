@@ -46,7 +46,7 @@ def move_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount
 
 def scale_vehicle(context: bpy.types.Context, _subject: str, amount: AdviceAmount) -> None:
     """Scale the vehicle about the origin; the sensors keep their size."""
-    factor = FACTOR.checked("mend", "amount", amount[0])
+    factor = FACTOR.checked("fix", "amount", amount[0])
     _transform_vehicle(context, Matrix.Scale(factor, 4))
 
 
@@ -101,7 +101,7 @@ def _check_again(context: bpy.types.Context) -> None:
 
 @operator(
     "Fix",
-    mode="This is mended in Object Mode",
+    mode="This is fixed in Object Mode",
     signal=signals.study_changed,
     fix=EnumProperty(
         items=[(key, label, label) for key, label in FIX_LABELS.items()],
@@ -111,9 +111,9 @@ def _check_again(context: bpy.types.Context) -> None:
     subject=StringProperty(name="Subject", description="Name of the sensor; empty: the vehicle"),
     amount=FloatVectorProperty(name="Amount", description="Amount of the correction", size=3),
 )
-def mend(context: bpy.types.Context, fix: str, subject: str, amount: Iterable[float]) -> str:
+def fix_warning(context: bpy.types.Context, fix: str, subject: str, amount: Iterable[float]) -> str:
     """Fix the cause of this warning. Sensors on the vehicle move with the vehicle"""
-    x, y, z = (AMOUNT.checked("mend", "amount", each) for each in amount)
+    x, y, z = (AMOUNT.checked("fix", "amount", each) for each in amount)
     label, act = FIXES[fix]
     act(context, subject, (x, y, z))
     _check_again(context)

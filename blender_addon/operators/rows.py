@@ -42,7 +42,7 @@ class RowList:
     """A list of the panel, by the property of its rows.
 
     `noun` is what a row is. `add` adds one of a kind; its docstring is the tooltip. `copy` adds a
-    copy of a row below it. `removing` mends what refers to a row that is about to go; `loss` ends
+    copy of a row below it. `removing` fixes what refers to a row that is about to go; `loss` ends
     the tooltip of its removal. Rows of a list that `is_ordered` can be moved. `owner` has the list.
     """
 

@@ -1,4 +1,4 @@
-"""What would mend it: for a blind place, or a requirement that is not met; and taking it."""
+"""What would fix it: for a blind place, or a requirement that is not met; and taking it."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from .declared import INTERNAL, OperatorResult, Refused, operator
 from .jobs import JobRow, Task, begin, of_study
 from .where import put
 
-NOTHING = "Nothing to mend: what is 0.5 m tall is seen there"
-MET = "Nothing to mend: the requirement is met"
+NOTHING = "Nothing to fix: what is 0.5 m tall is seen there"
+MET = "Nothing to fix: the requirement is met"
 NONE_FOUND = "No move of one sensor, and no added one that was tried, is enough"
 
 
 @operator(
-    "What Would Mend It?",
+    "What Would Fix It?",
     mode="Sensors are placed in Object Mode",
     unless=lambda context: (
         None if document.sensor_objects(context.scene) else "There are no sensors yet"
@@ -45,7 +45,7 @@ def _task(_scene: bpy.types.Scene, study: pe.Study, _taken: document.Fingerprint
 
     def finish(scene: bpy.types.Scene, found: dict[str, list[Any]]) -> str:
         every = tuple(each for own in found.values() for each in own)
-        where_map.store_offers(scene.name, where_map.Mended(of, every) if found else None)
+        where_map.store_offers(scene.name, where_map.Repairs(of, every) if found else None)
         if not found:
             return MET if isinstance(of, str) else NOTHING
         return every[0].sentence if every else NONE_FOUND

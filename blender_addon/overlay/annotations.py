@@ -54,7 +54,7 @@ GHOST_PALETTE = replace(
 )
 """Colours of another variant's reach."""
 GHOST_TITLE = "Other variant"
-MENDS = "Would mend it"
+WOULD_FIX = "Would fix it"
 """Title of suggestions: these are drawn as bodies with their beams."""
 BODY_COLOR = (1.0, 0.85, 0.3, 0.95)
 BODY_M = 0.12
@@ -136,7 +136,7 @@ def ghost_sensors(
     is the other variant's, for the legend."""
     here = {sensor.name: sensor for sensor in present}
     lines = [_ghost_outline(sensor) for sensor in others]
-    is_offer = title == MENDS
+    is_offer = title == WOULD_FIX
     faces = [_ghost_body(sensor) for sensor in others if is_offer]
     lines += [_ghost_beams(sensor) for sensor in others if is_offer]
     color = graphics.with_alpha(PALE, LINK_ALPHA)

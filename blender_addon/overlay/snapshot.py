@@ -18,7 +18,7 @@ from ..processes.engine_calls import rig_key
 from ..queries import location_query, where_map
 from ..view import best_so_far
 from ..view.view_settings import MIN_LENGTH_M, ViewSettings
-from .annotations import MENDS
+from .annotations import WOULD_FIX
 from .layers import LAYERS
 from .request import MountFaces, SceneSensor, SteeredSensor, ViewRequest
 
@@ -270,7 +270,7 @@ def _ghosts(scene: bpy.types.Scene) -> tuple[tuple[pe.Sensor, ...], str, str]:
         return best, BEST_SO_FAR, "Search"
     if (offers := where_map.offers.get(scene.name)) and offers.found:
         new = tuple(each.rig[name] for each in offers.found for name in each.moved)
-        return new, "moved, or added", MENDS
+        return new, "moved, or added", WOULD_FIX
     if (compared := where_map.built.get(scene.name)) is not None:
         pairs = compared.pairing.pairs
         return tuple(each.designed.moved(each.built.pose) for each in pairs), "calibration", "Built"

@@ -330,9 +330,9 @@ def draw_warning(layout: UILayout, context: Context, warning: advice.Advice) -> 
         )
         part.name = warning.part
     if warning.fix in FIX_LABELS:
-        mend = row.operator(
-            "pe.mend", text=FIX_LABELS[warning.fix], icon="TOOL_SETTINGS", translate=False
+        button = row.operator(
+            "pe.fix_warning", text=FIX_LABELS[warning.fix], icon="TOOL_SETTINGS", translate=False
         )
-        mend.fix = warning.fix
-        mend.subject = warning.subject or ""
-        mend.amount = (*warning.amount, 0.0, 0.0, 0.0)[:3]
+        button.fix = warning.fix
+        button.subject = warning.subject or ""
+        button.amount = (*warning.amount, 0.0, 0.0, 0.0)[:3]

@@ -94,7 +94,7 @@ def draw_offers(
     requirement: str = "",
     point: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> None:
-    """Draw what would mend a requirement, or a place, and buttons that take it."""
+    """Draw what would fix a requirement, or a place, and buttons that take it."""
     found = where_map.offers.get(context.scene.name)
     if found is None or found.of != (requirement or point):
         button = layout.operator("pe.suggest", icon="TOOL_SETTINGS")

@@ -1,4 +1,4 @@
-"""Where a sensor would be worth most, where it may go, and what would mend something: for the view.
+"""Where a sensor would be worth most, where it may go, and what would fix something: for the view.
 
 The places that were scored last in each scene, and the suggestions that were asked for last. They
 are kept here and not in a property: they are not part of the user's work.
@@ -14,7 +14,7 @@ from .. import document, signals
 from ..engine import advice, jobs, studies
 
 
-class Mended(NamedTuple):
+class Repairs(NamedTuple):
     """Suggestions for `of`: a requirement's name, or a location that was queried [m]."""
 
     of: str | tuple[float, ...]
@@ -22,7 +22,7 @@ class Mended(NamedTuple):
 
 
 maps: dict[str, jobs.PlaceMap] = {}
-offers: dict[str, Mended] = {}
+offers: dict[str, Repairs] = {}
 regions: dict[str, advice.FreeRegion] = {}
 built: dict[str, advice.AsBuilt] = {}
 """All by the scene's name."""
@@ -33,7 +33,7 @@ def store(scene_name: str, found: jobs.PlaceMap | None) -> None:
     _store(maps, scene_name, found)
 
 
-def store_offers(scene_name: str, found: Mended | None) -> None:
+def store_offers(scene_name: str, found: Repairs | None) -> None:
     """Store suggestions, and have them shown; None discards those that are there."""
     _store(offers, scene_name, found)
 

@@ -1,9 +1,9 @@
-"""What would mend it: the smallest move of a sensor, or one more sensor.
+"""What would fix it: the smallest move of a sensor, or one more sensor.
 
 For each requirement that is not met, `suggestions` looks for the nearest placement that meets it.
 One design variable of the search is changed at a time, by small steps first; then one sensor (or
 linked pair) is put elsewhere within its range, the nearest places first. What is enough is made
-smaller as long as it stays enough, to `FINEST_STEP`. `mended` looks for one
+smaller as long as it stays enough, to `FINEST_STEP`. `repairs` looks for one
 more sensor, too, of the models that the rig has: it stands all over the vehicle's surface, not too
 low and hardly occluded, and looks to where the requirement fails. `with_blind_spot` makes a
 requirement of a place on the ground.
@@ -131,7 +131,7 @@ class Suggestion:
 
     @property
     def is_gain(self) -> bool:
-        """Whether less ground is blind: a blind place that moves elsewhere is not mended."""
+        """Whether less ground is blind: a blind place that moves elsewhere is not fixed."""
         was = self.before.blind_m2
         now = self.after.blind_m2
         return was is None or now is None or now < was
@@ -173,12 +173,12 @@ def with_blind_spot(study: Study, x: float, y: float) -> Study:
 def suggestions(study: Study) -> dict[str, Suggestion | None]:
     """Return by requirement that is not met the nearest placement found that meets it. None where
     no placement that was tried is enough."""
-    mender = _Repairer(study, (), None)
-    mender.move()
-    return {name: mender.moved.get(name) for name in mender.names}
+    repairer = _Repairer(study, (), None)
+    repairer.move()
+    return {name: repairer.moved.get(name) for name in repairer.names}
 
 
-def mended(
+def repairs(
     study: Study, names: Sequence[str] = (), watch: Watch | None = None
 ) -> dict[str, list[Suggestion]]:
     """Return by requirement that is not met what meets it: a move, and one more sensor.
@@ -187,18 +187,20 @@ def mended(
     sensor has that with the lowest entropy. Either may be missing, where nothing that was tried is
     enough. Of `names` alone, where there are some. `ScoreStopped` where `watch` says so.
     """
-    mender = _Repairer(study, names, watch)
+    repairer = _Repairer(study, names, watch)
 
     def move() -> None:
         with suppress(InputError):  # nothing may move: a sensor may be added
-            mender.move()
+            repairer.move()
 
     with threads().ThreadPoolExecutor(2) as pool:
         moving = pool.submit(move)
         if study.vehicle is not None:
-            mender.add()
+            repairer.add()
         moving.result()
-    return {n: [own[n] for own in (mender.moved, mender.added) if n in own] for n in mender.names}
+    return {
+        n: [own[n] for own in (repairer.moved, repairer.added) if n in own] for n in repairer.names
+    }
 
 
 def with_free_name(study: Study, sensor: Sensor) -> Sensor:

@@ -115,7 +115,7 @@ class ExplainAnswer:
 @dataclass(frozen=True, slots=True)
 class CheckAnswer:
     """A study held to its requirements, scenarios and limits. `met`: how many requirements are;
-    `unchecked`: why others have no verdict; `suggestions`: by requirement, what would mend it."""
+    `unchecked`: why others have no verdict; `suggestions`: by requirement, what would fix it."""
 
     met: int
     requirements: tuple[VerdictRow, ...]

@@ -119,15 +119,15 @@ def check_study(study: Study, args: argparse.Namespace, source: StudyFiles) -> A
 
 
 def suggested_for(job: SuggestJob) -> dict[str, list[Suggestion]]:
-    """Run a job that looks for what would mend something; nothing after Ctrl-C."""
+    """Run a job that looks for what would fix something; nothing after Ctrl-C."""
     with stop_at_first(job.stop):
         drive(job)
     return job.found or {}
 
 
 def suggestion_lines(name: str, found: Sequence[Suggestion]) -> list[str]:
-    """Return what would mend something as lines: each with where the sensors would be."""
-    none = "no move of one sensor, or linked pair, and no added one that was tried mends it"
+    """Return what would fix something as lines: each with where the sensors would be."""
+    none = "no move of one sensor, or linked pair, and no added one that was tried fixes it"
     return [f"{name}: {each.sentence} ({each.text})" for each in found] or [f"{name}: {none}"]
 
 

@@ -73,8 +73,8 @@ def explain(source: StudyFiles, args: argparse.Namespace) -> Answer:
     with_edges = args.measured_from is not None
     sampled = any(change.path == ("samples",) for change in read_changes(args.set))
     for option, is_idle, expected, found in (
-        ("--suggest", args.suggest and with_body, "--at X Y, a place to mend", "--body"),
-        ("--suggest", args.suggest and nowhere, "--at X Y, a place to mend", "none"),
+        ("--suggest", args.suggest and with_body, "--at X Y, a place to fix", "--body"),
+        ("--suggest", args.suggest and nowhere, "--at X Y, a place to fix", "none"),
         ("--body", with_body and nowhere, "--at X Y, where it stands", "none"),
         ("--heading", turned and not with_body, "--body NAME, which it turns", "none"),
         ("--samples", sampled and not nowhere, "no --at: a place has no sample", "--at"),
@@ -99,10 +99,10 @@ def explain(source: StudyFiles, args: argparse.Namespace) -> Answer:
         answer = ExplainAnswer(outlook={}, place=place.to_dict())
         if args.suggest:
             suggested = suggested_for(SuggestJob(study, spot=(at[0], at[1])))
-            mended = tuple(each.to_dict() for own in suggested.values() for each in own)
-            answer = replace(answer, suggestions=mended)
-            mends = [line for each in suggested.items() for line in suggestion_lines(*each)]
-            told += mends or [NOT_BLIND] * (not place.in_vehicle)
+            repairs = tuple(each.to_dict() for own in suggested.values() for each in own)
+            answer = replace(answer, suggestions=repairs)
+            fixes = [line for each in suggested.items() for line in suggestion_lines(*each)]
+            told += fixes or [NOT_BLIND] * (not place.in_vehicle)
         return answered(args, answer, told), DONE
     if with_edges:
         return _from_edges(study, args)

@@ -196,7 +196,7 @@ def _of_questions() -> dict[str, OptionRow]:
     at = "ask one place instead: x, y and perhaps z (else 0) in metres"
     steepest = "where this sensor gains most: along its surface, turned, and within 20 cm"
     measured = "with --sensor: how far it is from these edges of the vehicle; none: list the edges"
-    suggest = "say which small move, or one more sensor, would mend what is not seen"
+    suggest = "say which small move, or one more sensor, would fix what is not seen"
     body = "with --at: a test body there (child, adult, cyclist, car, pole, cone ...): m by sensor"
     preset = "a preset besides the study's requirements (--list); all: each one; any number"
     listed = "list requirement presets and scenarios, or show one preset"

@@ -19,7 +19,7 @@ from pe_core.study import RESULT, STUDY, StateInWeather, Study, load_study, load
 
 from .. import jobs
 from ..advice import Advice
-from ..known_defects import mended_since
+from ..known_defects import fixed_since
 from ..sweep import KeyChange, changed_study, read_changes
 from .run_job import More
 from .terminal import tell
@@ -78,7 +78,7 @@ class StudyFiles:
         data = load_study_data(Path(path))
         anywhere = getattr(args, "snap", False)
         folder = Path(path).parent
-        tell_mended_defects(folder)
+        tell_fixed_defects(folder)
         study = changed_study(data, changes, path, folder, starts_anywhere=anywhere)
         with naming_study(path):
             return with_options(study, args)
@@ -116,13 +116,13 @@ class StudyFiles:
 
 
 @not_noting_inputs()
-def tell_mended_defects(folder: Path) -> None:
-    """Print which defects the result in a study's folder may have that were mended since."""
+def tell_fixed_defects(folder: Path) -> None:
+    """Print which defects the result in a study's folder may have that were fixed since."""
     path = folder / RESULT
     if path.is_file():
         with suppress(InputError):  # another program's file of that name
             data = parse_json(path, read_bytes(path))
-            for line in mended_since(data if isinstance(data, dict) else {}):
+            for line in fixed_since(data if isinstance(data, dict) else {}):
                 tell(f"{path}: {line}")
 
 

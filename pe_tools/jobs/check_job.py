@@ -1,4 +1,4 @@
-"""The jobs of requirements: hold a study to them and its scenarios; look for what would mend it."""
+"""The jobs of requirements: hold a study to them and its scenarios; look for what would fix it."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -10,7 +10,7 @@ from pe_core.motion import DriveBy
 from pe_core.scoring.requirements import CheckStep, Verdict, checkable
 from pe_core.search import NUMBERED, Reading, dashboard
 from pe_core.study.study import Study
-from pe_core.study.suggestion import BLIND_SPOT, Suggestion, mended, with_blind_spot
+from pe_core.study.suggestion import BLIND_SPOT, Suggestion, repairs, with_blind_spot
 
 from .job import Job, Progress, begun
 
@@ -144,6 +144,6 @@ class SuggestJob(Job):
 
     def __iter__(self) -> Iterator[Progress]:
         self.found = yield from self._beside(
-            lambda watch: mended(self.study, self._names, watch), Progress("suggesting", 0.0)
+            lambda watch: repairs(self.study, self._names, watch), Progress("suggesting", 0.0)
         )
         yield Progress("done", 1.0)

@@ -1,4 +1,4 @@
-"""Words and warnings in the panel, the place that is asked about, and what mends what is odd."""
+"""Words and warnings in the panel, the place that is asked about, and what fixes what is odd."""
 
 import math
 
@@ -18,13 +18,13 @@ def told(scene):
     return [(row.subject or "", row.code) for row in scene.perception_entropy.result_warnings]
 
 
-def mend(scene, code):
+def fix(scene, code):
     """Press the button of a warning."""
     diagnostics.run_checks()
     rows = scene.perception_entropy.result_warnings
     row = next(each for each in rows if each.code == code)
     amount = (*row.amount, 0.0, 0.0, 0.0)[:3]
-    done = bpy.ops.pe.mend(fix=row.fix, subject=row.subject or "", amount=amount)
+    done = bpy.ops.pe.fix_warning(fix=row.fix, subject=row.subject or "", amount=amount)
     bpy.context.view_layer.update()
     return done
 
@@ -50,7 +50,7 @@ def test_a_sunk_vehicle_is_lifted_with_the_sensor_on_it(car):
 
     carry(car, sink)
     assert ("", "height") in told(car)
-    assert mend(car, "height") == {"FINISHED"}
+    assert fix(car, "height") == {"FINISHED"}
     assert bounds(car)[0][2] == pytest.approx(0.0, abs=1e-5)  # the lowest box's underside
     assert car.objects["roof"].location.z == pytest.approx(1.6, abs=1e-5)
     assert ("", "height") not in told(car)
@@ -66,7 +66,7 @@ def test_a_vehicle_that_lies_along_y_is_turned_with_the_sensor_on_it(car):
     carry(car, left)
     assert ("", "faces") in told(car)
     before = np.array(car.objects["roof"].location)
-    mend(car, "faces")
+    fix(car, "faces")
     low, high = bounds(car)
     assert high[0] - low[0] == pytest.approx(4.0, abs=1e-4)
     np.testing.assert_allclose(car.objects["roof"].location, turn @ before, atol=1e-5)
@@ -142,6 +142,6 @@ def test_a_vehicle_that_is_out_of_the_view_is_reported_by_name_and_can_be_shown(
     bpy.context.view_layer.update()
     (advice,) = [each for each in document.scene_advice(car) if each.code == "hidden_vehicle"]
     assert "Car is" in advice.text and told in advice.text
-    assert bpy.ops.pe.mend(fix=advice.fix) == {"FINISHED"}
+    assert bpy.ops.pe.fix_warning(fix=advice.fix) == {"FINISHED"}
     assert scenes.study().vehicle is not None
     assert not [each for each in document.scene_advice(car) if each.code == "hidden_vehicle"]

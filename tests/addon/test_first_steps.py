@@ -82,7 +82,9 @@ def test_a_mesh_of_z_up_imported_as_y_up_is_mended_by_one_button(car, quarter):
     rows = {row.code: row for row in car.perception_entropy.result_warnings}
     assert rows["not_centred"].fix == "move_vehicle"
     found = rows["on_side"]
-    assert bpy.ops.pe.mend(fix=found.fix, amount=(*found.amount, 0, 0, 0)[:3]) == {"FINISHED"}
+    assert bpy.ops.pe.fix_warning(fix=found.fix, amount=(*found.amount, 0, 0, 0)[:3]) == {
+        "FINISHED"
+    }
     for now, was in zip(points_of(("body", "cabin", "roof"), car), before, strict=True):
         assert now == pytest.approx(was, abs=1e-4)
     assert np.allclose(scenes.vehicle(vehicle).bounds, np.array(shape) - (0, 0, 0.2), atol=1e-5)

@@ -58,7 +58,7 @@ def test_an_overridden_vehicle_is_the_vehicle_and_can_be_turned(car, tmp_path):
     scene.perception_entropy.vehicle = own
     scenes.add_sensor("roof", "Velodyne VLP-16 Puck", location=(-0.43, 0.0, 1.8))
     assert_same(scenes.study(), expected)
-    assert bpy.ops.pe.mend(fix="turn_vehicle", amount=(180.0, 0.0, 0.0)) == {"FINISHED"}
+    assert bpy.ops.pe.fix_warning(fix="turn_vehicle", amount=(180.0, 0.0, 0.0)) == {"FINISHED"}
     low, high = scenes.study().vehicle.bounds
     assert (low[0], high[0]) == pytest.approx((-2.0, 2.0), abs=1e-5)
     assert (scenes.study().vehicle.triangles != expected.vehicle.triangles).any()

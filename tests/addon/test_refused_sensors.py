@@ -1,4 +1,4 @@
-"""A sensor that is refused says what mends it, and a button does; a typed model is understood."""
+"""A sensor that is refused says what fixes it, and a button does; a typed model is understood."""
 
 import bpy
 import numpy as np
@@ -32,7 +32,7 @@ def test_scale_and_mirroring_are_mended_by_the_button(roof, scale):
     roof.scale = scale
     said = refusal(roof)
     assert "Ctrl-A > Scale" in said
-    assert bpy.ops.pe.mend(fix="apply_scale", subject="roof") == {"FINISHED"}
+    assert bpy.ops.pe.fix_warning(fix="apply_scale", subject="roof") == {"FINISHED"}
     assert refusal(roof) == "" and tuple(roof.scale) == pytest.approx((1, 1, 1), abs=1e-6)
     after = np.array(roof.matrix_world)
     assert after[:3, 3] == pytest.approx(before[:3, 3], abs=1e-6)

@@ -392,7 +392,7 @@ def test_what_is_odd_is_told_with_a_button_that_mends_it(car):
         change(eye)
         row = told()[code]
         amount = (*row.amount, 0.0, 0.0, 0.0)[:3]
-        assert bpy.ops.pe.mend(fix=row.fix, subject=row.subject or "", amount=amount)
+        assert bpy.ops.pe.fix_warning(fix=row.fix, subject=row.subject or "", amount=amount)
         assert not told(), code
     assert scenes.study().rig["eye"].pose.position == pytest.approx((0.7, 0.0, 1.55), abs=1e-5)
     curve = car.objects["roof"].driver_add("location", 0)
@@ -400,5 +400,5 @@ def test_what_is_odd_is_told_with_a_button_that_mends_it(car):
     scenes.depsgraph().update()
     assert told()["driver"].subject == "roof"
     for factor in (1e30, 1e-30, 0.0, -1.0, math.nan, math.inf):
-        with pytest.raises(RuntimeError, match="mend: amount: expected a"):
-            bpy.ops.pe.mend(fix="scale_vehicle", amount=(factor, 0.0, 0.0))
+        with pytest.raises(RuntimeError, match="fix: amount: expected a"):
+            bpy.ops.pe.fix_warning(fix="scale_vehicle", amount=(factor, 0.0, 0.0))

@@ -1,4 +1,4 @@
-"""*What Would Mend It?* in Blender: as the command line says it, ghosts, and taking it."""
+"""*What Would Fix It?* in Blender: as the command line says it, ghosts, and taking it."""
 
 import json
 
@@ -16,13 +16,13 @@ from tests.addon.layouts import Layout, Window, drawn
 SPOT = (0.0, 1.7, 0.0)
 
 
-def mended(car, **options):
+def repairs(car, **options):
     assert bpy.ops.pe.suggest(**options) == {"FINISHED"}
     return where_map.offers.get(car.name)
 
 
 def test_the_window_says_what_pe_says_of_a_blind_place(car, tmp_path):
-    offers = mended(car, point=SPOT)
+    offers = repairs(car, point=SPOT)
     assert offers.found and offers.of == pytest.approx(SPOT)
     path = tmp_path / "car.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
@@ -40,7 +40,7 @@ def test_a_failed_requirement_is_mended_as_the_job_says(car):
     name = car.perception_entropy.requirements[0].name
     job = jobs.SuggestJob(scenes.study(), (name,))
     assert list(job)
-    offers = mended(car, requirement=name)
+    offers = repairs(car, requirement=name)
     wanted = [each.sentence for own in job.found.values() for each in own]
     assert ([each.sentence for each in offers.found] if offers else []) == wanted
     with pytest.raises(RuntimeError, match="nothing"):
@@ -48,9 +48,9 @@ def test_a_failed_requirement_is_mended_as_the_job_says(car):
 
 
 def test_ghosts_stand_where_the_sensors_would_be_until_the_rig_changes(car):
-    offers = mended(car, point=SPOT)
+    offers = repairs(car, point=SPOT)
     shape = scenes.drawn(car)["ghosts"][""]
-    assert shape.legend.title == "Would mend it"
+    assert shape.legend.title == "Would fix it"
     assert {n for each in offers.found for n in each.moved} <= {tag.text for tag in shape.labels}
     where_map.discard_outdated()
     assert car.name in where_map.offers
@@ -64,7 +64,7 @@ def test_the_panel_asks_and_tells(car):
     assert location_query.answer(car) is not None
     answer = panels.score_details.explain
     assert "pe.suggest" in drawn(answer, **vars(Window(car))).texts("operator")
-    offers = mended(car, point=SPOT)
+    offers = repairs(car, point=SPOT)
     layout = Layout()
     draw_offers(layout, Window(car), point=offers.of)
     text = " ".join(layout.texts("label"))

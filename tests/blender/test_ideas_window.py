@@ -1,4 +1,4 @@
-"""Variants, a place asked about and what mends it, in a real window: by clicks and keys alone."""
+"""Variants, a place asked about and what fixes it, in a real window: by clicks and keys alone."""
 
 import pytest
 
@@ -64,7 +64,7 @@ def test_save_move_come_back_ask_the_ground_and_mend_what_is_blind_by_clicks(win
     window.point_at_view()
     window.key("Escape")
     window.wait_until(f"{MODE} is None")
-    assert not window.state["running"], "what would mend it waits until it is asked"
+    assert not window.state["running"], "what would fix it waits until it is asked"
     window.press("pe.suggest")
     window.wait_until(f"{OFFERS} and {OFFERS}.found", EFFECT_TIMEOUT_S)
     window.screenshot(screenshots / "window_suggest.png")

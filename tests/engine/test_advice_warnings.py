@@ -1,4 +1,4 @@
-"""Warnings: each is told where it is due, and nowhere else; its fix mends what it warns of."""
+"""Warnings: each is told where it is due, and nowhere else; its fix fixes what it warns of."""
 
 import math
 from pathlib import Path
@@ -245,8 +245,8 @@ def test_sunk_floating_or_beside_the_axis(vehicles):
             if code == "height":
                 assert ("in the ground" in found.text) == (shift[2] < 0.0)
             assert found.amount == pytest.approx(np.negative(shift), abs=0.01)
-            mended = moved(moved(vehicle, shift=shift), shift=found.amount)
-            assert (None, code) not in told(mended)
+            fixed = moved(moved(vehicle, shift=shift), shift=found.amount)
+            assert (None, code) not in told(fixed)
         for little in ((0, 0, -0.1), (0, 0, 0.25), (0.9, 0, 0), (0, 0.04, 0), (0, -0.04, 0)):
             codes = {code for _, code in told(moved(vehicle, shift=little))}
             assert not codes & {"height", "not_centred"}, little

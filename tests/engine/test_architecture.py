@@ -350,7 +350,7 @@ def test_sections_of_the_page_are_found_by_their_table_alone():
 
 
 def test_the_settings_of_mutants_name_files_tests_and_lines_that_there_are():
-    """Whoever renames or moves a line mends tests/mutants.toml, or drops its entry."""
+    """Whoever renames or moves a line fixes tests/mutants.toml, or drops its entry."""
     settings = tomllib.loads((CHECKOUT / "tests/mutants.toml").read_text("utf-8"))
     missing = []
     for name, room in settings["room"].items():

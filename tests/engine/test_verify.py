@@ -30,7 +30,7 @@ MADE_UP = """
 [[defect]]
 id = "made-up"
 first = "0.0.1"
-mended = "0.1.0"
+fixed = "0.1.0"
 touches = ["requirements"]
 what = "a made-up defect"
 link = "results.md"
@@ -151,7 +151,7 @@ def test_a_wrong_case_has_its_line_and_status_3(monkeypatch, capsys, tmp_path):
 def test_a_result_that_a_mended_defect_touches_says_so(
     made, touched, told, monkeypatch, capsys, tmp_path
 ):
-    """A made-up row: mended by 0.1.0, in results with requirements of the version before."""
+    """A made-up row: fixed by 0.1.0, in results with requirements of the version before."""
     table = tmp_path / "defects.toml"
     table.write_text(MADE_UP)
     monkeypatch.setattr(known_defects, "TABLE", table)

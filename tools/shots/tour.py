@@ -78,10 +78,10 @@ def coloured(camera: Camera) -> None:
     camera.frame(STILL_MS)
 
 
-def mended(camera: Camera) -> None:
-    """A click on blind ground, and what would mend it."""
+def repaired(camera: Camera) -> None:
+    """A click on blind ground, and what would fix it."""
     stage = camera.stage
-    camera.caption = "Click blind ground: what hides it, and what would mend it, as ghosts."
+    camera.caption = "Click blind ground: what hides it, and what would fix it, as ghosts."
     stage.press("pe.ask_place")
     stage.settle()
     stage.click(*stage.place_of(BEHIND_SEAT))
@@ -162,4 +162,4 @@ def driven(camera: Camera) -> None:
     camera.film("tour", (0, 32, 1600, 874), WIDTH)
 
 
-TOUR = Reel("sedan.blend", (dragged, surrounded, coloured, mended, searched, driven))
+TOUR = Reel("sedan.blend", (dragged, surrounded, coloured, repaired, searched, driven))

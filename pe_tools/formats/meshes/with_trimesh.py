@@ -1,4 +1,4 @@
-"""STL and binary glTF, read by trimesh; what it would read wrongly is mended or refused before."""
+"""STL and binary glTF, read by trimesh; what it would read wrongly is fixed or refused before."""
 
 import io
 import re

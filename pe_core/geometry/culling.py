@@ -6,6 +6,7 @@ by the planes through the point and each edge.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -135,7 +136,7 @@ class VisibleBoxes:
         return VisibleBoxes(self.number[index], u, v, self.near[index])
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class FaceLook:
     """View of a mesh from a point through one face of the cube. `origin` (3,) is the point in the
     frame of the mesh [m]."""
@@ -144,21 +145,24 @@ class FaceLook:
     origin: Floats
     face: CubeFace
 
+    @cached_property
+    def _widest(self) -> VisibleBoxes:
+        """The boxes of the level that searches begin at."""
+        level = self.tree.entry_level
+        return self._shown(np.arange(len(self.tree.boxes[level])), level)
+
     def ends(self) -> Ends | None:
         """Return the range of u and of v that the mesh may cover; None if it is not visible."""
-        if not self.tree.boxes:
+        if not self.tree.boxes or not len(self._widest.number):
             return None
-        boxes = self._shown(np.arange(len(self.tree.boxes[-1])), len(self.tree.boxes) - 1)
-        if not len(boxes.number):
-            return None
-        u = boxes.u
-        v = boxes.v
+        u = self._widest.u
+        v = self._widest.v
         return (float(u[0].min()), float(u[1].max())), (float(v[0].min()), float(v[1].max()))
 
     def largest(self, count_rays: CountRays | Select, min_count: int) -> tuple[int, VisibleBoxes]:
         """Return the highest level with `min_count` boxes with rays, and these, nearest first."""
-        level = len(self.tree.boxes) - 1
-        boxes = self._shown(np.arange(len(self.tree.boxes[level])), level)
+        level = self.tree.entry_level
+        boxes = self._widest
         while True:
             boxes = boxes[np.flatnonzero(count_rays(boxes.u, boxes.v))]
             if level == 0 or len(boxes.number) >= min_count:

@@ -26,6 +26,9 @@ MIXERS = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9)
 """Odd factors of the hash of a point (from the golden ratio, and two primes of xxHash)."""
 BRANCH = 8
 """Number of triangles in a box of the lowest level, and of boxes in a box of the next level."""
+MAX_ENTRY_BOXES = 512
+"""Levels with no more boxes than this take about as long as levels with one: searches of directions
+begin at the lowest of them."""
 MORTON_BITS = 20
 """Bits of a coordinate in the Morton key, which has 64 bits for three coordinates."""
 MIN_EXTENT_M = 1e-300
@@ -114,6 +117,12 @@ class TriangleTree:
     def edges(self) -> MeshEdges:
         """Edges of the triangles, with a number that is the same for a shared edge."""
         return MeshEdges(self.triangles)
+
+    @property
+    def entry_level(self) -> int:
+        """The level of boxes that searches begin at; -1 without triangles."""
+        few = (k for k, boxes in enumerate(self.boxes) if len(boxes) <= MAX_ENTRY_BOXES)
+        return next(few, -1)
 
     def below(self, boxes: Ints, level: int) -> Ints:
         """Return the numbers of the boxes (for level 0: triangles) in boxes of a level."""

@@ -57,7 +57,7 @@ def _windows(
 ) -> Iterator[BeamWindows]:
     """Yield windows that together cover every visible triangle of the vehicle."""
     tree = mesh.tree
-    level = len(mesh.tree.boxes) - 1
+    level = tree.entry_level
     nodes = np.arange(len(tree.boxes[level])) if level >= 0 else np.zeros(0, np.int64)
     while level >= 0 and len(nodes):
         low, high = tree.boxes[level][nodes].transpose(1, 0, 2) - mesh.origin

@@ -118,7 +118,7 @@ class TriangleTree:
         """Edges of the triangles, with a number that is the same for a shared edge."""
         return MeshEdges(self.triangles)
 
-    @property
+    @cached_property
     def entry_level(self) -> int:
         """The level of boxes that searches begin at; -1 without triangles."""
         few = (k for k, boxes in enumerate(self.boxes) if len(boxes) <= MAX_ENTRY_BOXES)
@@ -132,7 +132,7 @@ class TriangleTree:
 
     def near(self, point: Floats, distance: float) -> Ints:
         """Return ascending indices (N,) of triangles in boxes within `distance` [m] of a point."""
-        level = len(self.boxes) - 1
+        level = self.entry_level
         if level < 0:
             return np.zeros(0, np.int64)
         boxes_near = np.arange(len(self.boxes[level]))

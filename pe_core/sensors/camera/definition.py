@@ -39,6 +39,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Floats, Singles
+from ...geometry.bins import blocks
 from ...geometry.poses import Pose, dot, rotation_matrix
 from ...scene.rig import Sensor
 from ...scene.vehicle import Vehicle, VisibleMesh
@@ -74,6 +75,8 @@ BALL = math.sqrt(3.0) / 2.0  # Radius of the ball round a cube, in sides
 RIGHT_BEHIND = math.pi - 1e-3
 """A cube whose ball reaches the direction opposite to the view has no outline [rad]."""
 CUBES_AT_ONCE = 4096
+CLIPPED_AT_ONCE = 1024
+"""Cubes whose faces are clipped together: their arrays fit the processor's cache."""
 Mask = NDArray[np.bool_]
 
 
@@ -105,8 +108,9 @@ def clipped_pixel_area(camera: Camera, axes: Floats, offsets: Floats, side: floa
     depth, left, up = in_sensor_frame(axes, offsets)
     area = np.zeros(len(offsets))
     near = np.flatnonzero(in_view(camera, depth, left, up, side=side))
-    if len(near):
-        area[near] = _area_in_view(camera, axes, offsets[near], side)
+    for block in blocks(len(near), CLIPPED_AT_ONCE):
+        some = near[block]
+        area[some] = _area_in_view(camera, axes, offsets[some], side)
     return area
 
 
@@ -146,27 +150,36 @@ def _area_in_view(camera: Camera, axes: Floats, offsets: Floats, side: float) ->
     half = side / 2.0
     reach = half * np.abs(axes[:, 0]).sum() + IN_FRONT * side
     depth, left, up = in_sensor_frame(axes, offsets)
-    area = np.zeros(len(offsets))
-    for k in range(3):  # row k of the axes: depth, left and up of ground axis k
-        toward = -np.sign(offsets[:, k]) * half  # the face on the camera's side
-        face = (depth + toward * axes[k, 0], left + toward * axes[k, 1], up + toward * axes[k, 2])
-        i = (k + 1) % 3
-        j = (k + 2) % 3
-        corners = [
-            _project(camera, face, (a * half) * axes[i] + (b * half) * axes[j]) for a, b in QUAD
-        ]
-        total = np.zeros(len(offsets))
-        for (x0, y0), (x1, y1) in zip(corners, corners[1:] + corners[:1], strict=True):
-            total += clamped_integral(
-                x0, y0, x1, y1, width=float(camera.width), height=float(camera.height)
-            )
-        area += np.where(np.abs(offsets[:, k]) > half, np.abs(total), 0.0)
+    across = np.array([_face_corners(axes, k, half) for k in range(3)])
+    toward = -np.sign(offsets.T)[:, None] * half  # to the face on the camera's side, by axis
+    corners = [
+        center + toward * axes[:, n, None, None] + across[..., n, None]
+        for n, center in enumerate((depth, left, up))
+    ]
+    x, y = _project(camera, *corners)  # (3 faces, 4 corners, V)
+    edges = clamped_integral(
+        x,
+        y,
+        np.roll(x, -1, axis=1),
+        np.roll(y, -1, axis=1),
+        width=float(camera.width),
+        height=float(camera.height),
+    )
+    faces = np.abs(((edges[:, 0] + edges[:, 1]) + edges[:, 2]) + edges[:, 3])
+    seen = np.where(np.abs(offsets.T) > half, faces, 0.0)
+    area = (seen[0] + seen[1]) + seen[2]
     return np.where((depth > reach) & (area > ROUNDING_PX), area, 0.0)
 
 
-def _project(camera: Camera, face: SensorAxes, corner: Floats) -> tuple[Floats, Floats]:
-    """Image position [px], right and down, of the faces' corner at (3,) from their centres."""
-    depth, left, up = (center + along for center, along in zip(face, corner, strict=True))
+def _face_corners(axes: Floats, k: int, half: float) -> list[Floats]:
+    """Corners of a face across ground axis k from its middle: depth, left and up of each [m]."""
+    i = (k + 1) % 3
+    j = (k + 2) % 3
+    return [(a * half) * axes[i] + (b * half) * axes[j] for a, b in QUAD]
+
+
+def _project(camera: Camera, depth: Floats, left: Floats, up: Floats) -> ImagePoints:
+    """Image positions of points."""
     lens = camera.projection
     safe = np.where(depth > 0.0, depth, 1.0)
     scale = lens.fx / safe

@@ -26,6 +26,8 @@ from .model import lidar_of
 from .occlusion import occlusion_candidates
 
 Rpy = tuple[float, float, float]
+FEW_BEAMS = 0.2
+"""Up to this share of its beams a LiDAR has only those rotated that are asked for."""
 
 
 @dataclass(frozen=True)
@@ -92,12 +94,20 @@ class RotatedBeams:
 
     def take(self, beams: Ints) -> Floats:
         """Return the unit directions (N, 3) of the beams with these indices (N,)."""
+        if self._few(beams):
+            return np.stack(beam_axes(self.sensor, beams), axis=-1)
         return np.stack([np.take(w, beams) for w in self._axes], axis=-1)
 
     def components(self, beams: Ints) -> list[Floats]:
         """Return the directions of beams (N,) as three arrays (N,), one an axis, without zeros.
         This is the form in which kernels divide by them (`definition.without_zeros`)."""
+        if self._few(beams):
+            return [without_zeros(w) for w in beam_axes(self.sensor, beams)]
         return [np.take(w, beams) for w in self._components]
+
+    def _few(self, beams: Ints) -> bool:
+        """Whether to rotate only these beams: fewer than take as long as to rotate all."""
+        return len(beams) < FEW_BEAMS * lidar_of(self.sensor).beam_count
 
 
 @dataclass(frozen=True)

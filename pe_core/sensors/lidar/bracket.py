@@ -76,7 +76,9 @@ class SlopeBounds:
     def bins(self, slopes: Singles) -> NDArray[np.intp]:
         """Return the bin of each slope."""
         scaled = (slopes - np.float32(self.low)) * np.float32(self.scale)
-        return np.clip(scaled, FIRST_BIN, LAST_BIN).astype(np.intp)
+        np.maximum(scaled, FIRST_BIN, out=scaled)
+        np.minimum(scaled, LAST_BIN, out=scaled)
+        return scaled.astype(np.intp)
 
 
 @dataclass(frozen=True, slots=True)

@@ -70,9 +70,12 @@ def beam_directions(sensor: Sensor) -> Floats:
     return rotate(sensor.pose.ground_from_sensor, lidar_of(sensor).directions)
 
 
-def beam_axes(sensor: Sensor) -> list[Floats]:
-    """Return the components of `beam_directions`, an array (B,) an axis; the same bits."""
+def beam_axes(sensor: Sensor, beams: Ints | None = None) -> list[Floats]:
+    """Return the components of `beam_directions`, an array (B,) an axis; the same bits. Given the
+    indices of beams (N,), those of these alone."""
     x, y, z = lidar_of(sensor).direction_axes
+    if beams is not None:
+        x, y, z = (w.take(beams) for w in (x, y, z))
     axes = []
     for row in sensor.pose.ground_from_sensor:
         axis = row[0] * x

@@ -40,8 +40,9 @@ def occlusion_candidates(
     Fast because windows are added to a summed-area table at four corners each, whatever their size.
     """
     marks = np.zeros((len(lattice.channels) + 1, 2 * lattice.count + 1), np.int32)
-    for windows in _windows(mesh, ground_from_sensor, lattice):
-        _mark(marks, windows)
+    windows = list(_windows(mesh, ground_from_sensor, lattice))
+    if windows:
+        _mark(marks, np.concatenate(windows, axis=1))
     once = marks[:, : lattice.count]
     again = marks[:, lattice.count : -1]
     again[:, 0] += once.sum(axis=1)  # windows that go on into a second turn

@@ -178,11 +178,14 @@ def _any_in_window(flags: NDArray[np.bool_], bounds: Bracket, voxels: Ints) -> N
     for row, before in zip(sums[1:], sums, strict=False):
         row += before  # five times as fast as np.cumsum along the first axis
     np.add(sums[:, 1 : width + 1], sums[:, width : width + 1], out=sums[:, width + 1 :])
-    r0 = bounds.row[voxels]
-    c0 = bounds.column[voxels] % width
-    r1 = r0 + bounds.rows[voxels]
-    c1 = c0 + bounds.columns[voxels]
-    any_flag: NDArray[np.bool_] = sums[r1, c1] - sums[r0, c1] > sums[r1, c0] - sums[r0, c0]
+    row, rows, column, columns = (
+        w.take(voxels) for w in (bounds.row, bounds.rows, bounds.column, bounds.columns)
+    )
+    first = row * sums.shape[1] + column % width
+    last = first + rows * sums.shape[1]
+    flat = sums.reshape(-1)
+    before = flat.take(last) - flat.take(first)
+    any_flag: NDArray[np.bool_] = flat.take(last + columns) - flat.take(first + columns) > before
     return any_flag
 
 

@@ -53,10 +53,10 @@ class OcclusionMap:
         self._look = look
         self.near = np.full(raster.count**2, np.inf, np.float32)
         self.far = np.full(raster.count**2, np.inf, np.float32)
-        boxes = look.largest(raster.touches, len(look.tree.number))[1].number  # all of them
+        boxes = look.largest(raster.touches, len(look.tree.number))[1]  # all of them
         sheets = [_Sheet(raster, side, self._look) for side in (1.0, -1.0)]
-        for start in range(0, len(boxes), BOXES_AT_ONCE):
-            some = boxes[start : start + BOXES_AT_ONCE]
+        for start in range(0, len(boxes.number), BOXES_AT_ONCE):
+            some = boxes[slice(start, start + BOXES_AT_ONCE)]
             targets = Targets(self._look.triangles(some, raster.touches))
             for pairs in _in_bins(targets, self._look, raster):
                 np.minimum.at(self.near, pairs.bin, pairs.near)
@@ -89,7 +89,7 @@ def _side(targets: Targets) -> Floats:
 
 def _in_bins(targets: Targets, look: FaceLook, raster: Raster) -> Iterator[_EdgePairs]:
     """Yield all pairs of triangles and bins, in blocks."""
-    spans = targets.spans(look.face, raster, np.ones(len(targets.offset), bool))
+    spans = targets.spans(look, raster, np.ones(len(targets.offset), bool))
     shown = _Depths(targets, look, raster)
     counts = spans.last - spans.first + 1
     ends = np.cumsum(counts) // PAIRS_AT_ONCE
@@ -110,7 +110,7 @@ class _Depths:
         known = self._side != 0.0
         scale = self._side / np.where(known, np.abs(targets.offset), 1.0)
         self._slope = np.stack(look.face.split(targets.normal)) * scale  # 1 / depth over (1, u, v)
-        self._edges = targets.sides(look.face)
+        self._edges = targets.sides(look)
         self._slack = targets.reach * SIDE_MARGIN
         depth, _, _ = look.face.split(targets.triangles.corners.transpose(2, 1, 0))
         self._least = np.maximum(corner_min(depth), 0.0)

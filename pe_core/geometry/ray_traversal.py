@@ -130,6 +130,11 @@ class TriangleTree:
         inner = (boxes[:, None] * BRANCH + np.arange(BRANCH)).reshape(-1)
         return inner if not len(inner) or inner.max() < total else inner[inner < total]
 
+    def counts_below(self, boxes: Ints, level: int) -> Ints:
+        """Return the number of boxes (for level 0: triangles) in each of some boxes of a level."""
+        total = len(self.boxes[level - 1]) if level else len(self.triangles)
+        return np.minimum(total - boxes * BRANCH, BRANCH)
+
     def near(self, point: Floats, distance: float) -> Ints:
         """Return ascending indices (N,) of triangles in boxes within `distance` [m] of a point."""
         level = self.entry_level

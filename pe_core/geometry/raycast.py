@@ -1,7 +1,8 @@
 """First hit of many rays from one point on a triangle mesh.
 
 All rays of a sensor start at the same point, so a box or a triangle covers a fixed range of
-directions. On each face of a cube round the point, rays are sorted into bins (`BinnedRays`). Boxes
+directions. On the faces of a cube round the point, rays are sorted into bins (`BinnedRays`): all
+faces at once, side by side, unless there are so many rays that a face each is as fast. Boxes
 of the mesh's tree with rays in their range are opened, nearest first. Their triangles are tested
 against the rays in the bins that they may cover. If there are many more triangles than rays, rays
 are followed down the tree one by one in boxes with few rays (`ray_traversal`). A ray is finished
@@ -20,7 +21,7 @@ from numpy.typing import NDArray
 
 from ..base.arrays import Floats, Ints
 from .bins import FACES, Raster, RowSpans, Spans, blocks, count_up, row_spans, stable_order
-from .culling import Ends, FaceLook, Facing, Targets, VisibleBoxes, min_distance
+from .culling import FACE_STEP, Ends, FaceLook, Facing, Targets, VisibleBoxes, min_distance
 from .ray_traversal import RayBoxes, RayWalk, TriangleTree
 
 MAX_BINS = 1024  # Maximum number of bins along a side
@@ -32,8 +33,12 @@ PAIRS_AT_ONCE = 1 << 15
 MANY = np.iinfo(np.int64).max
 """A number larger than any index or count."""
 RAYS_AT_ONCE = 1 << 18  # Maximum rays that are cast at once, to limit memory
-MAX_FOLLOWED = 256
+MAX_FOLLOWED = 192
 """Rays up to this number are followed down the tree one by one: sorting them would take longer."""
+MAX_ON_A_STRIP = 1 << 14
+"""Rays up to this number are cast through all faces at once, more of them face by face: their bins
+are square then."""
+NOT_VISIBLE: Ends = (np.inf, -np.inf), (np.inf, -np.inf)
 FINE = 16
 """Ratio of triangles to rays above which rays are followed down the tree one by one."""
 MIN_BOXES_TO_SORT = 256
@@ -48,14 +53,13 @@ MAX_BOXES = 1 << 13  # Maximum boxes whose triangles are tested at once, to limi
 
 class BinnedRays:
     """Rays in the bins of a raster that covers exactly their directions. `ray` (R,) are the rays'
-    numbers, `u` and `v` (R,) their directions on the face; `triangles` is the number of triangles
-    of the mesh."""
+    numbers, `u` and `v` (R,) their directions on the faces of the look at the mesh."""
 
-    def __init__(self, ray: Ints, u: Floats, v: Floats, directions: Floats, triangles: int) -> None:
+    def __init__(self, ray: Ints, u: Floats, v: Floats, directions: Floats, look: FaceLook) -> None:
         along = np.sqrt(len(ray))
-        fine = max(along, min(FINER * along, np.sqrt(triangles) / 2.0))
-        side = 2 ** int(np.ceil(np.log2(fine + 1.0)))
-        self._triangles = triangles
+        fine = max(along, min(FINER * along, np.sqrt(len(look.tree.number)) / 2.0))
+        side = 2 ** int(np.ceil(np.log2(fine * np.sqrt(len(look.faces)) + 1.0)))
+        self._look = look
         across, down = ((float(w.min()), float(w.max())) for w in (u, v))
         self.raster = Raster(across, down, min(side, MAX_BINS))
         n = self.raster.count
@@ -73,20 +77,21 @@ class BinnedRays:
         self._sums = sums.reshape(-1)
 
     @classmethod
-    def within(cls, look: FaceLook, ends: Ends, d: Floats, ray: Ints) -> "BinnedRays | None":
-        """Return the rays that pass a face within a rectangle; None if there are none. `d` (3, B)
-        are the directions of all rays, `ray` the numbers of those that pass the face."""
-        depth, u, v = (w[ray] for w in look.face.split(d))
-        u = u / depth
+    def within(cls, look: FaceLook, d: Floats, ray: Ints, side: Ints) -> "BinnedRays | None":
+        """Return the rays that may meet the mesh; None if there are none. `d` (3, B) are the
+        directions of all rays, `ray` the numbers of those that pass a face of the look, `side`
+        which."""
+        here = d[:, ray]
+        depth, u, v = look.split(here, side)
+        u = u / depth + FACE_STEP * side
         v = v / depth
-        (u0, u1), (v0, v1) = ends
+        ends = [NOT_VISIBLE if each is None else each for each in look.ends()]
+        (u0, u1), (v0, v1) = np.array(ends).transpose(1, 2, 0)[:, :, side]
         index = np.flatnonzero((u >= u0) & (u <= u1) & (v >= v0) & (v <= v1))
         ray = ray[index]
-        return (
-            cls(ray, u[index], v[index], d[:, ray], triangles=len(look.tree.number))
-            if len(ray)
-            else None
-        )
+        if not len(ray):
+            return None
+        return cls(ray, u[index], v[index], here[:, index], look=look)
 
     def but_nearer(self, distance: Floats, than: float) -> "BinnedRays | None":
         """Return the rays without a hit nearer than `than` [m], None if there are none; all if few
@@ -96,13 +101,8 @@ class BinnedRays:
             return None
         if len(left) > SORTING_SHARE * len(self.ray):
             return self
-        return BinnedRays(
-            self.ray[left],
-            self.u[left],
-            self.v[left],
-            self.directions[:, left],
-            triangles=self._triangles,
-        )
+        directions = self.directions[:, left]
+        return BinnedRays(self.ray[left], self.u[left], self.v[left], directions, look=self._look)
 
     def count_in(self, u: Spans, v: Spans) -> Ints:
         """Return the number of rays in the bins of each rectangle, from cumulative sums."""
@@ -196,11 +196,12 @@ class VisibleTriangles:
         side = np.where(y >= z, backward[1] + np.int8(2), backward[2] + np.int8(4))
         passed = np.where((x >= y) & (x >= z), backward[0], side)  # index in `FACES`
         walk = RayWalk(self.tree, self.origin, d)
-        for number, face in enumerate(FACES):
-            ray = np.flatnonzero(passed == number)
-            look = FaceLook(self.tree, self.origin, face)
-            ends = look.ends() if len(ray) else None
-            rays = None if ends is None else BinnedRays.within(look, ends, d, ray)
+        present = np.flatnonzero(np.bincount(passed, minlength=len(FACES)))
+        together = len(passed) <= MAX_ON_A_STRIP
+        for numbers in [present] if together else present[:, None]:
+            ray = np.flatnonzero(np.isin(passed, numbers))
+            look = FaceLook(self.tree, self.origin, tuple(FACES[k] for k in numbers.tolist()))
+            rays = BinnedRays.within(look, d, ray, np.searchsorted(numbers, passed[ray]))
             if rays is not None:
                 _cast(look, rays, walk, hits)
 
@@ -219,7 +220,7 @@ def _cast(look: FaceLook, rays: BinnedRays, walk: RayWalk, hits: Hits) -> None:
             boxes = boxes[np.flatnonzero(unfinished.any_in(boxes.u, boxes.v))]
         few, many = look.opened(boxes[:count], level, rays.count_in, FEW_RAYS if fine else 0)
         for some in blocks(len(many.number), MAX_BOXES):
-            _scatter(look.triangles(many.number[some], rays.any_in), look, rays, hits)
+            _scatter(look.triangles(many[some], rays.any_in), look, rays, hits)
         if fine:
             starts = [rays.ray_boxes(some, hits.distance) for some in few]
             walk.follow(starts, hits.distance, partial(_keep, hits))
@@ -235,7 +236,7 @@ def _scatter(triangles: Facing, look: FaceLook, rays: BinnedRays, hits: Hits) ->
     near = near[order]
     u = targets.triangles.u
     v = targets.triangles.v
-    spans = targets.spans(look.face, rays.raster, rays.count_in(u, v) > MIN_RAYS_TO_CUT)
+    spans = targets.spans(look, rays.raster, rays.count_in(u, v) > MIN_RAYS_TO_CUT)
     first, count = rays.in_bins(spans)
     with_rays = np.flatnonzero(count)
     item = spans.item[with_rays]

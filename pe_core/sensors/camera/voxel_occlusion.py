@@ -106,7 +106,7 @@ class VoxelOcclusion:
         """Return the occlusion on one of the four sides; made when the first voxel needs it."""
         with self._lock:  # threads share the planes
             if face not in self._faces:
-                look = FaceLook(self._seen.seen.tree, self._seen.seen.origin, face)
+                look = FaceLook(self._seen.seen.tree, self._seen.seen.origin, (face,))
                 kind = AcrossX if face.axes[0] == 0 else AlongX
                 self._faces[face] = kind(look, _view(self._corners, face), self._offsets)
             return self._faces[face]
@@ -143,7 +143,7 @@ class FaceOcclusion:
     """The occlusion of voxels in the directions of one side of the cube round the camera."""
 
     def __init__(self, look: FaceLook, view: Ends, offsets: list[Floats]) -> None:
-        self._ends = look.ends()
+        (self._ends,) = look.ends()
         self._offsets = offsets
         self._cover = None if self._ends is None else _cover(look, self._ends, view, offsets)
         if self._cover is not None:

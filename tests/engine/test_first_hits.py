@@ -96,12 +96,13 @@ MESHES = {f.__name__: f for f in (soup, slivers, coincident, edge_on, lattice)}
 
 
 def assert_same(triangles, directions):
-    """Of rays that are sorted, and of rays that are followed one by one from the start."""
+    """Of rays followed one by one from the start, and of sorted ones: face by face, all at once."""
     mesh = VisibleTriangles(TriangleTree(triangles), np.zeros(3))
     distance, face = every_triangle(triangles, directions)
-    for followed in (raycast.MANY, 0):
+    for followed, on_a_strip in ((raycast.MANY, 0), (0, 0), (0, raycast.MANY)):
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(raycast, "MAX_FOLLOWED", followed)
+            patch.setattr(raycast, "MAX_ON_A_STRIP", on_a_strip)
             hits = mesh.first_hit(directions)
         assert hits.distance.tobytes() == distance.tobytes()
         assert hits.face.tolist() == face.tolist()

@@ -1,6 +1,7 @@
 """``python -m pe_tools`` and the script ``pe``: Ctrl-C is answered from the start. Nothing is
 imported on top that takes long."""
 
+import gc
 import os
 import signal
 import sys
@@ -8,11 +9,16 @@ from types import FrameType
 
 from .versions import versions_text
 
+OBJECTS_TO_COLLECT = 100_000
+"""New objects after which Python looks for cycles among them. By default it does so after 700, and
+through all that is imported ten times, which stays."""
+
 
 def main() -> None:
     """Run the command and exit with its status."""
     if sys.argv[1:] == ["--version"] and _printed(versions_text()):
         return
+    gc.set_threshold(OBJECTS_TO_COLLECT)
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, _leave)
     from .cli import leave

@@ -253,12 +253,12 @@ class FaceLook:
             return number, np.zeros(len(number), np.int64)
         return number, np.repeat(boxes.side, self.tree.counts_below(boxes.number, level))
 
+    def moved(self, u: Floats, side: Ints) -> Floats:
+        """Return coordinates (N,) along u where the faces `side` (N,) lie side by side."""
+        return u if len(self.faces) == 1 else u + FACE_STEP * side
+
     def _moved(self, u: Spans, side: Ints) -> Spans:
-        """Return spans along u where the faces lie side by side."""
-        if len(self.faces) == 1:
-            return u
-        step = FACE_STEP * side
-        return u[0] + step, u[1] + step
+        return self.moved(u[0], side), self.moved(u[1], side)
 
     def _shown(self, boxes: Ints, side: Ints, level: int) -> VisibleBoxes:
         """Return which of these boxes of a level are visible on their faces."""

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from ..base.arrays import Floats, Ints
 from .bins import FACES, Raster, RowSpans, Spans, blocks, count_up, row_spans, stable_order
-from .culling import FACE_STEP, Ends, FaceLook, Facing, Targets, VisibleBoxes, min_distance
+from .culling import Ends, FaceLook, Facing, Targets, VisibleBoxes, min_distance
 from .ray_traversal import RayBoxes, RayWalk, TriangleTree
 
 MAX_BINS = 1024  # Maximum number of bins along a side
@@ -81,12 +81,16 @@ class BinnedRays:
         """Return the rays that may meet the mesh; None if there are none. `d` (3, B) are the
         directions of all rays, `ray` the numbers of those that pass a face of the look, `side`
         which."""
+        ends = [NOT_VISIBLE if each is None else each for each in look.ends()]
+        if all(each is NOT_VISIBLE for each in ends):
+            return None
+        (u0, u1), (v0, v1) = (
+            ends[0] if len(ends) == 1 else np.array(ends).transpose(1, 2, 0)[:, :, side]
+        )
         here = d[:, ray]
         depth, u, v = look.split(here, side)
-        u = u / depth + FACE_STEP * side
+        u = look.moved(u / depth, side)
         v = v / depth
-        ends = [NOT_VISIBLE if each is None else each for each in look.ends()]
-        (u0, u1), (v0, v1) = np.array(ends).transpose(1, 2, 0)[:, :, side]
         index = np.flatnonzero((u >= u0) & (u <= u1) & (v >= v0) & (v <= v1))
         ray = ray[index]
         if not len(ray):
@@ -199,9 +203,11 @@ class VisibleTriangles:
         present = np.flatnonzero(np.bincount(passed, minlength=len(FACES)))
         together = len(passed) <= MAX_ON_A_STRIP
         for numbers in [present] if together else present[:, None]:
-            ray = np.flatnonzero(np.isin(passed, numbers))
             look = FaceLook(self.tree, self.origin, tuple(FACES[k] for k in numbers.tolist()))
-            rays = BinnedRays.within(look, d, ray, np.searchsorted(numbers, passed[ray]))
+            ray = np.arange(len(passed)) if together else np.flatnonzero(passed == numbers[0])
+            slot = np.zeros(len(FACES), np.int64)
+            slot[numbers] = np.arange(len(numbers))
+            rays = BinnedRays.within(look, d, ray, side=slot[passed[ray]])
             if rays is not None:
                 _cast(look, rays, walk, hits)
 

@@ -188,6 +188,10 @@ class Rig(Tabular):
             groups.setdefault(sensor.group, []).append(sensor)
         return groups
 
+    def without_each(self) -> list["Rig"]:
+        """Return the rigs without each one of the sensors; this one has at least two."""
+        return [Rig([s for s in self if s is not failed]) for failed in self]
+
     def with_poses(self, poses: Sequence[Pose]) -> "Rig":
         """Return the rig with a new pose for each sensor; unmoved sensors are the same objects."""
         pairs = zip(self.sensors, poses, strict=True)

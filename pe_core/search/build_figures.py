@@ -172,6 +172,7 @@ class BuildFigure(Figure):
     needs: str = ""
     on_body: bool = False
     slack: float = 0.0
+    is_seen: bool = False
 
     def lacking(self, placed: Placement) -> tuple[str, ...]:
         """Return of what it is not known: names of sensors, or why there is no such figure."""

@@ -53,7 +53,7 @@ class Figure:
     higher : bool
         Whether a higher value is better. Of several values the worst one counts.
     of : callable, optional
-        Gives its values for a `RigView`. None: a score or a verdict has it.
+        Gives its values for a `RigView`. None: a search cannot trade it off against others.
     cost : callable, optional
         Gives a positive cost of a value, lower is better; by default the value itself, or its
         `reciprocal`.
@@ -67,8 +67,10 @@ class Figure:
         The smallest difference that counts.
     scale : float
         A value is told multiplied by this: 100 for percent.
-    on_front : bool
-        Whether a search can trade it off against others.
+    is_seen : bool
+        Whether a rig's sight tells it, and not its score, its verdicts or its build.
+    needs : str
+        What a study has that has the figure.
     """
 
     key: str
@@ -84,7 +86,8 @@ class Figure:
     is_cut: Callable[[KnownFigures], bool] = never
     least: float = 0.05
     scale: float = 1.0
-    on_front: bool = True
+    is_seen: bool = True
+    needs: str = ""
 
     @property
     def name(self) -> str:
@@ -107,11 +110,6 @@ class Figure:
     def heading(self) -> str:
         """Title and meaning: "Blind ground [m2], lower is better"."""
         return f"{self.title}, {self.better}"
-
-    @property
-    def is_seen(self) -> bool:
-        """Whether `values` are those of a rig's sight, not of its score, verdicts or build."""
-        return self.of is not None
 
     def values(self, view: RigView) -> Sequence[float]:
         """Return its values for a rig; none where it is not known."""

@@ -44,6 +44,11 @@ def _ring(name: str) -> Callable[[RigView], Sequence[float]]:
     return values
 
 
+def _blind_in_zones(view: RigView) -> Sequence[float]:
+    zones = [verdict.blind_m2 or 0.0 for verdict in view.verdicts]
+    return [sum(zones)] if zones else []
+
+
 _Ap = partial(
     Figure, unit="", higher=True, cost=lambda ap: 1.0 - ap, rule=Number(0.0, cap=1.0), least=0.0005
 )
@@ -93,27 +98,31 @@ _SIGHT = (
         decimals=3,
     ),
 )
+_Scored = partial(Figure, is_seen=False)
 _SCORE = (
-    Figure(
-        REQUIREMENTS,
-        "Requirements",
-        "met",
-        "Requirements that are met",
-        decimals=0,
-        higher=True,
-        on_front=False,
+    _Scored(
+        REQUIREMENTS, "Requirements", "met", "Requirements that are met", decimals=0, higher=True
     ),
-    Figure(
+    _Scored(
         ENTROPY,
         "Entropy",
         "nats",
         "Perception entropy",
         decimals=3,
+        of=lambda view: view.entropy,
         rule=Number(-99.0, cap=1e6),
         least=0.005,  # 0.2 % of a detector's standard deviation
     ),
-    _Ap(AP, "Expected AP", about="Expected AP of the scored objects", decimals=3),
-    Figure(
+    _Ap(
+        AP,
+        "Expected AP",
+        about="Expected AP of the scored objects",
+        decimals=3,
+        of=lambda view: view.ap,
+        is_seen=False,
+        needs='metric.targets = "objects", or objective = "expected_ap"',
+    ),
+    _Scored(
         COVERAGE,
         "Coverage",
         "%",
@@ -123,20 +132,41 @@ _SCORE = (
         shown=shown_share,
         least=0.0005,
         scale=100.0,
-        on_front=False,
     ),
-    Figure(
+    _Scored(
         SCENARIO_MARGIN,
         "Margin of scenarios",
         "s",
         "Time left when what moves is confirmed; none: never confirmed",
         decimals=1,
         higher=True,
-        on_front=False,
     ),
-    Figure(WORST_LOSS, "Worst loss", "nats", "Rise of entropy without the best sensor", decimals=3),
-    Figure(MARGIN, "Worst margin", "m", "Smallest margin of all requirements", higher=True),
-    Figure(BLIND_ZONES, "Blind in zones", "m2", "Blind ground in the zones of requirements"),
+    _Scored(
+        WORST_LOSS,
+        "Worst loss",
+        "nats",
+        "Rise of entropy without the best sensor",
+        decimals=3,
+        of=lambda view: view.losses,
+        needs="a rig of at least two sensors",
+    ),
+    _Scored(
+        MARGIN,
+        "Worst margin",
+        "m",
+        "Smallest margin of all requirements",
+        higher=True,
+        of=lambda view: [verdict.counted_margin for verdict in view.verdicts],
+        needs=REQUIREMENTS,
+    ),
+    _Scored(
+        BLIND_ZONES,
+        "Blind in zones",
+        "m2",
+        "Blind ground in the zones of requirements",
+        of=_blind_in_zones,
+        needs=REQUIREMENTS,
+    ),
 )
 FIGURES: dict[str, Figure] = {row.key: row for row in (*_SIGHT, *_SCORE)} | BUILD_FIGURES
 """What a rig is decided by, by name."""
@@ -149,7 +179,7 @@ def figure_of(name: str, currency: str = "") -> Figure:
         row = FIGURES[name]
         return replace(row, unit=currency) if name == PRICE else row
     label = name.replace("_", " ")
-    return Figure(name, f"{label[:1].upper()}{label[1:]}", "", label)
+    return _Scored(name, f"{label[:1].upper()}{label[1:]}", "", label)
 
 
 def on_dashboard() -> list[Figure]:
@@ -180,5 +210,5 @@ SHOWN = FigureNames(
 """Figures that a score can show, and computes where it does."""
 KEPT = FigureNames(lambda row: row.is_seen)
 """Figures that a search may keep."""
-ON_FRONT = FigureNames(lambda row: row.on_front)
+ON_FRONT = FigureNames(lambda row: row.of is not None or row.key in BUILD_FIGURES)
 """Figures that a search can trade off."""

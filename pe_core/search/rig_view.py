@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -11,6 +13,8 @@ from ..scoring.sight.blind_ground import BLIND_TO_M, BlindSector
 from .placement import Placement
 
 if TYPE_CHECKING:
+    from ..scoring import RigEvaluator
+    from ..scoring.requirements import Verdict
     from ..scoring.score import TrafficAp
     from ..scoring.sight import Sight
 
@@ -20,13 +24,52 @@ def blind_height(sight: Sight) -> float:
     return max(BLIND_TO_M, sight.space.z[0])
 
 
+@dataclass(frozen=True, slots=True)
+class Scorers:
+    """What scores rigs of a study, and holds them to its requirements.
+
+    `entropy`: What its search minimises without constraints.
+    `voxels, objects`: Evaluators of losses of entropy, and of expected AP.
+    """
+
+    entropy: Callable[[Rig], float]
+    voxels: RigEvaluator
+    objects: RigEvaluator
+    verdicts: Callable[[Rig], Sequence[Verdict]]
+
+
 class RigView:
     """A rig as figures look at it: what several figures share is computed once, when it is asked
-    for. `sight` is that of the rig's study."""
+    for. `sight` is that of the rig's study; without `scorers` no figure of a score is known."""
 
-    def __init__(self, sight: Sight, rig: Rig) -> None:
+    def __init__(self, sight: Sight, rig: Rig, scorers: Scorers | None = None) -> None:
         self.sight = sight
         self.rig = rig
+        self._scorers = scorers
+
+    @property
+    def entropy(self) -> Sequence[float]:
+        """What the search of the study minimises [nats]."""
+        return [] if self._scorers is None else [self._scorers.entropy(self.rig)]
+
+    @property
+    def ap(self) -> Sequence[float]:
+        """Expected AP of the scored objects; none for voxels."""
+        objects = self._scorers and self._scorers.objects.score(self.rig).objects
+        return [objects.ap] if objects else []
+
+    @property
+    def losses(self) -> Sequence[float]:
+        """Rise of entropy without each sensor [nats]; none for a single one."""
+        if self._scorers is None or len(self.rig) < 2:
+            return []
+        whole, *lost = self._scorers.voxels.entropies([self.rig, *self.rig.without_each()])
+        return [each - whole for each in lost]
+
+    @cached_property
+    def verdicts(self) -> Sequence[Verdict]:
+        """On the requirements of the study."""
+        return () if self._scorers is None else self._scorers.verdicts(self.rig)
 
     @cached_property
     def traffic(self) -> TrafficAp | None:

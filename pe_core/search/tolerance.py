@@ -113,7 +113,7 @@ class Tolerance:
         if not self.failures:
             return mounted
         one_combination = mounted[: self.draws]
-        return [failed for rig in one_combination for failed in without_each(rig)]
+        return [failed for rig in one_combination for failed in rig.without_each()]
 
 
 def mounted_off(rig: Rig, tolerance: Tolerance, seed: int = 0, stream: int = SEARCHED) -> list[Rig]:
@@ -130,11 +130,6 @@ def mounted_off(rig: Rig, tolerance: Tolerance, seed: int = 0, stream: int = SEA
         for k in range(combinations)
         for draw in range(tolerance.draws)
     ]
-
-
-def without_each(rig: Rig) -> list[Rig]:
-    """Return the rigs without each one of the sensors; the rig has at least two."""
-    return [Rig([s for s in rig if s is not failed]) for failed in rig]
 
 
 def _errors(tolerance: Tolerance, seed: tuple[int, ...]) -> Floats:
@@ -275,7 +270,7 @@ def _robustness_of(
     evaluator: RigEvaluator, rig: Rig, errors: Tolerance, seed: int
 ) -> RigRobustness:
     off = mounted_off(rig, errors, seed, FRESH)
-    rigs_without = without_each(rig) if len(rig) > 1 else []
+    rigs_without = rig.without_each() if len(rig) > 1 else []
     cases = [rig, *off, *rigs_without]
     entropy, *entropies = evaluator.entropies(cases)
     with_errors = entropies[: len(off)]

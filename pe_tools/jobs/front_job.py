@@ -36,7 +36,6 @@ from .front_objectives import (
     FrontFigures,
     FrontValues,
     ScalarValue,
-    check_objectives,
     objectives_of,
     spread,
     weights_of,
@@ -144,8 +143,6 @@ class FrontJob(Job):
         self.names, self._own = objectives_of(given or (PRICE, value))
         self._several = bool(given)
         self.points = front.points
-        if given:
-            check_objectives(study, [name for name in self.names if name not in self._own])
         self.journals = FrontJournals()
         self.is_done = False
         self.evaluations = 0

@@ -8,26 +8,12 @@ from pe_core.base.errors import InputError
 from pe_core.base.values import rounded
 from pe_core.scene.rig import Rig
 from pe_core.scoring import RigEvaluator
-from pe_core.scoring.requirements import FARTHEST_M, Verdict
 from pe_core.scoring.score import Score
 from pe_core.search import objective_of
-from pe_core.search.build_figures import BUILD_FIGURES, SUMS, BuildFigure
-from pe_core.search.figures import (
-    AP,
-    BLIND_ZONES,
-    ENTROPY,
-    FIGURES,
-    MARGIN,
-    ON_FRONT,
-    PRICE,
-    WORST_LOSS,
-    figure_of,
-)
-from pe_core.search.placement import Placement
-from pe_core.search.rig_view import RigView
-from pe_core.search.tolerance import without_each
-from pe_core.study.condition_table import is_by_ap
-from pe_core.study.study import EXPECTED_AP, Study
+from pe_core.search.build_figures import SUMS, BuildFigure
+from pe_core.search.figures import AP, ENTROPY, FIGURES, ON_FRONT, figure_of
+from pe_core.search.rig_view import RigView, Scorers
+from pe_core.study.study import Study
 
 AUGMENTED = 0.05
 """Weight of the sum beside the maximum: it drops placements that are only weakly efficient."""
@@ -50,31 +36,6 @@ def objectives_of(
     return tuple(names), own
 
 
-def check_objectives(study: Study, names: Sequence[str]) -> None:
-    """Raise `InputError` for an objective that the study has no figures of. Expected AP is that of
-    the study's objects; with `objective = "expected_ap"` in traffic, whatever the study's
-    targets."""
-    if is_by_ap(study) and AP not in names:
-        expected = f'{AP!r} among them, with objective = "{EXPECTED_AP}"'
-        raise InputError("optimize", "front.objectives", expected, ", ".join(names))
-    no_objects = not (study.targets.are_objects or is_by_ap(study))
-    of_objects = f'metric.targets = "objects", or objective = "{EXPECTED_AP}"'
-    wrong = {
-        AP: (no_objects, f"a study with {of_objects}", "voxels"),
-        WORST_LOSS: (len(study.rig) < 2, "a rig of at least two sensors", "one"),
-        MARGIN: (not study.requirements, "a study with requirements", "none"),
-        BLIND_ZONES: (not study.requirements, "a study with requirements", "none"),
-        PRICE: (not study.selection.choices, "a study with choices, which have prices", "none"),
-    }
-    for name in names:
-        is_wrong, expected, found = wrong.get(name, (False, "", ""))
-        if is_wrong:
-            raise InputError("optimize", f"front.objectives: {name}", expected, found)
-        if name in BUILD_FIGURES and not study.selection.choices:
-            placed = Placement.on(study.rig, study.vehicle)
-            BUILD_FIGURES[name].required(placed, "optimize", f"front.objectives: {name}")
-
-
 class FrontFigures:
     """Computes the objectives of rigs of one study, all but sums; a rig is evaluated once.
     `evaluator` is that of the search; `in_traffic` evaluates the AP of a study that goes by it."""
@@ -90,23 +51,17 @@ class FrontFigures:
         self._given = study, tuple(names), evaluator, in_traffic, own
         self._in_traffic = in_traffic
         self.names = tuple(names)
-        self._study = study
-        self._evaluator = evaluator
-        tolerance = study.search.tolerance
-        seed = study.search.seed
-        self._objective = objective_of(evaluator, tolerance, seed)
+        self._own = own or {}
         self._sight = study.sight()
-        asks = {MARGIN, BLIND_ZONES} & set(names)
-        self._checker = study.checker() if asks else None
+        search = study.search
+        checker = study.checker()
+        self._scorers = Scorers(
+            objective_of(evaluator, search.tolerance, search.seed).figure,
+            voxels=evaluator,
+            objects=in_traffic or evaluator,
+            verdicts=lambda rig: study.verdicts(rig, checker),
+        )
         self._known: dict[tuple[object, ...], dict[str, float]] = {}
-        self._of: dict[str, Callable[[Rig], float]] = {
-            ENTROPY: self._objective.figure,
-            AP: self._ap,
-            WORST_LOSS: self._worst_loss,
-            MARGIN: lambda rig: self._zones(rig)[0],
-            BLIND_ZONES: lambda rig: self._zones(rig)[1],
-            **(own or {}),
-        }
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle the arguments: a worker has figures of its own from them."""
@@ -116,13 +71,13 @@ class FrontFigures:
         """Return the objectives of a rig by name, each in its own unit."""
         key = tuple((s.name, s.model.name, s.pose.position, s.pose.rpy) for s in rig)
         if key not in self._known:
-            view = RigView(self._sight, rig)
+            view = RigView(self._sight, rig, self._scorers)
             self._known[key] = {name: rounded(self._value(name, view)) for name in self.names}
         return self._known[key]
 
     def costs(self, rig: Rig) -> list[float]:
         """Return the objectives of a rig as values to minimise."""
-        return costs_of(self(rig), self.names)
+        return [figure_of(name).signed(value) for name, value in self(rig).items()]
 
     def scored(self, rig: Rig, score: Score) -> FrontValues:
         """Return the objectives with entropy and AP of a score on all voxels of the study."""
@@ -134,46 +89,17 @@ class FrontFigures:
         return figures
 
     def _value(self, name: str, view: RigView) -> float:
-        if name in self._of:
-            return self._of[name](view.rig)
+        if name in self._own:
+            return self._own[name](view.rig)
         row = FIGURES[name]
+        field = f"front.objectives: {name}"
         if isinstance(row, BuildFigure):
-            row.required(view.placement, "optimize", f"front.objectives: {name}")
+            row.required(view.placement, "optimize", field)
         found = row.worst(row.values(view))
         if found is None:
-            expected = f"a study with a known {row.name}"
-            raise InputError("optimize", f"front.objectives: {name}", expected, "unknown")
+            expected = f"a study with {row.needs or f'a known {row.name}'}"
+            raise InputError("optimize", field, expected, "none")
         return found
-
-    def _ap(self, rig: Rig) -> float:
-        if self._in_traffic is not None:
-            return -self._in_traffic.entropy(rig)
-        found = self._evaluator.score(rig).objects
-        assert found is not None
-        return found.ap
-
-    def _worst_loss(self, rig: Rig) -> float:
-        whole, *lost = self._evaluator.entropies([rig, *without_each(rig)])
-        return max(lost) - whole
-
-    def _zones(self, rig: Rig) -> tuple[float, float]:
-        """Return the worst margin of all requirements [m], and their blind ground [m2]."""
-        assert self._checker is not None
-        verdicts = self._study.verdicts(rig, self._checker)
-        worst = min(map(_margin, verdicts), default=0.0)
-        return worst, sum(v.blind_m2 or 0.0 for v in verdicts)
-
-
-def _margin(verdict: Verdict) -> float:
-    """Return a verdict's margin [m]; of a path or spots that fail, which have none, the worst."""
-    if verdict.margin is not None:
-        return verdict.margin
-    return -FARTHEST_M * (2.0 - verdict.share)
-
-
-def costs_of(figures: FrontValues, names: Sequence[str]) -> list[float]:
-    """Return figures as values to minimise."""
-    return [figure_of(name).signed(figures[name]) for name in names]
 
 
 class ScalarValue:

@@ -9,7 +9,7 @@ import pytest
 import pe_core as pe
 from pe_core.geometry.poses import rotate
 from pe_core.search import RobustFigure
-from pe_core.search.tolerance import FRESH, mounted_off, with_error, without_each
+from pe_core.search.tolerance import FRESH, mounted_off, with_error
 from pe_core.study.study_file import study_from_dict
 from tests.engine import shapes
 
@@ -131,7 +131,7 @@ def test_failures_are_the_loss_of_each_sensor():
         ["roof", "nose"],
     ]
     assert len(BOTH.cases(rig())) == 2 * 3
-    assert [len(each) for each in without_each(rig())] == [2, 2, 2]
+    assert [len(each) for each in rig().without_each()] == [2, 2, 2]
 
 
 def test_a_search_minimises_what_placements_are_worth_mounted_off(evaluator):

@@ -330,6 +330,11 @@ class Verdict(ShortRepr):
             planes=self.samples.zone.planes.found,
         )
 
+    @property
+    def counted_margin(self) -> float:
+        """Its margin [m]; of a path or spots that fail, which have none, one below all others."""
+        return -FARTHEST_M * (2.0 - self.share) if self.margin is None else self.margin
+
     def to_dict(self) -> dict[str, Any]:
         """Return the verdict as plain data, as in result.json."""
         data: dict[str, Any] = record(self.row)

@@ -56,7 +56,7 @@ def _full_table(name: str, table: str) -> tuple[TableData, str]:
     """Return the table of a row of that name, and what its verdict is called after. Panels ask for
     it again for each field."""
     requirement = _read(name, _loaded(name, table))
-    return studies.requirement_file.full_table(requirement), requirement.after
+    return studies.write_fields(requirement), requirement.after
 
 
 def after_of(row: PropertyGroup) -> str:
@@ -66,8 +66,9 @@ def after_of(row: PropertyGroup) -> str:
 
 def write_row(row: PropertyGroup, requirement: Requirement) -> None:
     """Write a requirement to a row."""
+    row.name = requirement.name
     table = studies.write(requirement)
-    row.name = table.pop("name")
+    table.pop("name", None)  # a preset may have its own
     row.table = json.dumps(table)
     row.problem = ""
     forget_verdict(row)
@@ -99,9 +100,8 @@ def _of_preset(requirement: Requirement, preset: str | None) -> Requirement:
     if preset is None:
         return requirement
     changed = replace(requirement, preset=preset)
-    table = studies.write(changed)
     try:
-        again = _read(table.pop("name"), table)
+        again = _read(requirement.name, studies.write(changed))
     except pe.InputError:
         return requirement
     return again if again == changed else requirement

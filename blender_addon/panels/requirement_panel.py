@@ -85,7 +85,7 @@ def draw_requirement(layout: UILayout, context: Context, row: PropertyGroup) -> 
     _draw_source(layout, context, after_of(row), str(table.get("source", "")))
     draw_properties(layout, row, ("asks",))
     if row.asks == BODIES_ASKED:
-        draw_properties(layout, row, ("bodies", "headings"))
+        draw_properties(layout, row, ("bodies",))
     _draw_zone(layout, row)
     _draw_criterion(layout, row)
     draw_declared(layout, row, "requirement.robust_to")

@@ -121,8 +121,7 @@ def ask_for(table: document.TableData, what: str) -> None:
         criterion.pop(key, None)
     if what == GROUND_ASKED:
         criterion["blind_m2"] = USUAL_BLIND_M2
-        for key in ("body", "headings"):
-            table.pop(key, None)
+        table.pop("body", None)
     else:
         table["body"] = [USUAL_BODY]
 
@@ -155,8 +154,7 @@ def _set_zone(table: document.TableData, line: str) -> None:
 
 
 def _bodies_line(table: document.TableData) -> str:
-    value = table.get("body", [])
-    bodies = value if isinstance(value, list) else [value]
+    bodies = table.get("body", [])
     tables = [each for each in bodies if not isinstance(each, str)]
     if len(tables) == len(bodies) == 1:
         return document.line_of(tables[0])
@@ -179,20 +177,6 @@ def _set_bodies(table: document.TableData, line: str) -> None:
         raise pe.InputError("scene", "bodies", "names, or keys of a body", str(error)) from None
 
 
-def _headings_line(table: document.TableData) -> str:
-    return ", ".join(f"{angle:g}" for angle in table.get("headings", ()))
-
-
-def _set_headings(table: document.TableData, line: str) -> None:
-    """Set the headings [deg]; an empty line stands for those of the bodies."""
-    table.pop("headings", None)
-    if line.strip():
-        try:
-            table["headings"] = [float(each) for each in line.split(",")]
-        except ValueError:
-            raise pe.InputError("scene", "headings", "angles: 0, 90", repr(line)) from None
-
-
 def known_bodies(_row: PropertyGroup, _context: Context, _typed: str) -> list[tuple[str, str]]:
     """Return the names of test bodies, each with its source."""
     return [(name, body.source) for name, body in requirements.BODIES.items()]
@@ -209,15 +193,10 @@ class PE_Requirement(Declared, Switched, Tabled, PropertyGroup):
     bodies: text(
         "Bodies",
         "Names of test bodies: child, adult. Or an own one, with the keys of a study: "
-        'size = [0.5, 0.5, 1.5], class = "pedestrian"',
+        'size = [0.5, 0.5, 1.5], class = "pedestrian", headings = [0, 90]',
         search=known_bodies,
         search_options={"SUGGESTION"},
         **_view(_bodies_line, _set_bodies),
-    )
-    headings: text(
-        "Headings",
-        "Headings at which bodies stand, in degrees: 0, 90; empty: those of the body",
-        **_view(_headings_line, _set_headings),
     )
     shape: menu("Zone", "Shape of the zone", **_choice(SHAPES, shape_of, reshape))
     zone: text(

@@ -15,7 +15,7 @@ import functools
 import math
 import types
 import typing
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import MISSING, dataclass, fields, is_dataclass
 from pathlib import Path
@@ -26,6 +26,7 @@ from .setting import (
     FLAG,
     NAMES,
     REQUIRED,
+    Each,
     Pair,
     Part,
     Setting,
@@ -36,7 +37,7 @@ from .setting import (
     settings_of,
     value_in_file,
 )
-from .values import A_NAME, A_TEXT, ANY, Whole, listed
+from .values import A_NAME, A_TEXT, ANY, Whole, choice, listed
 
 T = TypeVar("T")
 Schema = dict[str, Any]
@@ -146,6 +147,11 @@ class DocumentField(NamedTuple):
         """Whether the field may be None."""
         return type(None) in typing.get_args(self.hint)
 
+    @property
+    def is_table(self) -> bool:
+        """Whether its value is a table with the keys of a class."""
+        return self.rule is None and is_dataclass(self.hint) and hook_of(self.hint) is None
+
 
 HOOKS: dict[type, Hook] = {}
 """By type, for its subclasses, too."""
@@ -188,16 +194,38 @@ def write(value: Any) -> Any:
 
 def write_fields(instance: Any, base: Any = None) -> dict[str, Any]:
     """Return the table of an instance without the hook of its class; without defaults, or without
-    what it shares with `base`."""
+    what it shares with `base`, down to the tables in it."""
     data: dict[str, Any] = {}
-    for each in fields_of(type(instance)):  # type: ignore[arg-type]
+    own = fields_of(type(instance))  # type: ignore[arg-type]
+    changed = [e for e in own if base and getattr(instance, e.name) != getattr(base, e.name)]
+    shapes = _shapes(changed)
+    for each in own:
         value = getattr(instance, each.name)
-        default = each.default if base is None else getattr(base, each.name)
+        shared = base and each.part.shape not in shapes
+        default = getattr(base, each.name) if shared else each.default
         if each.part.inline:
             data |= write(value)
         elif value is not None and (default is REQUIRED or value != default):
-            data[each.key] = _written(each, value)
+            merged = shared and each.is_table
+            data[each.key] = write_fields(value, default) if merged else _written(each, value)
     return data
+
+
+def read_changed(cls: type[T], node: Node, presets: Mapping[str, T]) -> T:
+    """Return an instance from its table, where `preset` may name a shipped one that the other keys
+    change."""
+    preset = node.at("preset")
+    if preset.value is None:
+        return read_fields(cls, node)
+    name = choice(preset.source, preset.path, preset.value, presets)
+    return read_fields(cls, node, presets[name])
+
+
+def write_changed(instance: Any, presets: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the table that `read_changed` reads: of a shipped one, what was changed."""
+    base = presets.get(instance.preset)
+    named = {} if base is None else {"preset": instance.preset}
+    return named | write_fields(instance, base)
 
 
 def record(result: Any) -> Any:
@@ -301,23 +329,32 @@ def _keys(cls: Any) -> frozenset[str] | None:
 def _made(cls: Any, node: Node, base: Any = None) -> Any:
     values: dict[str, Any] = {}
     own_keys = {each.key for each in fields_of(cls)}
+    shapes = _shapes(each for each in fields_of(cls) if each.key in node.table)
     for each in fields_of(cls):
-        given = MISSING if base is None else getattr(base, each.name)
+        shared = base is not None and each.part.shape not in shapes
+        given = getattr(base, each.name) if shared else MISSING
         if each.part.inline and is_dataclass(each.hint):
             values[each.name] = _made(each.hint, node, None if given is MISSING else given)
         elif each.part.inline:
             rest = {key: value for key, value in node.table.items() if key not in own_keys}
             values[each.name] = read_value(each.hint, node.with_value(rest, node.path))
+        elif each.key in node.table and given is not MISSING and each.is_table:
+            values[each.name] = read_fields(each.hint, node.at(each.key), given)
         elif each.key in node.table:
             values[each.name] = _value(each, node.at(each.key))
         elif given is not MISSING:
             values[each.name] = given
-        elif each.default is REQUIRED and is_dataclass(each.hint) and each.hint not in HOOKS:
+        elif each.default is REQUIRED and each.is_table:
             values[each.name] = read_value(each.hint, node.at(each.key, {}))
         elif each.default is REQUIRED:
             raise node.error("a value", "nothing", each.key)
     with node.naming():
         return cls(**values)
+
+
+def _shapes(some: Iterable[DocumentField]) -> set[str]:
+    """Return the shapes that some fields are of."""
+    return {each.part.shape for each in some if each.part.shape}
 
 
 def _value(each: DocumentField, node: Node) -> Any:
@@ -405,10 +442,9 @@ def _by_rule(rule: ValueRule, node: Node) -> Any:
     source = node.source
     path = node.path
     value = node.value
-    items = listed(value, 3) if isinstance(rule, Triple | Pair) else None
-    if not is_angle(rule):
-        return rule.checked(source, path, value)
-    if items is None and isinstance(rule, Triple | Pair):
+    several = isinstance(rule, Triple | Pair | Each)
+    items = listed(value) if several else None
+    if not is_angle(rule) or (items is None and several):
         return rule.checked(source, path, value)
     if items is None:
         return rule.checked(source, path, math.radians(ANY.checked(source, path, value)))

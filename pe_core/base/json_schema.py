@@ -10,7 +10,18 @@ from dataclasses import is_dataclass
 from typing import Any
 
 from .codec import BY_TYPE, DocumentField, Schema, classes_in, fields_of, hook_of
-from .setting import REQUIRED, OneOf, Pair, Setting, Several, Texts, Toggle, Triple, value_in_file
+from .setting import (
+    REQUIRED,
+    Each,
+    OneOf,
+    Pair,
+    Setting,
+    Several,
+    Texts,
+    Toggle,
+    Triple,
+    value_in_file,
+)
 from .values import Angle, Name, Number, Whole
 
 TYPES = {bool: "boolean", int: "integer", float: "number", str: "string"}
@@ -128,8 +139,7 @@ def _properties(cls: type) -> tuple[dict[str, Schema], list[str], bool]:
 
 def _is_required(each: DocumentField) -> bool:
     """Whether a table without the key is wrong: one without a table of a class is read as empty."""
-    is_table = is_dataclass(each.hint) and hook_of(each.hint) is None
-    return each.default is REQUIRED and not is_table
+    return each.default is REQUIRED and not each.is_table
 
 
 def _schema_of_field(each: DocumentField) -> Schema:
@@ -137,6 +147,9 @@ def _schema_of_field(each: DocumentField) -> Schema:
         return schema_of_setting(each.setting)
     if each.rule is not None:
         return schema_of_rule(each.rule)
+    if each.part.changes:
+        found = _schema_of_hint(each.hint)
+        return found | {"items": {k: v for k, v in found["items"].items() if k != "required"}}
     if not each.part.by_name:
         return _schema_of_hint(each.hint)
     inner = [_schema_of_hint(cls) for cls, _ in classes_in(each.hint)]
@@ -186,6 +199,8 @@ def schema_of_rule(rule: object) -> Schema:
             return _list_of(2, schema_of_rule(rule.rule))
         case Triple():
             return _list_of(3, schema_of_rule(rule.rule))
+        case Each():
+            return {"type": "array", "items": schema_of_rule(rule.rule)}
         case Number() | Whole():
             kind = "integer" if isinstance(rule, Whole) else "number"
             return {"type": kind, **_range(rule)}

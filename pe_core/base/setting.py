@@ -74,6 +74,21 @@ class Triple:
 
 
 @dataclass(frozen=True, slots=True)
+class Each:
+    """A list of numbers that meet one rule."""
+
+    rule: Number
+    most: int
+
+    def checked(self, source: object, field: str, value: Any) -> tuple[float, ...]:
+        """Return the value, or raise `InputError`."""
+        items = listed(value, self.most)
+        if not items or len(items) > self.most:
+            raise InputError(source, field, f"1 to {self.most} {self.rule.noun}s", shown(value))
+        return tuple(self.rule.checked(source, field, item) for item in items)
+
+
+@dataclass(frozen=True, slots=True)
 class Texts:
     """A list of texts that meet one rule."""
 
@@ -237,7 +252,7 @@ def value_in_file(rule: object, value: Any) -> Any:
 
 def is_angle(rule: object) -> bool:
     """Whether values of a rule are angles, which are in degrees in files."""
-    return isinstance(rule.rule if isinstance(rule, Triple | Pair) else rule, Angle)
+    return isinstance(rule.rule if isinstance(rule, Triple | Pair | Each) else rule, Angle)
 
 
 @dataclass(frozen=True, slots=True)
@@ -252,6 +267,9 @@ class Part:
     `stored`: Whether a document has it.
     `at_times`: Whether the data of a result leave it out while it is None.
     `about`: Its meaning, in the schema of a result.
+    `shape`: Fields with one text here stand for each other: where a table has one of them, it has
+        none of a table that it changes.
+    `changes`: Whether a table may have only what differs from another one.
     """
 
     key: str = ""
@@ -261,6 +279,8 @@ class Part:
     stored: bool = True
     at_times: bool = False
     about: str = ""
+    shape: str = ""
+    changes: bool = False
 
 
 NotStored = Part(stored=False)

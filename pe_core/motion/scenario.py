@@ -10,17 +10,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
 from ..base.arrays import Floats
-from ..base.codec import Node, hook, read_fields, write_fields
+from ..base.codec import Node, hook, read_changed, read_fields, write_changed
 from ..base.errors import InputError, require_kind, shown
 from ..base.files import decode_text, read_bytes
 from ..base.setting import Named, Panel, Part, check_settings, setting
 from ..base.table_reader import load_toml
-from ..base.values import A_NAME, Angle, Number, choice, listed, vector
+from ..base.values import A_NAME, Angle, Number, listed, vector
 from ..scene.vehicle import Vehicle
 from ..scoring.requirements.bodies import Body
 from ..scoring.targets.scene_layout import CAR_SIZE_M
@@ -192,34 +192,6 @@ def outline(vehicle: Vehicle | None) -> tuple[Floats, Floats]:
     return low[:2], high[:2]
 
 
-@dataclass(frozen=True, slots=True)
-class ScenarioTable(Scenario):
-    """The keys of a scenario's table: a shipped one needs no name of its own."""
-
-    name: Named = ""
-
-
-def _read_scenario(node: Node) -> Scenario:
-    """Return a scenario from its table; a `preset` is changed by the other keys."""
-    preset = node.at("preset")
-    base = None
-    table = {**node.table, "name": node.table.get("name", preset.value)}
-    if table["name"] is None:
-        raise node.error("a name, or a preset", "none", "name")
-    if preset.value is not None:
-        base = scenarios()[choice(preset.source, preset.path, preset.value, scenarios())]
-    return read_fields(Scenario, node.with_value(table, node.path), base)
-
-
-def _write_scenario(scenario: Scenario) -> dict[str, Any]:
-    """Return the table of a scenario; of a shipped one its name alone, and what was changed."""
-    table = write_fields(scenario, scenarios().get(scenario.preset))
-    if scenario.preset in scenarios():
-        table = {"name": scenario.name, "preset": scenario.preset, **table}
-        table = table if scenario.name != scenario.preset else {**table, "name": None}
-    return {key: value for key, value in table.items() if value is not None}
-
-
 @cache
 def scenarios() -> Mapping[str, Scenario]:
     """Return the scenarios that are shipped, by name."""
@@ -231,4 +203,9 @@ def scenarios() -> Mapping[str, Scenario]:
     return found
 
 
-hook(Scenario, _read_scenario, _write_scenario, ScenarioTable)
+hook(
+    Scenario,
+    lambda node: read_changed(Scenario, node, scenarios()),
+    lambda scenario: write_changed(scenario, scenarios()),
+    Scenario,
+)

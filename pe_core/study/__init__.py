@@ -1,6 +1,6 @@
 """Studies: everything a run needs, and their files."""
 
-from ..base.codec import Declared, Node, read, write
+from ..base.codec import Declared, Node, read, write, write_fields
 from ..base.setting import (
     REQUIRED,
     Named,

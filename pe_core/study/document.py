@@ -194,11 +194,11 @@ class Document:
     vehicle: VehicleTable = field(default_factory=VehicleTable)
     reference: Reference | None = None
     sensor: tuple[SensorTable, ...] = ()
-    requirement: tuple[Requirement, ...] = ()
+    requirement: Annotated[tuple[Requirement, ...], Part(changes=True)] = ()
     weather: tuple[Weather, ...] = ()
     state: tuple[State, ...] = ()
     time: TimeTable = field(default_factory=TimeTable)
-    scenario: tuple[Scenario, ...] = ()
+    scenario: Annotated[tuple[Scenario, ...], Part(changes=True)] = ()
     limits: Limits = field(default_factory=Limits)
     optimize: Optimize = field(default_factory=Optimize)
     selection: Selection = field(default_factory=Selection)

@@ -75,12 +75,10 @@ def test_bodies_are_one_several_or_of_an_own_size(held):
     for wrong in ("child, horse", "size = [0.4", "size = 3"):
         row.bodies = wrong
         assert row.problem and row.bodies == "child, cyclist", wrong
-    row.bodies = "size = [0.4, 0.6, 1.2], low = 0.3"
-    row.headings = "0, 45"
+    row.bodies = "size = [0.4, 0.6, 1.2], low = 0.3, headings = [0, 45]"
     (own,) = scenes.study().requirements[1].bodies
     assert own.size == pytest.approx((0.4, 0.6, 1.2)) and own.low == pytest.approx(0.3)
     assert np.rad2deg(own.headings) == pytest.approx([0.0, 45.0])
-    row.headings = ""
     row.bodies = 'diameter = 0.3, height = 1.2, class = "pedestrian"'
     (own,) = scenes.study().requirements[1].bodies
     assert own.is_round and own.size == pytest.approx((0.3, 0.3, 1.2))

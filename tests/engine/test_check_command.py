@@ -38,13 +38,13 @@ position = [0.0, 0.0, 1.9]
 
 [[requirement]]
 name = "adult ahead"
-body = "adult"
+body = ["adult"]
 zone = { x = ["front + 3", "front + 5"], y = [-1, 1], step = 0.5 }
 """
 SMALL = """
 [[requirement]]
 name = "bump"
-body = { diameter = 0.1, height = 0.05 }
+body = [{ diameter = 0.1, height = 0.05 }]
 zone = { ring = [0.2, 0.5] }
 """
 LIMITS = """

@@ -37,7 +37,7 @@ model = "Velodyne VLP-16 Puck"
 position = [0.0, 0.0, 1.8]
 [[requirement]]
 name = "child behind"
-body = "child"
+body = ["child"]
 zone = { x = ["rear + 1", "rear + 2"], y = [-1, 1] }
 [optimize]
 samples = 1024

@@ -16,7 +16,7 @@ from tests.engine.requirement_scene import AHEAD, check, rig, van
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 ARS = "Continental ARS408-21"
-TABLE = {"name": "a", "body": "child", "zone": {"x": ["front", "front + 1"], "y": [-1, 1]}}
+TABLE = {"name": "a", "body": ["child"], "zone": {"x": ["front", "front + 1"], "y": [-1, 1]}}
 BAD = {
     "no zone": ({"zone": {}}, "zone"),
     "two shapes": ({"zone": {"x": [0, 1], "y": [0, 1], "ring": [0, 1]}}, "one of x and y"),
@@ -24,13 +24,13 @@ BAD = {
     "inside": ({"zone": {"x": [-1, 1], "y": [-0.5, 0.5]}}, "inside the vehicle"),
     "outside": ({"zone": {"x": [500, 501], "y": [0, 1]}}, "in the space"),
     "step": ({"zone": {"x": [0, 90], "y": [2, 40], "step": 0.02}}, "at most 20,000 samples"),
-    "class": ({"body": {"size": [0.3, 0.3, 1], "class": "pedestrain"}}, "one of "),
+    "class": ({"body": [{"size": [0.3, 0.3, 1], "class": "pedestrain"}]}, "one of "),
     "5000 digits": ({"zone": {"x": ["front", f"front + {'1' * 5000}"], "y": [-1, 1]}}, "an offset"),
     "anchor": ({"zone": {"x": ["bow", 1], "y": [0, 1]}}, "planes front"),
     "door": ({"zone": {"x": ["door", 9], "y": [2, 3]}}, "word door"),
     "axle": ({"zone": {"x": ["front_axle", 9], "y": [2, 3]}}, "named wheel"),
-    "narrow": ({"body": "car"}, "not larger than the zone"),
-    "body": ({"body": "dragon"}, "one of cylinder"),
+    "narrow": ({"body": ["car"]}, "not larger than the zone"),
+    "body": ({"body": ["dragon"]}, "one of cylinder"),
     "kinds": ({"criterion": {"kinds": 3}}, "the number of kinds"),
     "of": ({"criterion": {"of": ["lidar", "sonar"]}}, "sonar"),
     "lacking": ({"criterion": {"of": ["camera"]}}, "that the rig has (lidar)"),
@@ -43,10 +43,10 @@ BAD = {
     "no share": ({"criterion": {"share": 0}}, "above 0"),
     "key": ({"zone": {"x": [3, 4], "y": [0, 1], "stepp": 1}}, "unknown key"),
     "preset": ({"preset": "r000"}, "26 names, such as r15"),
-    "ap": ({"body": "pole_ring", "criterion": {"ap": 0.5}}, "a class"),
+    "ap": ({"body": ["pole_ring"], "criterion": {"ap": 0.5}}, "a class"),
     "twice": ({}, "each name once"),
     "mounting": ({"robust_to": {"mounting": True}}, "tolerance"),
-    "heading": ({"headings": "north"}, "angles"),
+    "heading": ({"body": [{"name": "car", "headings": "north"}]}, "72 angles"),
 }
 
 

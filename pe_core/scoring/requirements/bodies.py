@@ -17,12 +17,12 @@ import numpy as np
 from ...base.arrays import Flags, Floats, Ints
 from ...base.codec import Node, hook, read, write
 from ...base.errors import InputError, shown
-from ...base.setting import Named, Part, Triple
+from ...base.setting import Each, Named, Part, Triple
 from ...base.values import A_NAME, Angle, Number, choice
 from ...prior.classes import ROAD_CLASSES
 
 LENGTH = Number(1e-3, 100.0, unit="m", noun="length")
-HEADING = Angle(-360.0, 360.0)
+HEADINGS = Each(Angle(-360.0, 360.0), most=72)
 LOW = Number(0.0, 100.0, unit="m", noun="length")
 BAND_M = 0.1
 """Height of the bands of a body whose visible share is asked for."""
@@ -79,8 +79,7 @@ class Body:
             raise InputError(who, "size", "length, width, height", shown(self.size))
         object.__setattr__(self, "size", size)
         object.__setattr__(self, "low", LOW.checked(who, "low", self.low))
-        headings = tuple(HEADING.checked(who, "headings", h) for h in self.headings)
-        object.__setattr__(self, "headings", headings)
+        object.__setattr__(self, "headings", HEADINGS.checked(who, "headings", self.headings))
 
     @property
     def box(self) -> tuple[float, float, float]:
@@ -279,8 +278,9 @@ BODIES: Mapping[str, Body] = MappingProxyType(
 
 
 @dataclass(frozen=True, slots=True)
-class OwnBody:
-    """The table of a body that is none of `BODIES`: its size, or its diameter and height."""
+class BodyTable:
+    """The table of a body: one of `BODIES` by its name, or the size of an own one, or its diameter
+    and height; and its headings."""
 
     name: Named = "own"
     size: Annotated[tuple[float, float, float] | None, Part(rule=Triple(LENGTH))] = None
@@ -288,25 +288,37 @@ class OwnBody:
     height: Annotated[float | None, Part(rule=LENGTH)] = None
     low: Annotated[float, Part(rule=LOW)] = 0.0
     class_name: Annotated[str | None, Part(key="class", rule=A_NAME)] = None
+    headings: Annotated[tuple[float, ...] | None, Part(rule=HEADINGS)] = None
 
     def __post_init__(self) -> None:
         is_round = self.diameter is not None and self.height is not None
-        if (self.size is None) != is_round:
+        if (self.size is None) != is_round and not self.is_known:
             expected = "a size, or a diameter and a height"
             raise InputError("body", "size", expected, "both" if is_round else "neither")
+
+    @property
+    def is_known(self) -> bool:
+        """Whether it is one of `BODIES`, perhaps with other headings."""
+        own = self.size, self.diameter, self.height, self.low, self.class_name
+        return self.name in BODIES and not any(own)
 
     @property
     def body(self) -> Body:
         """The body."""
         is_round = self.diameter is not None
         size = self.size or (self.diameter, self.diameter, self.height)
-        return Body(self.name, size, self.low, is_round, class_name=self.class_name)  # type: ignore[arg-type]
+        made = (
+            BODIES[self.name]
+            if self.is_known
+            else Body(self.name, size, self.low, is_round, class_name=self.class_name)  # type: ignore[arg-type]
+        )
+        return made if self.headings is None else replace(made, headings=self.headings)
 
 
 def _read_body(node: Node) -> Body:
-    """Return one of `BODIES` by its name, or an own body from its table."""
+    """Return one of `BODIES` by its name, or a body from its table."""
     if isinstance(node.value, Mapping) and set(node.value) != {"name"}:
-        own = read(OwnBody, node)
+        own = read(BodyTable, node)
         with node.naming():
             return own.body
     name = node.value["name"] if isinstance(node.value, Mapping) else node.value
@@ -315,11 +327,17 @@ def _read_body(node: Node) -> Body:
 
 def _write_body(body: Body) -> Any:
     known = BODIES.get(body.name)
-    if known is not None and replace(body, headings=known.headings) == known:
+    if body == known:
         return body.name
+    if known is not None and replace(body, headings=known.headings) == known:
+        return write(BodyTable(body.name, headings=body.headings))
     width, _, height = body.size
     sizes: Any = {"diameter": width, "height": height} if body.is_round else {"size": body.size}
-    return write(OwnBody(body.name, low=body.low, class_name=body.class_name, **sizes))
+    headings = None if body.headings == (0.0,) else body.headings
+    table = BodyTable(
+        body.name, low=body.low, class_name=body.class_name, headings=headings, **sizes
+    )
+    return write(table)
 
 
 hook(Body, _read_body, _write_body, {})

@@ -9,13 +9,13 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from ...base.arrays import Floats
 from ...base.errors import InputError, shown
-from ...base.setting import OneOf, Pair, Panel, check_settings, setting
+from ...base.setting import OneOf, Pair, Panel, Part, check_settings, setting
 from ...base.values import Number, listed
 from ...scene.vehicle import Vehicle
 from ...scene.vehicle_description import Reference
@@ -40,6 +40,7 @@ AREA_M2 = 2e-6  # Twice the area of the smallest polygon
 WHO = "zone"
 SIDES_MENU = (("Right", "As in countries that drive on the right"), ("Left", "As in the UK"))
 SHAPES = ("x and y", "polygon", "ring", "path", "spots")
+OF_SHAPE = Part(shape="shape")
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,16 +84,22 @@ class Zone:
     `InputError` when it has no shape or several, or a value is none.
     """
 
-    x: PlacePair | None = setting(None, ALONG, "A rectangle: from and to along x")
-    y: PlacePair | None = setting(None, ACROSS, "A rectangle: from and to along y")
-    polygon: tuple[PlacePair, ...] = setting((), CornersRule(3), "Corners of an area")
-    ring: tuple[float, float] | None = setting(
+    x: Annotated[PlacePair | None, OF_SHAPE] = setting(
+        None, ALONG, "A rectangle: from and to along x"
+    )
+    y: Annotated[PlacePair | None, OF_SHAPE] = setting(
+        None, ACROSS, "A rectangle: from and to along y"
+    )
+    polygon: Annotated[tuple[PlacePair, ...], OF_SHAPE] = setting(
+        (), CornersRule(3), "Corners of an area"
+    )
+    ring: Annotated[tuple[float, float] | None, OF_SHAPE] = setting(
         None, Pair(RING), "All ground at these distances from the vehicle's outline"
     )
-    path: tuple[PlacePair, ...] = setting(
+    path: Annotated[tuple[PlacePair, ...], OF_SHAPE] = setting(
         (), CornersRule(2), "Corners of a line along which a body moves"
     )
-    spots: tuple[PlacePair, ...] = setting((), CornersRule(1), "Single places")
+    spots: Annotated[tuple[PlacePair, ...], OF_SHAPE] = setting((), CornersRule(1), "Single places")
     z: tuple[float, float] = setting(
         (0.0, 0.0),
         Pair(HEIGHT, same=True),

@@ -84,7 +84,6 @@ def study_of(
     body = vehicle or vehicle_of_scene(scene, depsgraph)
     choices = tuple(_choice(record) for record in counted if record.options)
     document = document_of(settings, is_choice=bool(choices))
-    conditions = conditions_of(settings)
     wanted = document.optimize.search
     mounting = mounting_of(
         counted, mounts_of(scene, depsgraph, records), constraints_of(scene, wanted.mounting)
@@ -98,10 +97,9 @@ def study_of(
             _sensor_table(sensor, record, mounting)
             for sensor, record in zip(rig, counted, strict=True)
         ),
-        requirement=requirements_of(settings),
-        state=tuple(conditions.states),
-        weather=tuple(conditions.weathers),
-        scenario=scenarios_of(settings),
+        requirements=requirements_of(settings),
+        conditions=conditions_of(settings),
+        scenarios=scenarios_of(settings),
         optimize=studies.Optimize(search=replace(wanted, mounting=mounting, goals=goals)),
         selection=replace(document.selection, choices=choices),
     )

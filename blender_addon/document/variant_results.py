@@ -136,7 +136,7 @@ def worth_of_differences(scene: Scene, variants: Sequence[Variant]) -> dict[str,
             space=document.space,
             prior=prior_from_scene(scene),
             model=document.perception,
-            targets=document.metric,
+            targets=document.targets,
         )
         rigs = [rig_of(records_of(row), returns=settings.returns) for row in variants]
     except pe.InputError:  # a sensor that the catalogue does not know, or none

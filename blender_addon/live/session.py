@@ -120,7 +120,7 @@ def read_request(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Scor
     scored = document.document_of(settings, *document.SCORED_PARTS)
     space = scored.space
     model = scored.perception
-    targets = scored.metric
+    targets = scored.targets
     problem_key = prior_key, vehicle_key, space, model, targets
     problem = Problem(problem_key, prior, vehicle, space, model=model, targets=targets)
     return ScoreRequest(problem, rig, (prior_key, space, model, targets))

@@ -130,7 +130,7 @@ class SnapshotReader:
             space = document.document_of(settings, "space").space
             scored = document.document_of(settings, *document.SCORED_PARTS)
             model = scored.perception
-            targets = scored.metric
+            targets = scored.targets
             key = document.prior_key(scene), space, model, targets
             known = self._inputs.get(scene.name)
             if known is None or known.key != key:

@@ -11,9 +11,10 @@ too.
 from collections.abc import Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, TypeVar
+from typing import Annotated, Any, TypeVar
 
 from ..base.errors import InputError, require_kind, require_name, shown
+from ..base.setting import Part
 from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_state import State
@@ -76,8 +77,8 @@ class Conditions:
     `InputError` when names repeat, all weights are 0, or there are more than `MAX_CONDITIONS`.
     """
 
-    states: Sequence[State] = ()
-    weathers: Sequence[Weather] = ()
+    states: Annotated[Sequence[State], Part(key="state")] = ()
+    weathers: Annotated[Sequence[Weather], Part(key="weather")] = ()
 
     def __post_init__(self) -> None:
         for key, source, kind in (("states", "state", State), ("weathers", "weather", Weather)):

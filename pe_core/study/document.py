@@ -5,7 +5,7 @@ bounds and its mount stand in the sensor's table, and the vehicle is a mesh file
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Annotated, Any
 
 from ..base.codec import Node, hook, read_fields, write_fields
@@ -22,12 +22,10 @@ from ..scene.mesh import MeshAxes, require_vehicle_size
 from ..scene.rig import POSITION_AXES, Rig, Sensor
 from ..scene.vehicle import Vehicle
 from ..scene.vehicle_description import Reference
-from ..scene.vehicle_state import State
 from ..scoring.requirements import Requirement
 from ..scoring.targets import TargetRule
 from ..search import AXES, PAPER_FREE, SCHEDULED_METHOD, Limits, Schedule, Selection
 from ..sensors import PerceptionModel
-from ..sensors.weather import Weather
 from .conditions import Conditions
 from .file_names import MESH
 from .scoring_file import FusionTable, ModelFile
@@ -187,18 +185,17 @@ class Document:
     figures: tuple[str, ...] = same_setting(Study, "figures")
     space: PerceptionSpace = field(default_factory=PerceptionSpace)
     prior: Prior = field(default_factory=Prior.road)
-    metric: TargetRule = field(default_factory=TargetRule)
+    targets: Annotated[TargetRule, Part(key="metric")] = field(default_factory=TargetRule)
     measurement: MeasurementTable = field(default_factory=MeasurementTable)
     ap: ModelFile = field(default_factory=ModelFile)
     fusion: FusionTable = field(default_factory=FusionTable)
     vehicle: VehicleTable = field(default_factory=VehicleTable)
     reference: Reference | None = None
     sensor: tuple[SensorTable, ...] = ()
-    requirement: Annotated[tuple[Requirement, ...], Part(changes=True)] = ()
-    weather: tuple[Weather, ...] = ()
-    state: tuple[State, ...] = ()
+    requirements: Annotated[tuple[Requirement, ...], Part(key="requirement", changes=True)] = ()
+    conditions: Annotated[Conditions, Part(inline=True)] = field(default_factory=Conditions)
     time: TimeTable = field(default_factory=TimeTable)
-    scenario: Annotated[tuple[Scenario, ...], Part(changes=True)] = ()
+    scenarios: Annotated[tuple[Scenario, ...], Part(key="scenario", changes=True)] = ()
     limits: Limits = field(default_factory=Limits)
     optimize: Optimize = field(default_factory=Optimize)
     selection: Selection = field(default_factory=Selection)
@@ -207,25 +204,14 @@ class Document:
     def of(cls, study: Study) -> "Document":
         """Return the document of a study."""
         return cls(
-            samples=study.samples,
-            figures=study.figures,
-            space=study.space,
-            prior=study.prior,
-            metric=study.targets,
             measurement=MeasurementTable(study.returns),
             ap=ModelFile.of(study.model),
             fusion=FusionTable(study.model.blind),
             vehicle=VehicleTable.of(study),
-            reference=study.reference,
             sensor=tuple(_sensor_table(sensor, study) for sensor in study.rig),
-            requirement=study.requirements,
-            weather=tuple(study.conditions.weathers),
-            state=tuple(study.conditions.states),
             time=TimeTable(study.frames, study.confirmation),
-            scenario=study.scenarios,
-            limits=study.limits,
             optimize=Optimize(search=study.search),
-            selection=study.selection,
+            **{name: getattr(study, name) for name in IN_BOTH},
         )
 
     @property
@@ -246,26 +232,17 @@ class Document:
         with node.at("vehicle", {}).naming():
             stated = checked_edges(self.vehicle.edge)
         edges = VehicleEdges(own.get("vehicle"), stated, self.reference)
+        shared: dict[str, Any] = {name: getattr(self, name) for name in IN_BOTH}
         return Study(
             rig=Rig(list(self._placed(edges, node))),
-            **own,
             edges=stated,
-            space=self.space,
-            prior=self.prior,
             model=self.perception,
             search=self._search(node),
-            samples=self.samples,
-            figures=self.figures,
-            reference=self.reference,
-            selection=self.selection,
-            targets=self.metric,
-            requirements=self.requirement,
-            conditions=Conditions(self.state, self.weather),
             returns=self.measurement.returns,
             frames=self.time.frames,
             confirmation=self.time.confirmation,
-            scenarios=self.scenario,
-            limits=self.limits,
+            **shared,
+            **own,
         )
 
     def _placed(self, edges: VehicleEdges, node: Node) -> Iterator[Sensor]:
@@ -306,6 +283,10 @@ class Document:
                     expected = f'method = "{SCHEDULED_METHOD}", the only method with this key'
                     found = f'method = "{search.method}"'
                     raise node.error(expected, found, f"optimize.{key_of(name)}")
+
+
+IN_BOTH = ({e.name for e in fields(Document)} & {e.name for e in fields(Study)}) - {"vehicle"}
+"""Fields of a document that a study has as they are."""
 
 
 def _sensor_table(sensor: Sensor, study: Study) -> SensorTable:

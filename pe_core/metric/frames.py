@@ -22,6 +22,8 @@ from .entropy import BLIND_PRECISION, CurveOf, OwnCurve
 
 RATE = Number(0.1, 1000.0, unit="Hz")
 NOISE = Number(0.0, noun="process noise", infinite=True)
+RATE_HZ = 10.0
+"""Frames in a second of a kind of sensor without a rate of its own: most LiDARs'."""
 SAME_TIME = 1e-9
 """Frames of two groups that are less apart [s] are at one time."""
 
@@ -48,7 +50,6 @@ class Frames:
     `frames`: Of the slowest sensor; the others have as many as fit between. The last is of all at
         once.
     `q`: Process noise of a class that has none of its own [1/s]; inf: only the last frame counts.
-    `rate_hz`: Rate of a kind of sensor that has none of its own [Hz].
     `noises, rates`: Process noise by class [1/s], rates by kind of sensor [Hz].
     """
 
@@ -60,9 +61,6 @@ class Frames:
     )
     q: float = setting(
         1.0, NOISE, "Process noise of a class [1/s]", Panel("time_q", "Process Noise")
-    )
-    rate_hz: float = setting(
-        10.0, RATE, "Frames of a sensor in a second", Panel("time_rate_hz", "Frame Rate")
     )
     noises: Mapping[str, float] = field(default_factory=dict)
     rates: Mapping[str, float] = field(default_factory=dict)
@@ -81,7 +79,7 @@ class Frames:
     def rate(self, kind: CurveOf) -> float:
         """Return the rate of a kind [Hz], also of a sensor with an AP curve of its own."""
         name = kind.kind if isinstance(kind, OwnCurve) else kind
-        return self.rates.get(name, self.rate_hz)
+        return self.rates.get(name, RATE_HZ)
 
     def times(self, rates: Sequence[float]) -> list[tuple[float, list[int]]]:
         """Return the times of frames up to the last one at 0 [s], with the groups that have one."""

@@ -13,10 +13,11 @@ import numpy as np
 
 from ..base.arrays import Floats
 from ..base.values import rounded
+from ..metric.frames import RATE_HZ
 from ..scene.rig import Rig
 from ..scene.vehicle import Vehicle
 from ..sensors import PerceptionModel
-from .scenario import CHANCE, RATE_HZ, Scenario, outline
+from .scenario import CHANCE, Scenario, outline
 from .scenario_sight import ScenarioSight
 from .tracks import KEPT, Confirmation, first_frame, longest_run
 

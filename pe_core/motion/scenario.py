@@ -21,6 +21,7 @@ from ..base.files import decode_text, read_bytes
 from ..base.setting import Named, Panel, Part, check_settings, setting
 from ..base.table_reader import load_toml
 from ..base.values import A_NAME, Angle, Number, listed, vector
+from ..metric.frames import RATE_HZ
 from ..scene.vehicle import Vehicle
 from ..scoring.requirements.bodies import Body
 from ..scoring.targets.scene_layout import CAR_SIZE_M
@@ -30,8 +31,6 @@ SECOND = Number(-600.0, 600.0, unit="s", noun="time")
 METRE = Number(-1000.0, 1000.0, unit="m", noun="position")
 FILE = Path(__file__).with_name("scenarios.toml")
 HEADING = Angle(-3600.0, 3600.0)
-RATE_HZ = 10.0
-"""Frames in a second: most LiDARs'. Sensors with a rate of their own have a `FrameClock`."""
 CHANCE = 0.9
 """Probability from which a track counts as confirmed; 0.99 is told beside it."""
 START_S = -6.0  # Time of the first frame where nothing moves

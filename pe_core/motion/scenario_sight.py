@@ -7,13 +7,14 @@ import numpy as np
 
 from ..base.arrays import Floats
 from ..metric.entropy import H_BLIND, ap_of_entropy
+from ..metric.frames import RATE_HZ
 from ..scene.rig import Rig, Sensor
 from ..scene.vehicle import Vehicle
 from ..scoring.targets.object_metric import FusedObjects
 from ..sensors import ObjectMeasurementCache, PerceptionModel
 from .clock import FrameClock, frame_rate, streams
 from .scan import factor_of
-from .scenario import RATE_HZ, Scenario
+from .scenario import Scenario
 from .scenes import ScenarioScenes, scenario_scenes
 from .tracks import Confirmation
 

@@ -21,7 +21,7 @@ from ..base.values import Number, choice, vector
 from ..geometry.poses import ROTATION_DEG
 
 AXIS_NAMES = ("+x", "-x", "+y", "-y", "+z", "-z")
-SCALE = Number(0.0, above=True, cap=1e6)
+SCALE = Number(1e-6, cap=1e6)
 PartBounds = tuple[Floats, Floats, NDArray[np.bool_]]
 """Lowest and highest corners (P, 3) of the parts, and which parts have any triangles."""
 ROOM_M = 4.0
@@ -77,7 +77,7 @@ class Mesh(ShortRepr):
 class MeshAxes:
     """Axes and scale of a mesh file, by a study; other values are from the file, or guessed.
 
-    `InputError` when an axis is unknown, both axes are parallel, the scale is not above 0, or the
+    `InputError` when an axis is unknown, both axes are parallel, the scale is below 1e-6, or the
     rotation is not three angles.
 
     Parameters

@@ -17,7 +17,9 @@ from ..scene.rig import Rig
 from .figures import FIGURES, ON_FRONT
 from .mounts import Mounting
 
-OVER = 200  # Placements over which the gain of a search is taken by default
+GAIN_OVER = 200
+"""Placements over which the gain of a search is taken: fewer often gain nothing by chance, more
+save little of a search of thousands."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +45,7 @@ class Stop:
     gain: float | None = setting(
         None,
         Number(0.0, above=True, cap=1e6),
-        "The search ends when the last placements gained less than this",
+        f"The search ends when the last {GAIN_OVER} placements gained less than this",
         Panel(
             "stop_gain",
             "Gain Below",
@@ -53,12 +55,6 @@ class Stop:
             precision=4,
             step=0.1,
         ),
-    )
-    over: int = setting(
-        OVER,
-        Whole(1, 1_000_000_000),
-        "Number of placements over which the gain is taken",
-        Panel("stop_over", "Over", soft_max=2000, when="stop_gain"),
     )
 
     def __post_init__(self) -> None:

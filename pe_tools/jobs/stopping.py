@@ -8,6 +8,7 @@ from statistics import stdev
 
 from pe_core.base.values import rounded
 from pe_core.search import Objective, Step, Stop, Value
+from pe_core.search.goals import GAIN_OVER
 
 from ..advice import flatness_lines
 from .job import Outcome
@@ -39,7 +40,7 @@ class StopWatch:
         self._started = started
         self._figure = figure
         self._target = None if target is None else figure.to_value(target)
-        self._bests: deque[Value] = deque(maxlen=stop.over + 1)
+        self._bests: deque[Value] = deque(maxlen=GAIN_OVER + 1)
         self._checked: Value | None = None
 
     def reason(self, step: Step) -> str:
@@ -48,7 +49,7 @@ class StopWatch:
             return TARGET
         if self._stop.gain is not None and step.level == len(self._objectives) - 1:
             self._bests.append(step.value)
-            full = len(self._bests) == self._stop.over + 1
+            full = len(self._bests) == GAIN_OVER + 1
             if full and self._bests[0].rise_from(self._bests[-1]) < self._stop.gain:
                 return GAIN
         seconds = self._stop.seconds
@@ -77,7 +78,7 @@ def stop_text(outcome: Outcome) -> str:
     return {
         TARGET: f"ended at its target{at}",
         SECONDS: f"ended after {stop.seconds or 0.0:g} s",
-        GAIN: f"ended: {stop.over:,} placements gained less than {gain}",
+        GAIN: f"ended: {GAIN_OVER} placements gained less than {gain}",
     }.get(outcome.stop_reason, "")
 
 

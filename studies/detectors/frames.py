@@ -59,7 +59,7 @@ def frame_scorer(plan: Plan) -> Callable[[Plan, str, pe.Rig], Json]:
     @cache
     def evaluator(vehicle_name: str, q: float) -> pe.Evaluator:
         rule = plan.frames.motion
-        frames = None if np.isinf(q) else Frames(rule.count, q, rule.rate_hz)
+        frames = None if np.isinf(q) else Frames(rule.count, q)
         model = pe.PerceptionModel(frames=frames)
         return pe.Evaluator(SPACE, pe.Prior.road(), vehicle(vehicle_name), model=model, workers=1)
 

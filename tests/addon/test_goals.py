@@ -59,11 +59,10 @@ def test_goals_of_the_panel_are_those_of_the_study(asked):
     settings.keep_entropy = True
     assert scenes.study().limits == pe.Limits(entropy=-1.25)
     settings.stop_gain = 0.002
-    settings.stop_over = 40
     bpy.data.objects["roof"].perception_entropy.stays = True
     goals = scenes.study().search.goals
-    assert (goals.stop.seconds, goals.stop.over) == (None, 40)
-    assert goals.stop.gain == 0.002 and goals.fixed == ("roof",)
+    assert (goals.stop.seconds, goals.stop.gain) == (None, 0.002)
+    assert goals.fixed == ("roof",)
     settings.start_variants = True
     assert scenes.study().search.goals.starts == ()
     assert bpy.ops.pe.save_variant() == {"FINISHED"}

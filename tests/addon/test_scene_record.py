@@ -128,7 +128,6 @@ def rich(car):
     document.put(settings, ("selection", "max_of_kind"), {"camera": 5})
     settings.time_frames = 5
     settings.time_q = 2.0
-    settings.time_rate_hz = 20.0
     settings.track_needed = 2
     settings.track_window = 4
     settings.track_correlation = 0.5

@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import MISSING, dataclass, fields, is_dataclass
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, Self, TypeVar
 
 from .errors import InputError, naming_table, one_of, shown
 from .setting import (
@@ -67,16 +67,19 @@ class Node:
         """Return an `InputError` about the value, or about a key of it."""
         return InputError(self.source, ".".join(filter(None, (self.path, key))), expected, found)
 
-    def at(self, key: str, default: Any = None) -> "Node":
+    def at(self, key: str, default: Any = None) -> Self:
         """Return the value of a key of this table."""
-        path = f"{self.path}.{key}" if self.path else key
-        return self.with_value(self.table.get(key, default), path)
+        return self.with_value(self.table.get(key, default), self.field(key))
 
-    def with_value(self, value: Any, path: str) -> "Node":
+    def field(self, key: str) -> str:
+        """Return the path of a key of this table."""
+        return f"{self.path}.{key}" if self.path else key
+
+    def with_value(self, value: Any, path: str) -> Self:
         """Return a value below this one."""
         name = self.value.get("name") if isinstance(self.value, Mapping) else None
         owner = name if isinstance(name, str) else self.owner
-        return Node(value, self.source, path, self.folder, owner=owner)
+        return type(self)(value, self.source, path, self.folder, owner=owner)
 
     @property
     def table(self) -> Mapping[str, Any]:
@@ -87,7 +90,7 @@ class Node:
         return self.value
 
     @property
-    def items(self) -> "list[Node]":
+    def items(self) -> list[Self]:
         """The elements of a list; `InputError` where it is none."""
         if not isinstance(self.value, list | tuple):
             raise self.error(f"an array [[{self.path}]]", shown(self.value))
@@ -224,8 +227,11 @@ def read_changed(cls: type[T], node: Node, presets: Mapping[str, T]) -> T:
 def write_changed(instance: Any, presets: Mapping[str, Any]) -> dict[str, Any]:
     """Return the table that `read_changed` reads: of a shipped one, what was changed."""
     base = presets.get(instance.preset)
-    named = {} if base is None else {"preset": instance.preset}
-    return named | write_fields(instance, base)
+    if base is None:
+        return write_fields(instance)
+    changed = write_fields(instance, base)
+    named = {"name": changed["name"]} if "name" in changed else {}
+    return named | {"preset": instance.preset} | changed
 
 
 def record(result: Any) -> Any:

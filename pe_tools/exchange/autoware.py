@@ -115,11 +115,11 @@ def _head(path: Path, parents: Collection[str]) -> tuple[YamlText, str]:
 
 
 def _unit(yaml: YamlText, parent: str) -> Unit:
-    table = Table(yaml.data, yaml.source).table(parent)
+    table = Table(yaml.data, yaml.source).at(parent, {})
     frames = {}
     types = {}
-    for name in table.names:
-        row = table.table(name)
+    for name in table.table:
+        row = table.at(name, {})
         if isinstance(row.raw(TYPE, None), str):
             types[name] = row.text(TYPE)
         position, angles = (foreign.named_numbers(row, keys) for keys in (XYZ, RPY))
@@ -379,8 +379,8 @@ def read_vehicle_info(path: str | Path) -> Reference:
     number that is missing or impossible, raises `InputError`."""
     path = Path(path)
     top = Table(parse_yaml(str(path), foreign.text_of(path)), str(path))
-    nodes = top.table("/**") if "/**" in top else top
+    nodes = top.at("/**", {}) if "/**" in top else top
     keys = ("wheel_radius", "wheel_base", "front_overhang", "rear_overhang")
-    radius, base, front, rear = foreign.named_numbers(nodes.table("ros__parameters"), keys)
+    radius, base, front, rear = foreign.named_numbers(nodes.at("ros__parameters", {}), keys)
     middle = (rear + base + front) / 2.0
     return Reference(rear - middle, radius, base, front, rear_overhang=rear)

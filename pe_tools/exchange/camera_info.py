@@ -105,11 +105,11 @@ def picture_of_info(source: str, text: str) -> Picture:
         top.whole("image_width", rule=values.PIXELS),
         top.whole("image_height", rule=values.PIXELS),
     )
-    k = _data(top.table("camera_matrix"), (9,))
+    k = _data(top.at("camera_matrix", {}), (9,))
     model = top.text("distortion_model", PLUMB_BOB)
     if model not in LENSES:
-        raise top.error("distortion_model", one_of(LENSES, model), shown(model))
-    bent = _data(top.table("distortion_coefficients"), FEWEST.get(model, (4,)))
+        raise top.error(one_of(LENSES, model), shown(model), "distortion_model")
+    bent = _data(top.at("distortion_coefficients", {}), FEWEST.get(model, (4,)))
     fx = k[0]
     fy = k[4]
     cx = k[2]

@@ -168,14 +168,14 @@ def read(path: Path) -> ForeignRig:
 def _sensor(path: Path, row: Table, is_own: bool) -> PortableSensor:
     type_name = row.text("type")
     if SPAWN not in row:  # a pseudo sensor: CARLA's own view of the world
-        return PortableSensor(row.text("id"), ORIGIN, "pseudo", entry=row.data)
-    spawn = row.table(SPAWN)
+        return PortableSensor(row.text("id"), ORIGIN, "pseudo", entry=row.table)
+    spawn = row.at(SPAWN, {})
     numbers = dict(zip(XYZ, values.named_numbers(spawn, XYZ), strict=True))
     numbers |= {key: spawn.number(key, 0.0) for key in RPY}
     position, angles = ([_signed(key, numbers[key], is_own) for key in keys] for keys in (XYZ, RPY))
     pose = values.pose_from(path, row.field(SPAWN), position, angles, degrees=True)
     kind = _kind(type_name.removeprefix("sensor."), row.text("id"))
-    sensor = PortableSensor(row.text("id"), pose, kind, entry=row.data)
+    sensor = PortableSensor(row.text("id"), pose, kind, entry=row.table)
     if kind == CAMERA and all(key in row for key in ("image_size_x", "image_size_y", "fov")):
         size = row.whole("image_size_x", rule=PIXELS), row.whole("image_size_y", rule=PIXELS)
         picture = picture_of_fov(math.radians(row.number("fov", rule=FOV)), size)
@@ -206,7 +206,7 @@ def _scan(row: Table) -> Scan:
     beams = row.number("points_per_second", rule=RATE) / frames
     low, high = (math.radians(row.number(key, rule=UP)) for key in ("lower_fov", "upper_fov"))
     if low > high:
-        raise row.error("lower_fov", "an angle up to upper_fov", f"{math.degrees(low):g}")
+        raise row.error("an angle up to upper_fov", f"{math.degrees(low):g}", "lower_fov")
     azimuths = max(round(beams / channels), 1)
     half = math.radians(row.number(ACROSS, 360.0, rule=AROUND)) / 2.0
     return Scan(

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from pe_core.base.errors import InputError, shown
+from pe_core.base.setting import OneOf
 from pe_core.base.table_reader import Table, dump_json
 from pe_core.base.values import FINITE, Number, vector
 from pe_core.geometry.poses import METRES, Pose
@@ -83,7 +84,7 @@ def read(path: Path) -> ForeignRig:
     """Read the sensors of a rig, one of which has a pose. A sensor without a pose (CAN, GPS) takes
     its kind from its protocol."""
     document = json_of(path)
-    rig = Table(document, str(path)).table("rig")
+    rig = Table(document, str(path)).at("rig", {})
     rows = json_rows(path, rig.raw("sensors"), "rig.sensors")
     if not any(POSE_KEY in row for row in rows):
         raise InputError(path, "rig.sensors", f"sensors with {POSE_KEY}", "none")
@@ -98,7 +99,7 @@ def _corrected(path: Path, row: Table, nominal: Pose) -> Pose:
     turn = row.raw(TURN_CORRECTION, None)
     if shift is None and turn is None:
         return nominal
-    angles = [0.0, 0.0, 0.0] if turn is None else row.table(TURN_CORRECTION).raw(ROTATION_KEY)
+    angles = [0.0, 0.0, 0.0] if turn is None else row.at(TURN_CORRECTION, {}).raw(ROTATION_KEY)
     field = row.field(TURN_CORRECTION)
     correction = pose_from(path, field, (0.0, 0.0, 0.0), angles, degrees=True)
     moved = (0.0, 0.0, 0.0) if shift is None else shift
@@ -109,14 +110,14 @@ def _corrected(path: Path, row: Table, nominal: Pose) -> Pose:
 def _sensor(path: Path, row: Table) -> PortableSensor:
     protocol = row.text("protocol", "").partition(".")[0]
     if POSE_KEY not in row:
-        return PortableSensor(row.text("name"), ORIGIN, protocol or "other", entry=row.data)
-    pose = row.table(POSE_KEY)
+        return PortableSensor(row.text("name"), ORIGIN, protocol or "other", entry=row.table)
+    pose = row.at(POSE_KEY, {})
     position = pose.raw(POSITION_KEY)
     angles = pose.raw(ROTATION_KEY)
     kind = None if protocol in UNKNOWN else protocol
     _, _, model = row.text("parameter", "").partition("model=")
     placed = _corrected(path, row, pose_from(path, pose.path, position, angles, degrees=True))
-    picture, note = read_properties(row.table("properties")) if kind == CAMERA else (None, "")
+    picture, note = read_properties(row.at("properties", {})) if kind == CAMERA else (None, "")
     return PortableSensor(
         row.text("name"),
         placed,
@@ -124,7 +125,7 @@ def _sensor(path: Path, row: Table) -> PortableSensor:
         model.split(",")[0] or None,
         picture=picture,
         told=note,
-        entry=row.data,
+        entry=row.table,
     )
 
 
@@ -171,10 +172,10 @@ def read_properties(properties: Table) -> tuple[Picture | None, str]:
         for name, default in (("linear-c", 1.0), ("linear-d", 0.0), ("linear-e", 0.0)):
             value = number(name) if name in properties else default
             if abs(value - default) > 0.01:  # one polynomial serves both axes
-                raise properties.error(name, f"{default:g}, within 0.01", f"{value:g}")
+                raise properties.error(f"{default:g}, within 0.01", f"{value:g}", name)
         note = ""
         forward = coefficients
-        direction = properties.text("polynomial-type", "", choices=("", FORWARD, BACKWARD))
+        direction = properties.text("polynomial-type", "", rule=OneOf(("", FORWARD, BACKWARD)))
         if not direction and key == POLYNOMIALS[0] and coefficients[1] >= GENTLE:
             direction = FORWARD
         if direction != FORWARD:
@@ -209,12 +210,12 @@ def _rising(properties: Table, key: str) -> list[float]:
     value = properties.raw(key)
     expected = f"2 to {MAX_POWER + 1} numbers, the first of them 0 and the second above 0"
     if not isinstance(value, str) or not 2 <= len(value.split()) <= MAX_POWER + 1:
-        raise properties.error(key, expected, shown(value))
+        raise properties.error(expected, shown(value), key)
     coefficients = values.figures(
         properties.source, properties.field(key), value, count=None, rule=values.COEFFICIENT
     )
     if coefficients[0] != 0.0 or coefficients[1] < GENTLEST:
-        raise properties.error(key, expected, shown(value))
+        raise properties.error(expected, shown(value), key)
     return coefficients
 
 

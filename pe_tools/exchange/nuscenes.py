@@ -124,14 +124,14 @@ def _sensor(path: Path, row: Table, sensor_row: Table) -> PortableSensor:
     if value != []:
         matrix = numbers(value)
         if matrix is None or matrix.shape != (3, 3):
-            raise row.error("camera_intrinsic", "a 3 x 3 matrix, or []", shown(value))
+            raise row.error("a 3 x 3 matrix, or []", shown(value), "camera_intrinsic")
         lens, skew_note = pinhole_of(path, row.field("camera_intrinsic"), matrix)
         picture = Picture(lens)
         if row.raw("camera_distortion", []):
             picture, note = _bent(row, picture)
         note = "; ".join(filter(None, (skew_note, note)))
     pose = frames.pose_of(rotation, position)
-    return PortableSensor(name, pose, kind, model=None, picture=picture, told=note, entry=row.data)
+    return PortableSensor(name, pose, kind, model=None, picture=picture, told=note, entry=row.table)
 
 
 def _bent(row: Table, picture: Picture) -> tuple[Picture, str]:
@@ -140,7 +140,7 @@ def _bent(row: Table, picture: Picture) -> tuple[Picture, str]:
     coefficients = numbers(values)
     if coefficients is None or coefficients.ndim != 1 or len(coefficients) not in (4, 5, 6):
         expected = "4 to 6 numbers: k1, k2, p1, p2, k3, k4"
-        raise row.error("camera_distortion", expected, shown(values))
+        raise row.error(expected, shown(values), "camera_distortion")
     k1, k2, p1, p2, k3, k4 = [*map(float, coefficients), 0.0, 0.0][:6]
     lens = picture.lens
     note = "its sixth coefficient, of r^8, is left out" if k4 else ""

@@ -156,7 +156,7 @@ def read(path: Path) -> ForeignRig:
     for kind, key in (*LISTS.items(), (None, OTHER)):
         rows = top.messages(key)
         if rows:
-            top.fields[key] = [row.fields for row in rows]
+            top.value[key] = [row.value for row in rows]
         for row in rows:
             number = _id_of(row)
             number = len(sensors) if number is None else number
@@ -164,7 +164,7 @@ def read(path: Path) -> ForeignRig:
                 raise InputError(path, row.field("sensor_id"), "an id used once", number)
             sensors[number] = _sensor(path, row, kind, number, max_range=max_range)
     in_order = tuple(sensors[number] for number in sorted(sensors))
-    return ForeignRig(in_order, document=top.fields)
+    return ForeignRig(in_order, document=top.value)
 
 
 def _sensor(
@@ -176,7 +176,7 @@ def _sensor(
     coordinates = [position.number(key, METRES) or 0.0 for key in XYZ]
     angles = [orientation.number(key) or 0.0 for key in RPY]
     pose = values.pose_from(path, mounting.path, coordinates, angles)
-    sensor = PortableSensor(f"{kind or 'sensor'}_{number}", pose, kind, entry=row.fields)
+    sensor = PortableSensor(f"{kind or 'sensor'}_{number}", pose, kind, entry=row.value)
     # No release of OSI has a range per sensor, but configurations written by hand do.
     reach = figures.number("range", RANGE) or max_range
     across, up = (figures.number(key, WIDEST) for key in FIELD)
@@ -221,7 +221,7 @@ def _scan(path: Path, row: Message, max_range: float) -> Scan:
     assert directions is not None
     count = row.figures.whole("num_of_pixels", Whole(1))
     if count is not None and count != len(directions):
-        raise row.error("num_of_pixels", f"{len(directions)}, one a direction", count)
+        raise row.error(f"{len(directions)}, one a direction", count, "num_of_pixels")
     elevations = np.arctan2(directions[:, 2], np.hypot(directions[:, 0], directions[:, 1]))
     fov = (-math.pi, math.pi)
     return Scan(
@@ -239,16 +239,15 @@ def _scan(path: Path, row: Message, max_range: float) -> Scan:
 class Message(Table):
     """A protobuf message: a table with the schema's field names, ``like_this``. A field that is
     null is absent; one that occurs under both of its names raises `InputError`. Numbers may be
-    given as text. `fields` are its values by name. Names in nested messages are converted when
-    these are accessed."""
+    given as text. Names in nested messages are converted when these are accessed."""
 
     def __init__(self, data: Any, source: str, path: str = "") -> None:
-        self.fields = fields = dict[str, Any]()
-        super().__init__(fields if isinstance(data, dict) else data, source, path)
-        for key, value in data.items():
+        fields = dict[str, Any]()
+        super().__init__(fields, source, path)
+        for key, value in Table(data, source, path).table.items():
             name = CAPITAL.sub(r"_\1", key).lower()
             if name in fields:
-                raise self.error(name, "a field once", "both snake_case and camelCase")
+                raise self.error("a field once", "both snake_case and camelCase", name)
             if value is not None:
                 fields[name] = value
 
@@ -265,5 +264,5 @@ class Message(Table):
         """Return the messages of a repeated field; an empty list if the field is absent."""
         rows = self.raw(key, [])
         if not isinstance(rows, list):
-            raise self.error(key, "a list", type(rows).__name__)
+            raise self.error("a list", type(rows).__name__, key)
         return [Message(row, self.source, f"{self.field(key)}[{k}]") for k, row in enumerate(rows)]

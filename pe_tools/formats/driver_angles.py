@@ -45,11 +45,11 @@ def _ouster(source: str, data: Any) -> list[Channel]:
     """Return the channels of Ouster's metadata, in its order: the highest first. Newer metadata
     has the angles [deg] in a part of its own."""
     table = Table(data, source)
-    table = table.table(OUSTER_PART) if OUSTER_PART in table else table
+    table = table.at(OUSTER_PART, {}) if OUSTER_PART in table else table
     up = _angles(table, OUSTER_UP)
     around = _angles(table, OUSTER_AROUND)
     if len(up) != len(around):
-        raise table.error(OUSTER_AROUND, f"{len(up)} angles, one a channel", len(around))
+        raise table.error(f"{len(up)} angles, one a channel", len(around), OUSTER_AROUND)
     return [
         checked_channel(
             source,
@@ -66,14 +66,14 @@ def _angles(table: Table, key: str) -> list[float]:
     """Return a list of finite angles [deg] that is not empty."""
     angles = numbers(table.raw(key))
     if angles is None or angles.ndim != 1 or not len(angles):
-        raise table.error(key, "a list of angles, one a channel", "none")
+        raise table.error("a list of angles, one a channel", "none", key)
     return [FINITE.checked(table.source, table.field(key), angle) for angle in angles.tolist()]
 
 
 def _velodyne(source: str, data: Any) -> list[Channel]:
     """Return the channels of a calibration file of Velodyne's ROS driver, by id."""
     channels = []
-    for laser in Table(data, source).tables(VELODYNE_LASERS):
+    for laser in Table(data, source).at(VELODYNE_LASERS, []).items:
         number = laser.whole(VELODYNE_ID, rule=LASER_ID)
         elevation = math.degrees(laser.number(VELODYNE_UP, rule=FINITE))
         offset = VELODYNE_SIGN * math.degrees(laser.number(VELODYNE_AROUND, rule=FINITE))

@@ -169,7 +169,7 @@ def is_result_of(result: Mapping[str, Any], study: Study) -> bool:
     table = Table(result, RESULT)
     if "study_sha256" not in table or "run" not in table:
         return False
-    version = table.table("run").table("versions").text(PROGRAM)
+    version = table.at("run", {}).at("versions", {}).text(PROGRAM)
     return version == __version__ and table.text("study_sha256") == fingerprint(study)
 
 

@@ -16,6 +16,8 @@ import numpy as np
 import pe_core as pe
 from pe_core import InputError
 from pe_core.base import Floats, Number, Table, read_bytes
+from pe_core.base.setting import OneOf
+from pe_core.base.values import ANY, vector
 
 from ..results_file import read_json
 
@@ -96,35 +98,39 @@ def positions_of(names: Sequence[str]) -> list[int]:
 def read_rigs(path: Path, detectors: Sequence[str] = DETECTORS) -> PublishedRigs:
     """Return the rigs of a file and the AP of some detectors; `InputError` where it has others."""
     table = Table(read_json(path), str(path))
-    rigs = table.table("rigs")
-    if set(rigs.names) != set(RIGS):
-        raise InputError(path, "rigs", ", ".join(RIGS), ", ".join(rigs.names))
-    aps = table.table("ap")
+    rigs = table.at("rigs", {})
+    if set(rigs.table) != set(RIGS):
+        raise InputError(path, "rigs", ", ".join(RIGS), ", ".join(rigs.table))
+    aps = table.at("ap", {})
     found: dict[str, dict[str, Floats]] = {}
     for detector in detectors:
-        if detector not in aps.names:
-            raise InputError(path, "ap", f"the detector {detector}", ", ".join(aps.names))
-        of_detector = aps.table(detector)
-        rows = [of_detector.table(name) for name in RIGS]
+        if detector not in aps:
+            raise InputError(path, "ap", f"the detector {detector}", ", ".join(aps.table))
+        of_detector = aps.at(detector, {})
+        rows = [of_detector.at(name, {}) for name in RIGS]
         found[detector] = {
             outcome: np.array([row.number(outcome, rule=SHARE) for row in rows])
             for outcome in OUTCOMES
         }
-    read = [_rig(rigs.table(name), name) for name in RIGS]
+    read = [_rig(rigs.at(name, {}), name) for name in RIGS]
     return PublishedRigs(read, found, hashlib.sha256(read_bytes(path)).hexdigest())
 
 
 def _rig(row: Table, name: str) -> PublishedRig:
-    vehicle = row.text("vehicle", choices=tuple(SIZES_M))
-    cameras = [_camera(table, number) for number, table in enumerate(row.tables("cameras"))]
+    vehicle = row.text("vehicle", rule=OneOf(tuple(SIZES_M)))
+    cameras = [_camera(table, number) for number, table in enumerate(row.at("cameras", []).items)]
     return PublishedRig(name, vehicle, pe.Rig(cameras))
+
+
+def _three(table: Table, key: str) -> tuple[float, ...]:
+    return vector(table.source, table.field(key), table.raw(key), count=3, rule=ANY)
 
 
 def _camera(table: Table, number: int) -> pe.Sensor:
     hfov = table.number("hfov_deg", rule=FIELD)
-    x, y, z = table.numbers("position", 3)
-    roll, pitch, yaw = table.numbers("rotation", 3)
+    x, y, z = _three(table, "position")
+    roll, pitch, yaw = _three(table, "rotation")
     if z < PLATE_M:
-        raise table.error("position", f"z of at least {PLATE_M:g} m, above the plate", f"{z:g}")
+        raise table.error(f"z of at least {PLATE_M:g} m, above the plate", f"{z:g}", "position")
     model = pe.Camera(f"pinhole of {hfov:g} deg", *IMAGE, math.radians(hfov))
     return pe.Sensor(f"camera {number}", model, pe.Pose.from_degrees((x, y, z), (roll, pitch, yaw)))

@@ -158,8 +158,8 @@ class RunFiles:
         for key, expected in head:
             if table.raw(key) != expected:
                 raise InputError(path, key, str(expected), table.raw(key))
-        parts = table.table("placements") if run.placement is None else None
-        for part in [table] if parts is None else [parts.table(k) for k in parts.names]:
+        parts = table.at("placements", {}) if run.placement is None else None
+        for part in [table] if parts is None else [parts.at(k) for k in parts.table]:
             part.number("ap", rule=SHARE)
         return data
 

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from pe_core.base.codec import Recorded
 from pe_core.version import __version__
 
 TABLE = Path(__file__).with_name("known_defects.toml")
@@ -19,7 +20,7 @@ IN_EVERY_RESULT = "entropy"
 
 
 @dataclass(frozen=True, slots=True)
-class Defect:
+class Defect(Recorded):
     """A row of the table: `first` and `fixed` are versions, "" where it is not fixed yet;
     `touches` are keys of result.json, `link` is a page below docs/."""
 
@@ -35,10 +36,6 @@ class Defect:
         number = _numbers(version)
         begun = _numbers(self.first) <= number
         return begun and not (self.fixed and _numbers(self.fixed) <= number)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the row as plain data."""
-        return asdict(self)
 
 
 @lru_cache(maxsize=1)

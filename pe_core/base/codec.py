@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import MISSING, dataclass, fields, is_dataclass
 from pathlib import Path
-from typing import Any, NamedTuple, Self, TypeVar
+from typing import Any, ClassVar, NamedTuple, Self, TypeVar
 
 from .errors import InputError, naming_table, one_of, shown
 from .setting import (
@@ -234,6 +234,25 @@ def write_changed(instance: Any, presets: Mapping[str, Any]) -> dict[str, Any]:
     return named | {"preset": instance.preset} | changed
 
 
+class Recorded:
+    """Base of results: their plain data, and back. `derived` names properties that the data have
+    beside the fields."""
+
+    __slots__ = ()
+    derived: ClassVar[tuple[str, ...]] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as plain JSON data."""
+        data: dict[str, Any] = record(self)
+        return data
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> Self:
+        """Return it from the data of `to_dict`."""
+        found: Self = read_record(cls, data)
+        return found
+
+
 def record(result: Any) -> Any:
     """Return a result as plain data: all fields of dataclasses and named tuples, also None; without
     those that are `AtTimes`, while they are None."""
@@ -247,7 +266,8 @@ def record(result: Any) -> Any:
                 data |= record(value)
             elif value is not None or not each.part.at_times:
                 data[each.key] = record(value)
-        return data
+        derived: tuple[str, ...] = result.derived if isinstance(result, Recorded) else ()
+        return data | {name: record(getattr(result, name)) for name in derived}
     if isinstance(result, Mapping):
         return {str(key): record(value) for key, value in result.items()}
     return [record(each) for each in result] if isinstance(result, list | tuple) else result

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.arrays import Floats, read_only
-from ..base.codec import read_record, record
+from ..base.codec import Recorded
 from ..base.notebook import ShortRepr, Tabular
 from ..base.setting import AtTimes, NotStored
 from ..base.values import DECIMALS, error_text, rounded, shown_share
@@ -194,7 +194,7 @@ class TrafficAp:
 
 
 @dataclass(frozen=True, slots=True)
-class ObjectScore(Tabular):
+class ObjectScore(Recorded, Tabular):
     """Score of a rig on objects, beside entropy and coverage.
 
     Attributes
@@ -221,12 +221,6 @@ class ObjectScore(Tabular):
             | {f"reach {direction} [m]": far for direction, far in c.reach.items()}
             for name, c in self.per_class.items()
         ]
-
-    @classmethod
-    def from_dict(cls, data: Mapping[str, Any]) -> "ObjectScore":
-        """Return the score from the data of `codec.record`."""
-        found: ObjectScore = read_record(cls, data)
-        return found
 
 
 def zone_masks(x: NDArray[np.float64], y: NDArray[np.float64]) -> dict[str, NDArray[np.bool_]]:
@@ -331,7 +325,7 @@ def ground_map(columns: NDArray[np.float64]) -> GroundMap:
 
 
 @dataclass(frozen=True, slots=True)
-class Score(Tabular):
+class Score(Recorded, Tabular):
     """Score of a rig.
 
     Attributes
@@ -392,11 +386,6 @@ class Score(Tabular):
                     row["occluded"] = part.occluded / part.beams if part.beams else None
                 rows.append(row)
         return rows
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the score as plain JSON data, without ground map and scatter."""
-        data: dict[str, Any] = record(self)
-        return data
 
 
 def sensor_score(entropy: float, coverage: float, lost: float, occlusion: Occlusion) -> SensorScore:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from ..base.codec import read_record, record
+from ..base.codec import Recorded
 from ..base.values import rounded
 from ..scene.rig import Rig
 from ..scoring.score import TrafficAp
@@ -39,7 +39,7 @@ def shown_figures(named: Collection[str], limits: FigureLimits) -> tuple[str, ..
 
 
 @dataclass(frozen=True, slots=True)
-class KeyFigures:
+class KeyFigures(Recorded):
     """What a rig is decided by beside its entropy: expected AP in traffic, and what is blind. What
     was not asked for is as what is not known.
 
@@ -87,11 +87,6 @@ class KeyFigures:
             unknown={key: lacking for key, lacking in unknown.items() if lacking},
         )
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the figures as plain JSON data."""
-        data: dict[str, Any] = record(self)
-        return data
-
     def errors_from(self, other: KeyFigures) -> dict[str, float]:
         """Return the standard errors of the differences from another rig's figures, by the names of
         `FIGURES`; figures without a scatter are left out."""
@@ -103,12 +98,6 @@ class KeyFigures:
             for key, ring in AP_RINGS.items()
             if not ring or ring in common
         }
-
-    @classmethod
-    def from_dict(cls, data: Mapping[str, Any]) -> KeyFigures:
-        """Return the figures from the data of `to_dict`."""
-        found: KeyFigures = read_record(cls, data)
-        return found
 
 
 @dataclass(frozen=True, slots=True)

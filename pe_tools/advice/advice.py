@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from pe_core.base.codec import record
+from pe_core.base.codec import Recorded
 from pe_core.scoring.score import SURE
 from pe_core.search import Reading
 from pe_core.study.suggestion import Suggestion
@@ -22,7 +22,7 @@ FRAGILE_NATS = 0.05
 
 
 @dataclass(frozen=True, slots=True)
-class Advice:
+class Advice(Recorded):
     """A warning about a probable mistake. Nothing is refused because of it.
 
     Attributes
@@ -60,11 +60,6 @@ class Advice:
     def line(self) -> str:
         """The sentence after the name of its subject."""
         return f"{self.subject or SUBJECTS.get(self.code, 'vehicle')}: {self.text}"
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the warning as plain JSON data."""
-        data: dict[str, Any] = record(self)
-        return data
 
 
 def fragile(

@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
 from pe_core.base.arrays import Floats
+from pe_core.base.codec import Recorded
 from pe_core.base.errors import InputError, plural
 from pe_core.base.values import listed, rounded, vector
 from pe_core.geometry.grids import PerceptionSpace
@@ -49,13 +49,14 @@ class SensorAtPlace:
 
 
 @dataclass(frozen=True, slots=True)
-class AskedPlace:
+class AskedPlace(Recorded):
     """Result of a location query: one voxel, and what each sensor measures there. `center` is its
     centre [m], `entropy` H (eq. 8) [nats], `ap` the average precision of all sensors fused, 0 to 1;
     `seen` is whether any sensor sees it. `density` is the prior density of objects, relative to the
     mean over the space; 0 in the vehicle. `in_vehicle` is whether it is in the vehicle's own
     volume, which is not scored. `sensors` are in the rig's order."""
 
+    derived = ("text",)
     center: tuple[float, float, float]
     entropy: float
     ap: float
@@ -73,10 +74,6 @@ class AskedPlace:
         expected = f"objects are {how}as likely here as on average"
         expected = expected if self.density else "nothing is expected here"
         return (_headline(self), expected, *map(_sensor_line, self.sensors))
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the result as plain JSON data, with its text."""
-        return {**asdict(self), "center": list(self.center), "text": list(self.text)}
 
 
 def ask_place(

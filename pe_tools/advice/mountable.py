@@ -3,10 +3,12 @@
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
+from pe_core.base.codec import Recorded
+from pe_core.base.setting import NotStored, Part
 from pe_core.base.values import error_text, rounded
 from pe_core.geometry.poses import rotate
 from pe_core.scene.rig import Rig
@@ -22,7 +24,7 @@ CM = 100.0
 
 
 @dataclass(frozen=True, slots=True)
-class Rounding:
+class Rounding(Recorded):
     """What it costs to have a placement on the study's grid.
 
     `cost`: How much worse its value is than that of the best one off the grid [nats, or expected
@@ -36,13 +38,8 @@ class Rounding:
     cost: float | None
     stderr: float
     evaluations: int
-    off: tuple[str, ...] = ()
-    rig: Rig | None = None
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return it as plain JSON data."""
-        own = {"cost": self.cost, "stderr": self.stderr, "evaluations": self.evaluations}
-        return {**own, "off_grid": list(self.off)}
+    off: Annotated[tuple[str, ...], Part(key="off_grid")] = ()
+    rig: Annotated[Rig | None, NotStored] = None
 
     def lines(self, unit: str) -> list[str]:
         """Return what rounding cost in lines."""

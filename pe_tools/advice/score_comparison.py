@@ -5,9 +5,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import permutations
 from statistics import NormalDist
-from typing import Any
 
 from pe_core import catalog
+from pe_core.base.codec import Recorded
 from pe_core.motion.drive_by import shown_margin
 from pe_core.scene.rig import SensorModel
 from pe_core.scoring.sampling import BLOCKS
@@ -116,7 +116,7 @@ def _error(score: Score, figure: FigureKey) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class ComparedRow:
+class ComparedRow(Recorded):
     """One figure of several rigs: a row of a comparison table. `group`, `name`: "rig", "zone",
     "class" or "in traffic", and the name of the zone or class. `measure`: A key of `FIGURES`.
     `values`: by score; None for a score without this zone, class or scenario; `NEVER` for a
@@ -124,6 +124,7 @@ class ComparedRow:
     values; 0 where nothing is sampled. `factor`: number of standard errors beyond which a
     difference is significant (`sure_factor`)."""
 
+    derived = ("differences", "best", "spread")
     group: str
     name: str
     measure: str
@@ -226,11 +227,6 @@ class ComparedRow:
         b = self.values[other]
         threshold = max(self.how.least, self.factor * self.errors[one][other])
         return a is not None and b is not None and abs(a - b) > threshold
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the row as plain JSON data."""
-        keys = "group name measure values differences best errors factor spread"
-        return {key: getattr(self, key) for key in keys.split()}
 
 
 def compare(scores: Mapping[str, Score]) -> tuple[ComparedRow, ...]:

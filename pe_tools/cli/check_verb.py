@@ -190,7 +190,7 @@ def verdicts_csv(verdicts: Sequence[Verdict]) -> str:
     rows: list[list[object]] = [[*COLUMNS]]
     for verdict in verdicts:
         x, y = verdict.worst or ("", "")
-        data = verdict.to_dict()
+        data = record(verdict.row)
         listed = {
             "worst_x": x,
             "worst_y": y,

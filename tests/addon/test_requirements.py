@@ -139,7 +139,7 @@ class TestZones:
     def test_it_shows_the_verdicts_of_the_engine(self, held):
         shape = self.shape(held)
         verdicts = scenes.study().verdicts()
-        assert [v.to_dict() for v in shape.verdicts] == [v.to_dict() for v in verdicts]
+        assert [v.row for v in shape.verdicts] == [v.row for v in verdicts]
         met = sum(verdict.met for verdict in verdicts)
         assert shape.legend.title == f"{met} of 3 requirements met"
 

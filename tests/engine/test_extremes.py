@@ -9,6 +9,7 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
+from pe_core.base.codec import record
 from pe_core.base.setting import Triple, settings_of
 from pe_core.base.values import Angle, Number
 from pe_core.metric.entropy import ApCurve
@@ -78,7 +79,7 @@ def answers(given):
     json.dumps(score.to_dict(), allow_nan=False)
     assert math.isfinite(score.entropy)
     for verdict in given.verdicts(given.rig):
-        json.dumps(verdict.to_dict(), allow_nan=False)
+        json.dumps(record(verdict.row), allow_nan=False)
     if given.conditions:
         json.dumps(condition_table(given).to_dict(), allow_nan=False)
 

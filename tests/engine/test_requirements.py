@@ -162,7 +162,7 @@ def test_losses_hidden_parts_and_the_worst_place_are_named():
     told = [part.removesuffix(")").split(" (") for part in unseen_text(lost.unseen_by).split("; ")]
     texts = {name: text for text, names in told for name in names.split(", ")}
     assert texts == {name: reason_text(reason) for name, reason in lost.unseen_by.items()}
-    assert tuple(lost.to_dict()["worst"]) == lost.worst
+    assert lost.row.summary.worst == lost.worst
 
 
 def test_mounting_errors_count_where_they_are_asked_for():

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.arrays import Flags, Floats, Ints
-from ...base.codec import record
 from ...base.notebook import ShortRepr
 from ...base.setting import Part
 from ...scene.rig import Rig, Sensor
@@ -334,11 +333,6 @@ class Verdict(ShortRepr):
     def counted_margin(self) -> float:
         """Its margin [m]; of a path or spots that fail, which have none, one below all others."""
         return -FARTHEST_M * (2.0 - self.share) if self.margin is None else self.margin
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the verdict as plain data, as in result.json."""
-        data: dict[str, Any] = record(self.row)
-        return data
 
 
 def body_verdict(

@@ -45,7 +45,7 @@ def figures_of(scene: bpy.types.Scene) -> list[advice.KeyFigures]:
     if problem is None or score is None:
         return []
     names = _shown(scene)
-    now = figure_cache.get(_key(problem, score.rig, names))
+    now = figure_cache.get(_key(problem, score.request.rig, names))
     if now is None or score is not state.score:
         return state.shown_figures[-1:]
     rig = None if score.baseline is None else score.baseline.rig

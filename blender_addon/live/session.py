@@ -14,10 +14,10 @@ from ..caches import change_events, sensor_cache, vehicle_cache
 from ..choices import BEFORE_MOVE
 from ..engine import pe
 from ..processes import engine_calls, engine_process
-from ..processes.engine_calls import Problem, ScoredRig, ScoreRequest, rig_key
+from ..processes.engine_calls import Problem, ScoreRequest, rig_key
 from ..view import viewport
 from . import background_figures
-from .state import Baseline, LastRead, LiveScore, LiveState, live_state, states
+from .state import Baseline, LiveScore, LiveState, live_state, states
 
 VEHICLE_MOVES = "The vehicle is moving: scored again when it stops"
 MOVING = "TRANSFORM_OT_"
@@ -81,15 +81,9 @@ def request_score(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, mov
         return
     if moving:
         note_move(state, _moving_operator(), request.rig)
-    if state.last_read is not None and state.last_read.prior != request.prior_key:
+    if state.last_read is not None and state.last_read.prior_key != request.prior_key:
         state.before_move = None  # entropies under two priors cannot be compared
-    state.last_read = LastRead(
-        change_events.change_count(),
-        vehicle_cache.shared.version,
-        request.prior_key,
-        request.rig,
-        problem=request.problem.key,
-    )
+    state.last_read = request
     baseline = baseline_of(scene, request, moving)
     needed = None if baseline is None or moving or baseline.summary else baseline.rig
     deliver = partial(take_score, name, request, number=number, baseline=baseline, moving=moving)
@@ -123,26 +117,29 @@ def read_request(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Scor
     targets = scored.targets
     problem_key = prior_key, vehicle_key, space, model, targets
     problem = Problem(problem_key, prior, vehicle, space, model=model, targets=targets)
-    return ScoreRequest(problem, rig, (prior_key, space, model, targets))
+    return ScoreRequest(
+        problem,
+        rig,
+        (prior_key, space, model, targets),
+        changes=change_events.change_count(),
+        vehicle_version=vehicle_cache.shared.version,
+    )
 
 
 def take_score(
     name: str,
     request: ScoreRequest,
-    scored: ScoredRig,
+    scores: tuple[pe.Score, pe.Score | None],
     *,
     number: int,
     baseline: Baseline | None,
     moving: bool,
 ) -> None:
     """Store a score that the engine made, and have it drawn."""
-    state = live_state(name)
-    problem = request.problem.key
-    if baseline is not None and scored.baseline is not None:
-        baseline.summary = scored.baseline
-    state.put(
-        LiveScore(scored.summary, baseline, not moving, request.rig, number=number, problem=problem)
-    )
+    summary, before = scores
+    if baseline is not None and before is not None:
+        baseline.summary = before
+    live_state(name).put(LiveScore(summary, baseline, not moving, request, number=number))
     signals.live_score_changed.emit()
 
 
@@ -217,11 +214,16 @@ def note_move(state: LiveState, operator: int, now: pe.Rig | None) -> None:
     state.operator = operator
     exact = state.exact
     summary = None
-    if exact and exact.problem == last.problem and rig_key(exact.rig) == rig_key(last.rig):
+    if exact and _is_same(exact.request, last):
         summary = exact.summary
     if operator or summary is not None:  # otherwise a field is dragged, or typed in several times
         rig = None if now is None else last.rig
         state.before_move = Baseline(MOVE_LABEL, rig, summary)
+
+
+def _is_same(one: ScoreRequest, other: ScoreRequest) -> bool:
+    same_problem = one.problem.key == other.problem.key
+    return same_problem and rig_key(one.rig) == rig_key(other.rig)
 
 
 def baseline_of(scene: bpy.types.Scene, request: ScoreRequest, moving: bool) -> Baseline | None:

@@ -5,10 +5,9 @@ A state is made when its scene is first asked for. It holds no object of Blender
 
 from collections.abc import Hashable
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 from ..engine import advice, pe
-from ..processes.engine_calls import Problem
+from ..processes.engine_calls import Problem, ScoreRequest
 
 
 @dataclass(slots=True, eq=False)
@@ -33,31 +32,19 @@ class FinishedScore:
 
 @dataclass(frozen=True)
 class LiveScore:
-    """The score of a rig by request `number` of its scene. `exact`: the scene is idle. `problem`
-    identifies vehicle, prior, space and settings."""
+    """The score of a request, which is the one of this `number` of its scene. `exact`: the scene is
+    idle."""
 
     summary: pe.Score
     baseline: Baseline | None
     exact: bool
-    rig: pe.Rig
+    request: ScoreRequest
     number: int = 0
-    problem: Hashable = None
 
     @property
     def before(self) -> pe.Score | None:
         """The score of the baseline, once it is known."""
         return None if self.baseline is None else self.baseline.summary
-
-
-class LastRead(NamedTuple):
-    """What a scene was when it was read last. `changes` and `vehicle_version` count changes;
-    `prior` and `problem` identify prior and problem."""
-
-    changes: int
-    vehicle_version: int
-    prior: Hashable
-    rig: pe.Rig
-    problem: Hashable
 
 
 @dataclass(slots=True)
@@ -72,8 +59,8 @@ class LiveState:
     note: str = ""
     """Why there is no newer score, in one line; empty when there is one, or soon will be."""
     requests: int = 0
-    last_read: LastRead | None = None
-    """None while *Live* is off."""
+    last_read: ScoreRequest | None = None
+    """What the scene was when it was read last; None while *Live* is off."""
     moving: bool = False
     """Whether something moves: from an update that moves it until the scene is idle."""
     operator: int = 0

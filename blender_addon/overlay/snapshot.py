@@ -196,9 +196,9 @@ def _scored_rig(scene: bpy.types.Scene, known: pe.Rig) -> pe.Rig:
     without a score of them."""
     live = scene.perception_entropy.live.on
     score = live_state(scene.name).score if live else None
-    if score is None or {each.name for each in score.rig} != {each.name for each in known}:
+    if score is None or {each.name for each in score.request.rig} != {each.name for each in known}:
         return known
-    return score.rig
+    return score.request.rig
 
 
 def view_of(scene: bpy.types.Scene) -> ViewSettings:

@@ -39,30 +39,28 @@ class Problem(NamedTuple):
 
 @dataclass(frozen=True)
 class ScoreRequest:
-    """A rig to be scored."""
+    """A rig to be scored. `changes` and `vehicle_version` count changes of its scene until then."""
 
     problem: Problem
     rig: pe.Rig
     prior_key: Hashable = None
-
-
-class ScoredRig(NamedTuple):
-    """A rig's score, and that of the baseline where it was asked for."""
-
-    summary: pe.Score
-    baseline: pe.Score | None = None
+    changes: int = 0
+    vehicle_version: int = 0
 
 
 _evaluators: dict[str, text.RecentCache[pe.RigEvaluator]] = {}
 """One a scene, kept as long as vehicle and prior stay; used by one lane alone."""
 
 
-def live_score(scene_name: str, request: ScoreRequest, baseline: pe.Rig | None) -> ScoredRig:
-    """Return the summary score of a rig; only sensors that have moved are measured again."""
+def live_score(
+    scene_name: str, request: ScoreRequest, baseline: pe.Rig | None
+) -> tuple[pe.Score, pe.Score | None]:
+    """Return the summary score of a rig, and that of the baseline where it is asked for; only
+    sensors that have moved are measured again."""
     kept = _evaluators.setdefault(scene_name, text.RecentCache())
     evaluator = kept.made(request.problem.key, lambda: make_evaluator(request.problem))
     before = None if baseline is None else evaluator.summary(baseline)
-    return ScoredRig(evaluator.summary(request.rig), before)
+    return evaluator.summary(request.rig), before
 
 
 def make_evaluator(problem: Problem) -> pe.RigEvaluator:

@@ -93,7 +93,7 @@ def test_a_drag_is_exact_and_compared_with_where_it_began(live, monkeypatch):
     for _ in range(3):
         drag(roof)
         assert told(reading(live).summary) == told(exact()) and not reading(live).exact
-        assert reading(live).rig["roof"].pose == scenes.study().rig["roof"].pose
+        assert reading(live).request.rig["roof"].pose == scenes.study().rig["roof"].pose
         assert reading(live).before == start
     rest()
     second = reading(live).summary

@@ -119,6 +119,6 @@ def test_panel_headless_and_pe_find_the_same_bits(car, tmp_path, name):
 def test_a_live_score_is_of_the_same_targets(car):
     objects_in_traffic(car.perception_entropy, None)
     wish = session.read_request(car, scenes.depsgraph())
-    summary = engine_calls.live_score("scene", wish, None).summary
+    summary, _ = engine_calls.live_score("scene", wish, None)
     study = scenes.study()
     assert summary.entropy == study.evaluator().entropy(study.rig) and summary.voxels == 0

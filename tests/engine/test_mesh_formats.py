@@ -13,7 +13,7 @@ import pytest
 import pe_core as pe
 from pe_core.base.errors import InputError
 from pe_core.base.values import MAX_NAME
-from pe_tools.formats.meshes import Mesh, read_mesh, write_mesh
+from pe_tools.formats.meshes import Mesh, obj, read_mesh, write_mesh
 from pe_tools.formats.meshes.mesh import fit_names
 from tests.engine import shapes
 from tests.engine.mesh_files import (
@@ -203,6 +203,17 @@ def test_indices_of_an_obj_may_count_backwards(tmp_path: Path) -> None:
     backwards = f"{CORNERS}f -3 -2 -1\nv 9 9 9\nf 1 -1 2\n".encode()
     forwards = f"{CORNERS}v 9 9 9\nf 1 2 3\nf 1 4 2\n".encode()
     meshes = [read(tmp_path, "a.obj", data) for data in (backwards, forwards)]
+    assert meshes[0].triangles.tolist() == meshes[1].triangles.tolist()
+
+
+@pytest.mark.parametrize("at_once", [1, 2, 100])
+def test_what_follows_a_slash_of_an_obj_is_no_vertex(tmp_path: Path, at_once: int) -> None:
+    """Words with and without slashes, in blocks of lines of any size."""
+    plain = f"{CORNERS}f 1 2 3\nf 3 2 1\nf 1 3 2\n".encode()
+    slashed = f"{CORNERS}f 1/7 2//8 3\nf 3/1/2  2 1/ # f 9/9\nf 1 3 2/5\n".encode()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(obj, "LINES_AT_ONCE", at_once)
+        meshes = [read(tmp_path, "a.obj", data) for data in (plain, slashed)]
     assert meshes[0].triangles.tolist() == meshes[1].triangles.tolist()
 
 

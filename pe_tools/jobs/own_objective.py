@@ -32,7 +32,7 @@ def own_figure(given: Callable[[Rig], float] | Objective) -> OwnFigure:
     if name in TAKEN:
         expected = "a name of its own"
         raise InputError("optimize", "objective", expected, f"a function called {name!r}")
-    return OwnFigure(name, name.replace("_", " "), 1.0)
+    return OwnFigure(name, name)
 
 
 def own_objective(study: Study, given: Callable[[Rig], float] | Objective) -> Objective:

@@ -3,38 +3,46 @@ search minimises one value. By expected AP the value is minus the AP, which nobo
 
 from dataclasses import dataclass
 
-from pe_core.search import Value
-from pe_core.search.figures import AP
+from pe_core.search import Figure, Value
+from pe_core.search.figures import AP, figure_of
 from pe_core.study.condition_table import is_by_ap, searched_study
 from pe_core.study.study import ENTROPY, EXPECTED_AP, Study
 
 
 @dataclass(frozen=True, slots=True)
 class SearchedFigure:
-    """The figure that a search improves: its name in files and in sentences. The figure is `sign`
-    times the value that the search minimises."""
+    """The figure that a search improves: its key in files, and its name in `FIGURES`, or that of a
+    function from Python."""
 
     key: str
-    label: str
-    sign: float
+    name: str
+
+    @property
+    def row(self) -> Figure:
+        """How it is called, and which way is better."""
+        return figure_of(self.name)
+
+    @property
+    def label(self) -> str:
+        """Its label within a sentence."""
+        return self.row.name
 
     @property
     def higher_is_better(self) -> bool:
         """Whether a search raises the figure."""
-        return self.sign < 0.0
+        return self.row.higher
 
     def target(self, study: Study) -> float | None:
         """Return the figure that ends the study's search: the limit on it that is kept."""
-        key = AP if self.higher_is_better else self.key
-        return study.limits.kept_value(key)
+        return study.limits.kept_value(self.name)
 
     def to_figure(self, value: Value) -> float:
         """Return the figure of a value that a search minimises; it keeps all constraints."""
-        return self.sign * value.objective
+        return self.row.signed(value.objective)
 
     def to_value(self, figure: float) -> Value:
         """Return the value that a search minimises of a figure."""
-        return Value(0.0, self.sign * figure)
+        return Value(0.0, self.row.signed(figure))
 
     def cells(self, value: Value) -> tuple[float | None, float]:
         """Return the figure of a value, None where there is none, and its violation."""
@@ -57,9 +65,8 @@ class SearchedFigure:
         return f"at {self.amount(f'{self.to_figure(value):.3f}')}"
 
 
-IN_NATS = SearchedFigure(ENTROPY, "entropy", 1.0)
-IN_AP = SearchedFigure(EXPECTED_AP, "expected AP", -1.0)
-FIGURES = {figure.key: figure for figure in (IN_NATS, IN_AP)}
+IN_NATS = SearchedFigure(ENTROPY, ENTROPY)
+IN_AP = SearchedFigure(EXPECTED_AP, AP)
 
 
 def searched_samples(study: Study, samples: int) -> int:
@@ -86,4 +93,4 @@ def level_sizes(study: Study) -> list[str]:
 
 def searched_figure(study: Study) -> SearchedFigure:
     """Return the figure that a study's search improves."""
-    return FIGURES[study.search.objective]
+    return IN_AP if is_by_ap(study) else IN_NATS

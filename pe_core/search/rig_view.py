@@ -55,8 +55,8 @@ class RigView:
     @property
     def ap(self) -> Sequence[float]:
         """Expected AP of the scored objects; none for voxels."""
-        objects = self._scorers and self._scorers.objects.score(self.rig).objects
-        return [objects.ap] if objects else []
+        found = None if self._scorers is None else self._scorers.objects.summary(self.rig).ap
+        return [] if found is None else [found]
 
     @property
     def losses(self) -> Sequence[float]:

@@ -86,7 +86,7 @@ def without_run(data):
 def test_bits_are_those_of_the_command(served):
     """A moved sensor, and keys that are set, as if they stood on the command line. A session keeps
     what evaluates its study while only the rig changes: it has scored before."""
-    others = {"prior.model": "highway", 'requirement."child behind".body': "adult"}
+    others = {"prior.model": "highway", 'requirement."child behind".body': ["adult"]}
     loaded, first, moved, _, scored, asked, _, last = replies = served(
         {"id": "a", "do": "load", "study": "study.toml"},
         {"do": "score"},

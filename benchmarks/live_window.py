@@ -111,15 +111,18 @@ def load(kept=kept, time=time, bpy=bpy):
 
 bpy.app.timers.register(load, first_interval=0.1)
 """
-RUNNING = f"__import__('{NAME}.operators.running_job', fromlist=['*']).current"
+JOBS = f"__import__('{NAME}.operators.running_job', fromlist=['*'])"
+RUNNING = f"{JOBS}.current"
 SCORE = f"__import__('{NAME}.live.state', fromlist=['*']).live_state(window.scene.name).score"
 LAYERS = ("ground", "beams", "blind")
 WAIT_END = f"""
 import time
-kept["ended"] = None
+kept["freed"] = kept["ended"] = None
 
 def look(kept=kept, time=time):
-    if {RUNNING} is None:
+    if {RUNNING} is None and kept["freed"] is None:
+        kept["freed"] = time.time()
+    if {RUNNING} is None and not {JOBS}.stopped:
         kept["ended"] = time.time()
         return None
     return 0.005
@@ -207,8 +210,9 @@ def measured(installed: Installed, folder: Path, triangles: int) -> dict[str, st
         found["window still in a search, longest"] = longest(stage)
         found["memory, with processes"] = memory(stage)
         stage.point_at_view()
-        found["Esc twice to the window's own"] = told([stopped(stage, 2) for _ in range(STOPS)])
-        found["Esc to the best so far"] = told([stopped(stage, 1) for _ in range(STOPS)])
+        freed, ended = zip(*(stopped(stage) for _ in range(STOPS)), strict=True)
+        found["Esc to a free window"] = told(freed)
+        found["Esc to the result of the best"] = told(ended)
         found["opened file to its first score"] = told(
             [opened(stage, folder / f"moved{number}.blend") for number in range(STOPS)]
         )
@@ -223,17 +227,18 @@ def delays(steps: Sequence[Sequence[float]], came: Sequence[Sequence[float]]) ->
     return [min(each) - step[1] for each, step in zip(after, steps, strict=True) if each]
 
 
-def stopped(stage: Stage, presses: int) -> float:
-    """Press Esc in a search; return the time from the first press to the operator's end [s]."""
+def stopped(stage: Stage) -> tuple[float, float]:
+    """Press Esc in a search; return the time until the window is free, and until the result of the
+    best so far is there [s]."""
     stage.do(f"if not {RUNNING}: bpy.ops.pe.optimize('INVOKE_DEFAULT')")
     stage.wait_until(f"{RUNNING} and {RUNNING}.progress.evaluations > 20", DONE_S)
     stage.do(WAIT_END, redraw=False)
     stage.rest(0.5)
     begun = time.time()
-    stage.key(*["Escape"] * presses)
+    stage.key("Escape")
     stage.wait_until("kept['ended']", DONE_S)
-    ended: float = stage.do("pass", redraw=False)["ended"]
-    return ended - begun
+    kept = stage.do("pass", redraw=False)
+    return kept["freed"] - begun, kept["ended"] - begun
 
 
 def walked(stage: Stage) -> list[list[float]]:

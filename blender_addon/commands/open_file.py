@@ -64,7 +64,8 @@ def write_optimized(outcome: jobs.Outcome, data: dict, folder: Path) -> None:
     document.place_rig(scene, outcome.study.rig)
     taken = result_staleness.fingerprint(scene)
     document.store_outcome(scene, outcome, taken.text)
-    document.mark_active(scene, document.store_search(scene, outcome, taken.surroundings))
+    _, best = document.store_search(scene, outcome, taken.surroundings)
+    document.mark_active(scene, best)
     jobs.add_to_result(data, folder, {OPTIMIZED: save_copy})
 
 

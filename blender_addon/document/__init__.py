@@ -52,13 +52,13 @@ from .rig import (
     last_written_pose,
     mounted_on_sensor,
     place_at,
-    place_for_now,
     place_poses,
     place_rig,
     pose_from_numbers,
     pose_of,
     pose_of_matrix,
     sensor_objects,
+    transforms,
     view_layer_of,
 )
 from .scene_diagnostics import check_placeable, missing_data, scene_advice
@@ -122,6 +122,7 @@ from .variant_results import (
     figures_signature,
     hardware_note,
     keep_rig,
+    keep_search,
     picture_of,
     restore_result,
     same_score,

@@ -1,8 +1,7 @@
 """Sensors: read objects of the scene as the engine's rig, and write the poses of a rig to them."""
 
-import contextlib
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import bpy
 import numpy as np
@@ -69,28 +68,12 @@ def place_rig(scene: Scene, rig: pe.Rig, start: pe.Rig | None = None) -> list[st
     return place_poses(scene, {sensor.name: sensor.pose for sensor in moved}) + left
 
 
-def place_for_now(scene: Scene, rig: pe.Rig, start: pe.Rig) -> Callable[[], None]:
-    """Place the scene's sensors as in a rig that is not its result yet; return what takes all of it
-    back to the bit."""
-    before = {
-        obj.name: (
-            {k: tuple(getattr(obj, k)) for k in TRANSFORM},
-            tuple(obj.perception_entropy.placed),
-        )
+def transforms(scene: Scene) -> dict[str, dict[str, tuple[float, ...]]]:
+    """Return what places the sensors of a scene, by name and property, as Blender stores it."""
+    return {
+        obj.name: {field: tuple(getattr(obj, field)) for field in TRANSFORM}
         for obj in sensor_objects(scene)
     }
-    with contextlib.suppress(pe.InputError):  # what holds a sensor is told with the result
-        place_rig(scene, rig, start)
-
-    def take_back() -> None:
-        for name, (transform, placed) in before.items():
-            if (obj := scene.objects.get(name)) is not None:
-                for field, value in transform.items():
-                    setattr(obj, field, value)
-                obj.perception_entropy.placed = placed
-        view_layer_of(scene).update()
-
-    return take_back
 
 
 def place_poses(scene: Scene, poses: Mapping[str, pe.Pose]) -> list[str]:

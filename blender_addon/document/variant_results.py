@@ -59,18 +59,21 @@ def _scored_values(sensor: pe.Sensor) -> tuple[object, ...]:
     return sensor.name, id(sensor.model), sensor.fusion, sensor.pose, sensor.curve
 
 
-def store_search(scene: Scene, outcome: jobs.Outcome, surroundings: str) -> int:
-    """Store the start and the result of a search as variants; return the key of the result. The
-    start becomes the active variant, as the sensors have not been moved yet."""
+def keep_search(scene: Scene, start: pe.Study, best: pe.Rig) -> tuple[int, int]:
+    """Keep the start of a search and its best rig as variants; return their keys."""
     records = records_of_scene(scene)
-    start = _moved(records, outcome.start.rig)
-    result = _moved(records, outcome.study.rig)
-    before = find_or_add_variant(scene, "Before optimize", start).key
-    name = f"Optimized, seed {outcome.start.search.seed}"
-    after = find_or_add_variant(scene, name, result).key
+    name = f"Optimized, seed {start.search.seed}"
+    before = find_or_add_variant(scene, "Before optimize", _moved(records, start.rig)).key
+    after = find_or_add_variant(scene, name, _moved(records, best)).key
+    return before, after
+
+
+def store_search(scene: Scene, outcome: jobs.Outcome, surroundings: str) -> tuple[int, int]:
+    """Keep the start and the result of a search as variants with their scores; return their
+    keys."""
+    keys = keep_search(scene, outcome.start, outcome.study.rig)
     store_variant_scores(scene, outcome, surroundings)
-    mark_active(scene, before)
-    return after
+    return keys
 
 
 def keep_rig(scene: Scene, name: str, rig: pe.Rig) -> None:

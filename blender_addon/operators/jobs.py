@@ -1,9 +1,11 @@
 """Jobs: one operator, a row a job. The engine's process runs it; without a window it runs at once.
 
-A row says what to make from the scene and what to do with the result. Esc stops a job, which keeps
-and analyses the best so far; Esc again skips the analysis, once more discards all changes.
+A row says what to make from the scene and what to do with the result. Esc stops a job and gives the
+window back at once: the best so far is placed and kept, its score and analysis come when the engine
+has them.
 """
 
+import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, NamedTuple
@@ -44,8 +46,8 @@ class Task(NamedTuple):
 
     `finish` writes its result to the scene, `progressed` what it has found so far: it gets the job.
     `outcome` is the job's attribute of the result; None while there is nothing to keep. `rescue`
-    keeps what a job had found that ended without a result. `place` shows the best so far of a job
-    that was stopped, before its result is there, and returns what takes that back.
+    keeps what a job had found that ended without a result. `place` keeps and places the best so far
+    of a job that was stopped, before its result is there, and returns whether there was any.
     """
 
     job: Any
@@ -53,7 +55,7 @@ class Task(NamedTuple):
     outcome: str = "outcome"
     progressed: Callable[[bpy.types.Scene, Any], None] | None = None
     rescue: Callable[[bpy.types.Scene, Any], None] | None = None
-    place: Callable[[bpy.types.Scene, Any], Callable[[], None]] | None = None
+    place: Callable[[bpy.types.Scene, Any], bool] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -108,8 +110,8 @@ class JobOperator(OperatorMixin):
     """The operator of jobs."""
 
     row: ClassVar[JobRow]
-    take_back: Callable[[], None] | None = None
-    """Takes back what was placed before the result."""
+    has_placed = False
+    """Whether the best so far was placed before the result was there: undo steps are made."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -146,53 +148,59 @@ class JobOperator(OperatorMixin):
         if task is None:
             return self._show()
         self.task = task
-        running_job.begin(context, task.job, task.outcome).show(context)
+        self.running = running_job.begin(context, task.job, task.outcome)
+        self.running.show(context)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
-        """Show how far the job is; Esc ends its parts one by one, then discards all changes."""
-        running = running_job.current
-        if running is None:  # it was ended from outside
+        """Show how far the job is; Esc stops it. From then on all events are the window's own."""
+        running = self.running
+        has_window = running is running_job.current
+        if not has_window and running not in running_job.stopped:  # it was ended from outside
             return {"CANCELLED"}
-        scene = bpy.data.scenes.get(running.scene_name)
-        if event.type == "ESC" and event.value == "PRESS" and not event.is_repeat:
+        if has_window and event.type == "ESC" and event.value == "PRESS":
             running.stop()
-            if not running.ended:
-                is_new = self.take_back is None
-                if is_new and self.task.place is not None and scene is not None:
-                    with document.as_drawn(scene):
-                        self.take_back = self.task.place(scene, running.seen)
-                running.show(context)
-                return {"RUNNING_MODAL"}
-        elif event.type == "Z" and (event.ctrl or event.oskey):
+        elif has_window and event.type == "Z" and (event.ctrl or event.oskey):
             return {"RUNNING_MODAL"}  # undo would take back what the job is about to write
         elif event.type != "TIMER":
             return {"PASS_THROUGH"}
+        scene = bpy.data.scenes.get(running.scene_name)
         if self.task.progressed is not None and scene is not None:
             self.task.progressed(scene, running.seen)
-        if not running.ended:
+        if running.ended:
+            return self._end(context, scene)
+        if not has_window:
+            return {"PASS_THROUGH"}
+        if not running.stopped:
             running.show_soon(context)
             return {"PASS_THROUGH"}
+        running_job.release(context)
+        if self.task.place is not None and scene is not None:
+            with document.as_drawn(scene):
+                self.has_placed = self.task.place(scene, running.seen)
+        return {"RUNNING_MODAL"}
+
+    def _end(self, context: bpy.types.Context, scene: bpy.types.Scene | None) -> OperatorResult:
+        """Write the result to the scene."""
+        running = self.running
         try:
-            if self.take_back is not None and scene is not None:
-                with document.as_drawn(scene):
-                    self.take_back()  # its undo step begins where the search began
             lost = running.found is None and not running.seen.dropped
             if lost and scene is not None and self.task.rescue is not None:
                 self.task.rescue(scene, running.seen)
             if running.error is not None:
                 raise running.error
             report_answer(self, self.row.finish(scene, self.task, running.found, running.seen))
-            return self._show()
+            shown = self._show()
+            return {"CANCELLED"} if self.has_placed else shown
         except (Refused, *USER_ERRORS) as error:
             return report_error(self, error)
         finally:
-            running_job.end(context)
+            running_job.end(context, running)
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Called by Blender when the window or the file is closed: nothing is kept."""
-        running_job.end(context)
+        """Called by Blender when the window or the file is closed: no result is kept."""
+        running_job.end(context, self.running)
 
     def _show(self) -> OperatorResult:
         if self.row.show is not None:
@@ -282,8 +290,13 @@ def optimize_task(scene: bpy.types.Scene, study: pe.Study, taken: document.Finge
     document.check_placeable(scene, study)
     job = jobs.OptimizeJob(study, before=cached_score(scene, study, taken))
 
+    placed: dict[str, Any] = {}
+
     def finish(scene: bpy.types.Scene, outcome: jobs.Outcome) -> Report:
-        gone = store_search(scene, outcome, taken)
+        if placed and placed != document.transforms(scene):
+            document.store_search(scene, outcome, taken.surroundings)
+            return Report(f"{search_line(outcome)}: kept as a variant, as sensors were moved since")
+        gone = store_search(scene, outcome, taken, is_placed=bool(placed))
         if not gone:
             return Report(search_line(outcome))
         line = f"Sensors that were removed meanwhile are not placed: {', '.join(gone)}"
@@ -293,29 +306,61 @@ def optimize_task(scene: bpy.types.Scene, study: pe.Study, taken: document.Finge
         if job.best is not study:
             document.keep_rig(scene, "Best so far", job.best.rig)
 
-    def place(scene: bpy.types.Scene, job: jobs.OptimizeJob) -> Callable[[], None]:
-        return document.place_for_now(scene, job.best.rig, study.rig)
+    def place(scene: bpy.types.Scene, job: jobs.OptimizeJob) -> bool:
+        if job.best.rig == study.rig:
+            return False
+        with contextlib.suppress(pe.InputError):  # what holds a sensor is reported with the result
+            keys = document.keep_search(scene, study, job.best.rig)
+            place_variant(scene, keys, study.rig, best=job.best.rig)
+            push_undo("Optimize")
+            placed.update(document.transforms(scene))
+        return bool(placed)
 
     return Task(job, finish, rescue=rescue, place=place)
 
 
-def store_search(
-    scene: bpy.types.Scene, outcome: jobs.Outcome, taken: document.Fingerprint
+def place_variant(
+    scene: bpy.types.Scene, keys: tuple[int, int], start: pe.Rig, best: pe.Rig
 ) -> list[str]:
-    """Keep the best rig as a variant, then move the sensors; return names of removed ones. Undo
-    restores the poses only: the variant has an undo step of its own before it."""
+    """Move the sensors from the start of a search to its best, which are kept as variants with
+    these keys; return names of removed ones. Undo restores the poses only: the variants have an
+    undo step of their own before it."""
+    document.mark_active(scene, keys[0])
+    push_undo("Optimize: Keep Variant")
+    gone = document.place_rig(scene, best, start)
+    document.mark_active(scene, keys[1])
+    return gone
+
+
+def store_search(
+    scene: bpy.types.Scene,
+    outcome: jobs.Outcome,
+    taken: document.Fingerprint,
+    *,
+    is_placed: bool = False,
+) -> list[str]:
+    """Store the result of a search with its variants, and have the sensors as it has them; return
+    names of removed ones. `is_placed`: the best so far has its undo steps already."""
     settings = scene.perception_entropy
-    result_key = document.store_search(scene, outcome, taken.surroundings)
-    if bpy.ops.ed.undo_push.poll():  # a script without a window has no undo
-        bpy.ops.ed.undo_push(message="Optimize: Keep Variant")
     goes_on = settings.has_result and settings.result_signature == taken.text
     first = settings.result if goes_on else None
-    gone = document.place_rig(scene, outcome.study.rig, outcome.start.rig)
-    store_result(scene, outcome, taken.with_rig(outcome.study.rig).text)
+    best = outcome.study.rig
+    keys = document.store_search(scene, outcome, taken.surroundings)
+    if is_placed:
+        gone = document.place_rig(scene, best, outcome.start.rig)
+        document.mark_active(scene, keys[1])
+    else:
+        gone = place_variant(scene, keys, outcome.start.rig, best=best)
+    store_result(scene, outcome, taken.with_rig(best).text)
     if first is not None and first.kind == "optimize":  # of searches in a row
         document.begin_with(settings, first)
-    document.mark_active(scene, result_key)
     return gone
+
+
+def push_undo(name: str) -> None:
+    """Make an undo step; a script without a window has no undo."""
+    if bpy.ops.ed.undo_push.poll():
+        bpy.ops.ed.undo_push(message=name)
 
 
 def search_line(outcome: jobs.Outcome) -> str:
@@ -412,9 +457,6 @@ CHECK = JobRow(
 
 @operator("Stop", unless=lambda _: "" if running_job.current is None else None, options=INTERNAL)
 def cancel(context: bpy.types.Context) -> None:
-    """Stop the search, keep the best placement so far. Pressed again: without its analysis; once
-    more: all changes are discarded"""
-    job = running_job.current
-    if job is not None:
-        job.stop()
-        job.show(context)
+    """Stop the search, keep the best placement so far: its score and analysis follow"""
+    if running_job.current is not None:
+        running_job.current.stop()

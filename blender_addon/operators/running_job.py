@@ -1,10 +1,12 @@
-"""The one job that may be running: its state, for the panel and the status bar.
+"""The one job that has the window: its state, for the panel and the status bar.
 
-It is kept here and not in a property: undo would restore an old value of a property.
+It is kept here and not in a property: undo would restore an old value of a property. A job that was
+stopped gives the window back at once, and its result comes when the engine has it.
 """
 
 import time
 from collections.abc import Iterator
+from itertools import count
 from typing import Any, cast
 
 import bpy
@@ -16,7 +18,8 @@ from ..processes import engine_process
 from ..view import best_so_far, viewport
 from . import modes
 
-TOPIC = "job"
+TOPIC = "job "
+"""How the topics of jobs begin; a number follows, as a stopped job may end beside the next one."""
 TICK_S = 0.05
 """How often the window looks how far the job is."""
 STATUS_BAR_WIDTH = 14.0
@@ -27,6 +30,9 @@ BEST_EVERY_S = 0.5
 EVENTS_S = 0.3  # How long windows get events after a job was ended from outside
 
 
+_numbers = count()
+
+
 class RunningJob(jobs.WatchedJob):
     """A job that the engine's process runs, with the progress that it made."""
 
@@ -34,8 +40,10 @@ class RunningJob(jobs.WatchedJob):
         super().__init__(job)
         self.outcome = outcome
         self.scene_name = context.scene.name
+        self.stopped = False
         self.ended = False
         self.found: Any = None
+        self._topic = f"{TOPIC}{next(_numbers)}"
         self.error: Exception | None = None
         self._shown = self._looked = 0.0
         self._best: tuple[tuple[int, float], ...] = ()
@@ -48,7 +56,7 @@ class RunningJob(jobs.WatchedJob):
         given = (self.job, self.outcome)
         lane = engine_process.JOB
         engine_process.ask(
-            TOPIC, jobs.JobRun, given, self._take, fail=self._fail, step=self.note, lane=lane
+            self._topic, jobs.JobRun, given, self._take, fail=self._fail, step=self.note, lane=lane
         )
 
     def _take(self, found: Any) -> None:
@@ -60,18 +68,23 @@ class RunningJob(jobs.WatchedJob):
         self.error = error
 
     def stop(self) -> None:
-        """End the part of the job that runs; called once more than it has parts, keep nothing."""
+        """Have the engine end the part of the job that runs, and do not wait for it. A job without
+        such a part has ended with nothing to keep."""
+        self.stopped = True
         if not self.seen.stop():
             self.seen.drop()
-            self._take(None)  # the window waits for nothing
-        engine_process.cancel(TOPIC)
+            self._take(None)
+        engine_process.cancel(self._topic)
+
+    def skip_analysis(self) -> None:
+        """Have the result of a stopped job at once, without what would follow."""
+        if self.seen.parts_left > 0:
+            self.stop()
 
     @property
     def text(self) -> str:
         """The stage, the progress, and the best value so far: approximate, if on a sample. By how
         much it is better is told with the standard error of that, once the search has ended."""
-        if self.seen.dropped:
-            return "Stopping"
         stage = f"{self.progress.stage.capitalize()} {self.progress.fraction:.0%}"
         value = self.progress.value
         figure = self.progress.figure
@@ -84,13 +97,6 @@ class RunningJob(jobs.WatchedJob):
         sampled = "≈ " if self.job.study.search.samples else ""
         what = "AP" if figure.higher_is_better else "best"
         return f"{stage}, {what} {sampled}{figure.to_figure(value):.3f}"
-
-    @property
-    def on_escape(self) -> str:
-        """What Esc does now."""
-        if self.seen.parts_left < 1:
-            return "Discard All Changes"
-        return "Skip Analysis" if self.seen.parts_left < self.seen.parts else "Stop"
 
     def show_soon(self, context: bpy.types.Context) -> None:
         """Draw the progress again, if some time has passed since the last time."""
@@ -118,12 +124,10 @@ class RunningJob(jobs.WatchedJob):
         signals.view_changed.emit()  # it is drawn as ghosts
         viewport.redraw_editors()
 
-    def end(self, context: bpy.types.Context) -> None:
-        """Remove everything that shows the job, however it ended; drop one that still runs."""
-        engine_process.drop(TOPIC)
+    def release_window(self, context: bpy.types.Context) -> None:
+        """Remove everything that shows the job."""
         best_so_far.searches.pop(self.scene_name, None)
         signals.view_changed.emit()
-        context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
         # Any workspace will do: the text is drawn by one function for all of them.
         for workspace in bpy.data.workspaces[:1]:
@@ -131,31 +135,53 @@ class RunningJob(jobs.WatchedJob):
         for region in _regions(context.window_manager):
             region.tag_redraw()
 
+    def end(self, context: bpy.types.Context) -> None:
+        """Drop the job if it still runs, however it ended."""
+        engine_process.drop(self._topic)
+        context.window_manager.event_timer_remove(self._timer)
+
 
 current: RunningJob | None = None
 
 
+stopped: list[RunningJob] = []
+"""Jobs that gave the window back, and whose results are awaited."""
+
+
 def begin(context: bpy.types.Context, job: jobs.Job, outcome: str) -> RunningJob:
-    """Have the engine run the job from now on; `outcome` is its attribute of the result."""
+    """Have the engine run the job from now on; `outcome` is its attribute of the result. It does
+    not wait for analyses of jobs that were stopped."""
     global current
     modes.end()  # Esc is the job's
+    for each in stopped:
+        each.skip_analysis()
     current = RunningJob(context, job, outcome)
     current.start()
     return current
 
 
-def end(context: bpy.types.Context) -> None:
-    """Drop the job; do nothing if there is none."""
+def release(context: bpy.types.Context) -> None:
+    """Give the window back before the result of the job is there; do nothing without a job."""
     global current
     if current is not None:
-        ended = current
+        released = current
         current = None
-        ended.end(context)
+        stopped.append(released)
+        released.release_window(context)
+
+
+def end(context: bpy.types.Context, job: RunningJob | None = None) -> None:
+    """End a job that has, or had, the window; without one, all of them."""
+    if job in (None, current):
+        release(context)
+    for each in [each for each in stopped if job in (None, each)]:
+        stopped.remove(each)
+        each.end(context)
 
 
 def unregister() -> None:
     """End a running job and remove what shows it: its operator is about to be removed."""
-    if current is not None:
+    if current is not None or stopped:
         _send_events(bpy.context.window_manager)
     end(bpy.context)
 
@@ -182,7 +208,7 @@ def draw_status(header: bpy.types.Header, _context: bpy.types.Context) -> None:
     if current is not None:
         row = header.layout.row()
         row.label(text="", icon="EVENT_ESC")  # it may be wider than the room for an icon
-        draw_label(row, current.on_escape)
+        draw_label(row, "Stop")
         bar = row.row()
         bar.ui_units_x = STATUS_BAR_WIDTH
         bar.progress(text=typeset(current.text), factor=current.progress.fraction, translate=False)

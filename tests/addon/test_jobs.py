@@ -1,14 +1,13 @@
 """Score and optimize from the scene: the engine's own numbers, to the bit."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import bpy
-import numpy as np
 import pytest
 
 import pe_tools as pt
-from blender_addon import document
 from blender_addon.caches import result_staleness
 from blender_addon.engine import jobs as pe_jobs
 from blender_addon.engine import pe
@@ -74,13 +73,90 @@ def test_a_job_that_the_engine_runs_tells_how_it_ended(car):
     running.start()
     assert running.ended and isinstance(running.error, pe.InputError)
     assert running.progress.fraction == 0.5
-    running = running_job.RunningJob(context, job, "outcome")
-    told = [running.on_escape]
-    while not running.ended:
-        assert not running.seen.dropped
-        running.stop()
-        told.append(running.on_escape)
-    assert running.seen.dropped and len(set(told)) == 3, "the window waits for nothing"
+
+
+class Silent:
+    """The engine's process that never answers, and never ends."""
+
+    def __init__(self):
+        self.asked = []
+        self.cancelled = []
+
+    def ask(self, topic, *_, **__):
+        self.asked.append(topic)
+
+    def cancel(self, topic):
+        self.cancelled.append(topic)
+
+    def drop(self, topic):
+        self.asked.remove(topic)
+
+
+ESC = SimpleNamespace(type="ESC", value="PRESS")
+TICK = SimpleNamespace(type="TIMER", value="NOTHING")
+UNDO = SimpleNamespace(type="Z", value="PRESS", ctrl=True, oskey=False)
+
+
+def begun(car, row, monkeypatch):
+    """Return the operator of a job that the engine never answers, with its engine and context."""
+    engine = Silent()
+    for name in ("ask", "cancel", "drop"):
+        monkeypatch.setattr(running_job.engine_process, name, getattr(engine, name))
+    monkeypatch.setattr(running_job.RunningJob, "show", lambda *_: None)
+    context = SimpleNamespace(scene=car, window_manager=Manager(), window=None)
+    task = row.read(Window(car))
+    operator = type("Operator", (jobs.JobOperator,), {"row": row, "report": lambda *_: None})()
+    operator.task = task
+    operator.running = running_job.begin(context, task.job, task.outcome)
+    return operator, engine, context
+
+
+def improved(car, seen):
+    """Have a search that runs elsewhere know a better placement; return it."""
+    pose = seen.study.rig["roof"].pose
+    higher = replace(pose, position=(*pose.position[:2], pose.position[2] + 0.25))
+    rig = pe.Rig([each.moved(higher) if each.name == "roof" else each for each in seen.study.rig])
+    seen.history = [pe_jobs.HistoryRow(8, 0, pe.Value(0.0, 1.0), rig)]
+    return higher
+
+
+@pytest.mark.parametrize("row", [jobs.OPTIMIZE, jobs.SCORE])
+def test_esc_gives_the_window_back_though_the_engine_never_answers(car, row, monkeypatch):
+    operator, engine, context = begun(car, row, monkeypatch)
+    assert operator.modal(context, UNDO) == {"RUNNING_MODAL"}
+    best = improved(car, operator.running.seen) if row is jobs.OPTIMIZE else None
+    operator.modal(context, ESC)
+    assert running_job.current is None and engine.cancelled
+    if best is not None:
+        assert scenes.study().rig["roof"].pose == best
+        names = [each.name for each in car.perception_entropy.variants]
+        assert len(names) == 2, "start and best so far are kept"
+        assert engine.asked, "its result is awaited"
+        for event in (TICK, ESC, UNDO):
+            assert operator.modal(context, event) == {"PASS_THROUGH"}
+        assert bpy.ops.pe.optimize.poll(), "another job may begin"
+    operator.cancel(context)  # the file is closed
+    assert not engine.asked and not running_job.stopped
+
+
+@pytest.mark.parametrize("moved", [False, True])
+def test_the_result_of_a_stopped_search_comes_later(car, moved, monkeypatch):
+    operator, _, context = begun(car, jobs.OPTIMIZE, monkeypatch)
+    best = improved(car, operator.running.seen)
+    operator.modal(context, ESC)
+    start = operator.task.job.study
+    found = finished(pt.ScoreJob(start.with_rig(operator.running.seen.best.rig)))
+    operator.running.found = replace(found, kind="optimize", start=start)
+    operator.running.ended = True
+    if moved:
+        car.objects["roof"].location.z += 0.125
+        bpy.context.view_layer.update()
+    operator.modal(context, TICK)
+    settings = car.perception_entropy
+    assert settings.has_result is not moved, "sensors that were moved since are left where they are"
+    assert (scenes.study().rig["roof"].pose == best) is not moved
+    assert [each.has_result for each in settings.variants] == [True, True]
+    assert not running_job.stopped and scenes.study().rig["roof"].pose != start.rig["roof"].pose
 
 
 def test_result_goes_stale_and_comes_back(car):
@@ -113,25 +189,6 @@ class Window:
 
     def evaluated_depsgraph_get(self):
         return bpy.context.evaluated_depsgraph_get()
-
-
-def test_the_best_of_a_stopped_search_is_shown_before_its_result_and_taken_back_to_the_bit(car):
-    def seen():
-        roof = car.objects["roof"]
-        transform = {k: tuple(getattr(roof, k)) for k in document.TRANSFORM}
-        matrix = np.array(roof.matrix_world).tolist()
-        return transform, matrix, tuple(roof.perception_entropy.placed)
-
-    task = jobs.OPTIMIZE.read(Window(car))
-    before = seen()
-    for _ in task.job:
-        pass
-    best = task.job.best.rig["roof"].pose
-    take_back = task.place(car, task.job)
-    at = np.array(car.objects["roof"].matrix_world)[:3, 3]
-    assert np.allclose(at, best.position, atol=1e-5) and seen() != before
-    take_back()
-    assert seen() == before
 
 
 def animate(sensor):

@@ -197,6 +197,9 @@ def test_a_job_ends_with_the_extension(car, monkeypatch):
         def __init__(self):
             pass
 
+        def release_window(self, context):
+            shown.append(context)
+
         def end(self, context):
             shown.append(context)
 
@@ -204,7 +207,7 @@ def test_a_job_ends_with_the_extension(car, monkeypatch):
     assert not bpy.ops.pe.score.poll()
     blender_addon.unregister()
     try:
-        assert running_job.current is None and len(shown) == 1
+        assert running_job.current is None and len(shown) == 2
     finally:
         blender_addon.register()
     assert bpy.ops.pe.score.poll() and bpy.ops.pe.optimize.poll()

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Executor, Future, wait
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, TypeVar
 
@@ -163,6 +163,8 @@ class Outcome(Tabular):
         ground round the vehicle is not in the space.
     own : OwnValues or None
         Of a search by an objective of one's own: its figure, before and after.
+    result_cache : dict or None
+        `result_dict`, once it was computed: it takes long beside a window.
     """
 
     kind: str
@@ -189,6 +191,7 @@ class Outcome(Tabular):
     in_traffic: tuple[ObjectScore, ObjectScore] | None = None
     figures: tuple[KeyFigures, KeyFigures] | None = None
     own: OwnValues | None = None
+    result_cache: dict[str, Any] | None = field(default=None, init=False, repr=False, compare=False)
 
     @property
     def figure(self) -> SearchedFigure:

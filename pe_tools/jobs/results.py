@@ -66,6 +66,16 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
     Everything outside `run` depends on the study alone: two runs of the same study agree in it to
     the last bit. Infinity and NaN, which JSON does not have, become null.
     """
+    cached = outcome.result_cache or _result_dict(outcome)
+    return {**cached, "run": record(run_record(outcome.seconds, host or {}))}
+
+
+def cache_result(outcome: Outcome) -> None:
+    """Have an outcome hold its result, in whichever process it will be asked for."""
+    object.__setattr__(outcome, "result_cache", _result_dict(outcome))
+
+
+def _result_dict(outcome: Outcome) -> dict[str, Any]:
     start = outcome.start
     study = outcome.study
     is_search = outcome.kind == "optimize"
@@ -126,7 +136,7 @@ def result_dict(outcome: Outcome, host: dict[str, str] | None = None) -> dict[st
         ),
         study_sha256=fingerprint(study),
         inputs=InputsRecord(**(outcome.inputs or inputs_of(start))),
-        run=run_record(outcome.seconds, host or {}),
+        run=run_record(outcome.seconds, {}),
     )
     return finite(record(made))  # type: ignore[no-any-return]
 

@@ -6,7 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .job import Job, Progress
+from .job import Job, Outcome, Progress
+from .results import cache_result
 
 KEEP_S = 2.0  # How often what a killed job would resume from is sent
 
@@ -40,7 +41,10 @@ class JobRun:
         try:
             progress = next(self._steps)
         except StopIteration:
-            raise StopIteration(getattr(self._job, self._outcome)) from None
+            found = getattr(self._job, self._outcome)
+            if isinstance(found, Outcome):
+                cache_result(found)
+            raise StopIteration(found) from None
         shown = {name: getattr(self._job, name) for name in self._job.shown}
         state = [len(each) if hasattr(each, "__len__") else each for each in shown.values()]
         if state == self._seen:

@@ -16,6 +16,10 @@ from blender_addon.panels import main
 from tests.addon import layouts, scenes
 from tests.engine.processes import finished
 
+ESC = SimpleNamespace(type="ESC", value="PRESS")
+TICK = SimpleNamespace(type="TIMER", value="NOTHING")
+UNDO = SimpleNamespace(type="Z", value="PRESS", ctrl=True, oskey=False)
+
 
 def test_what_a_search_cost_is_stored_and_shown(car):
     car.perception_entropy.score_samples = car.perception_entropy.search_samples = 1024
@@ -90,11 +94,6 @@ class Silent:
 
     def drop(self, topic):
         self.asked.remove(topic)
-
-
-ESC = SimpleNamespace(type="ESC", value="PRESS")
-TICK = SimpleNamespace(type="TIMER", value="NOTHING")
-UNDO = SimpleNamespace(type="Z", value="PRESS", ctrl=True, oskey=False)
 
 
 def begun(car, row, monkeypatch):

@@ -18,9 +18,12 @@ import pytest
 import pe_core as pe
 from pe_tools.engine_process import FOLLOWS_MOUSE, EngineEnded, EngineProcess, call_here
 from pe_tools.engine_process.messages import Writer
-from pe_tools.jobs import JobRun, OptimizeJob, WatchedJob
+from pe_tools.jobs import JobRun, OptimizeJob, WatchedJob, result_dict
 from tests.engine import shapes
 from tests.limits import HANG_S
+
+RUN = {"run": None}
+"""How long it took, and which programs took part."""
 
 
 def vehicle_sum(vehicle):
@@ -192,6 +195,8 @@ def test_a_search_there_has_the_bits_of_one_here(engine):
     (outcome,) = got
     assert outcome.evaluated == here.outcome.evaluated
     assert outcome.after.entropy == here.outcome.after.entropy
+    assert outcome.result_cache, "it is not made in the window's process"
+    assert result_dict(outcome) | RUN == result_dict(here.outcome) | RUN
     assert outcome.study.vehicle is study.vehicle, "the mesh is not sent back"
     assert watched.seen.curve == here.curve
     assert poses(watched.seen.best) == poses(here.best)

@@ -5,6 +5,7 @@ that its own catalogue has, also the name of a sensor.
 """
 
 import re
+from functools import lru_cache
 
 import bpy
 
@@ -19,11 +20,13 @@ PLAIN = (
 """Words of the metric, and those that *Simple* has in sentences instead."""
 
 
+@lru_cache(maxsize=1024)
 def typeset(text: str) -> str:
     """Return a text as it is drawn: square metres with a raised 2."""
     return text.replace(" m2", " m²").replace("[m2]", "[m²]")
 
 
+@lru_cache(maxsize=1024)
 def plain(text: str) -> str:
     """Return a sentence in plain words."""
     for term, word in PLAIN:

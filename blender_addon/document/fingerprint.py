@@ -62,7 +62,7 @@ def _sensor_state(obj: Object, visible: bool) -> SensorState:
     own = obj.perception_entropy.table
     placement = np.array(obj.matrix_world, dtype=float)
     try:
-        held = last_written_pose(obj, placement)
+        held = last_written_pose(obj.perception_entropy.placed, placement)
         where: object = _numbers(pose_of_matrix(placement) if held is None else held)
     except pe.InputError:  # a sensor that cannot be scored has a fingerprint, too
         where = placement.tolist()

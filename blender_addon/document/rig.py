@@ -38,14 +38,15 @@ def pose_of(obj: Object, depsgraph: Depsgraph) -> pe.Pose:
     """Return the pose of a sensor in the ground frame, rounded as placements are. Rounding removes
     the error of single precision, so that a study file and the scene hold the same numbers."""
     ground_from_sensor = np.array(obj.evaluated_get(depsgraph).matrix_world, dtype=float)
-    held = last_written_pose(obj, ground_from_sensor)
+    held = last_written_pose(obj.perception_entropy.placed, ground_from_sensor)
     return pose_of_matrix(ground_from_sensor) if held is None else held
 
 
-def last_written_pose(obj: Object, ground_from_sensor: np.ndarray) -> pe.Pose | None:
-    """Return the pose that was last written to a sensor; None if the sensor has moved since."""
+def last_written_pose(placed: Sequence[float], ground_from_sensor: np.ndarray) -> pe.Pose | None:
+    """Return the pose that was last written to a sensor, as numbers; None if the sensor has moved
+    since."""
     _check_rigid(ground_from_sensor)
-    written = pose_from_numbers(obj.perception_entropy.placed)
+    written = pose_from_numbers(placed)
     return written if _stands_at(ground_from_sensor, written) else None
 
 

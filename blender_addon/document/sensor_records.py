@@ -139,7 +139,7 @@ def _object_keys(obj: Object) -> dict[str, Any]:
 def _hidden_pose(obj: Object) -> pe.Pose:
     """Return the pose of a hidden sensor, which Blender does not evaluate and no file stores."""
     ground_from_sensor = _ground_from_object(obj)
-    held = last_written_pose(obj, ground_from_sensor)
+    held = last_written_pose(obj.perception_entropy.placed, ground_from_sensor)
     return pose_of_matrix(ground_from_sensor) if held is None else held
 
 

@@ -16,7 +16,7 @@ from ..view import plates, viewport
 from ..view.plates import Plate, PlateSize, Room
 from ..view.viewport import FAINT, INK, PLATE, SMALL, PlateBox, Rgba
 from .readout_text import BETTER, WORSE, ReadoutLine, TextPiece, readout_of, state_of
-from .shown import ShownScore, for_drawing
+from .shown import MOVING, PENDING, ShownScore, for_drawing
 from .state import live_state
 
 LARGE = 17.0
@@ -24,7 +24,7 @@ LARGE = 17.0
 ROW = 17.0
 PAD = 10.0
 ZONE_ROWS = 2
-"""Rows that are reserved for zones, so that the plate does not jump with every move."""
+"""Rows that are reserved for zones while something moves, so that the plate does not jump."""
 WORD_GAP = 0.3
 MIN_WIDTH = 236.0
 MAX_COLUMNS = 64
@@ -110,7 +110,8 @@ def _rows_of_score(shown: ShownScore, view_outdated: bool) -> list[TextRow]:
     color = SENSE_COLORS.get(text.sense, FAINT)
     change = ((f"{arrow} {text.change}".strip(), color),) if text.change else ()
     lacking = ZONE_ROWS + 1 - len(text.lines)
-    reserved = ((TextPiece(""),),) * lacking if shown.pair is not None else ()
+    is_still = shown.pair is None or shown.phase not in (MOVING, PENDING)
+    reserved = () if is_still else ((TextPiece(""),),) * lacking
     error = state_of(shown, view_outdated=view_outdated)
     coverage, *zones = (row_of(line) for line in (*text.lines, *reserved))
     return [

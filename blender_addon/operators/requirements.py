@@ -1,5 +1,6 @@
 """Requirements in the panel: add a preset or an own one, remove, order."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import bpy
@@ -29,7 +30,6 @@ class ShownVerdict(NamedTuple):
     met: bool | None
     margin: str
     sentence: str
-    preview: bool = False
 
 
 def add_requirement(context: bpy.types.Context, preset: str) -> str:
@@ -90,7 +90,7 @@ def shown_verdicts(scene: bpy.types.Scene) -> dict[str, ShownVerdict]:
     """Return the verdicts of the requirements that are switched on, by name. Those of the 3D view
     are of the sensors as they stand; without them, the stored ones."""
     settings = scene.perception_entropy
-    live: dict[str, requirements.Verdict] = {}
+    live: dict[str, requirements.VerdictSummary] = {}
     unplaced: dict[str, str] = {}
     for item in shown_of(scene.name, "requirements").values():
         if isinstance(item.shape, VerdictShape):
@@ -104,12 +104,7 @@ def shown_verdicts(scene: bpy.types.Scene) -> dict[str, ShownVerdict]:
         if row.name in unplaced:
             found[row.name] = ShownVerdict(None, "", f"not checked: {unplaced[row.name]}")
         elif verdict is not None:
-            found[row.name] = ShownVerdict(
-                verdict.met,
-                wording.margin_text(verdict.summary),
-                wording.verdict_text(verdict.summary),
-                verdict.preview,
-            )
+            found[row.name] = in_words(verdict)
         else:
             found[row.name] = _stored(row)
     return found
@@ -120,7 +115,13 @@ def _stored(row: bpy.types.PropertyGroup) -> ShownVerdict:
     stored = document.stored_verdict(row)
     if stored is None or isinstance(stored, str):
         return ShownVerdict(None, "", f"not checked: {stored}" if stored else "")
-    return ShownVerdict(stored.met, wording.margin_text(stored), wording.verdict_text(stored))
+    return in_words(stored)
+
+
+@lru_cache(maxsize=128)
+def in_words(verdict: requirements.VerdictSummary) -> ShownVerdict:
+    """Return a verdict in words: all are drawn at each redraw."""
+    return ShownVerdict(verdict.met, wording.margin_text(verdict), wording.verdict_text(verdict))
 
 
 def _requirement(choice: str) -> tuple[requirements.Requirement, str]:

@@ -24,21 +24,22 @@ VALUES = 0.8
 def draw_labels(
     context: bpy.types.Context, labels: Sequence[graphics.Tag], taken: Sequence[PlateBox]
 ) -> None:
-    """Draw labels above their positions, without those that would cover a label or a box that is
-    taken."""
+    """Draw labels above their positions, beside the toolbar, without those that would cover a label
+    or a box that is taken."""
     scale = viewport.ui_scale()
+    left = viewport.toolbar_right(context)
     taken = list(taken)
     pad = PADDING * scale
     for label in sorted(labels, key=lambda tag: not tag.strong):
         place = location_3d_to_region_2d(context.region, context.region_data, label.place)
-        if place is None:
+        if place is None or place.x < 0.0:
             continue
         size = (STRONG_SIZE if label.strong else SMALL) * scale
         lines = label.text.split("\n")
         extents = [viewport.text_size(line, size) for line in lines]
         width = max(extent[0] for extent in extents)
         row = 1.35 * size
-        x = place.x - width / 2.0
+        x = max(place.x - width / 2.0, left + pad)
         y = place.y + RISE * scale
         height = extents[0][1] + row * (len(lines) - 1)
         for _ in lines:  # a label of several lines is lifted over what it would cover

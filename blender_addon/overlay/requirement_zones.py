@@ -31,7 +31,7 @@ PROBE_M = 0.01
 class VerdictShape(graphics.LayerShape):
     """The zones as they are drawn, their verdicts, and why others have no place, by name."""
 
-    verdicts: tuple[Verdict, ...] = ()
+    verdicts: tuple[requirements.VerdictSummary, ...] = ()
     unplaced: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -69,7 +69,7 @@ def requirement_zones(
         thin=graphics.Primitives.joined(thin),
         labels=tuple(labels),
         legend=_legend(verdicts, before or {}, unplaced or {}),
-        verdicts=tuple(verdicts),
+        verdicts=tuple(verdict.summary for verdict in verdicts),
         unplaced=unplaced or {},
     )
 

@@ -33,14 +33,15 @@ MET_ICONS = {True: "COLORSET_03_VEC", False: "ERROR"}
 NAME_SHARE = 0.39
 BESIDE_ROW_PX = 48
 LOCK_PX = 20
-WANTED_PX = 58
+FIELD_PX = 48
 BUTTON_PX = 26
 CHANGED_PX = 44
 LABEL_PX = 14
 LEAST_NAME_PX = 30
-"""What is beside a row: borders and tabs; the lock; the room for what is wanted, for the button
-that wants something or a mark, and beside the text of what a figure was before; what a label takes
-beside its text, and the least room for names; all at a scale of 1."""
+"""What is beside a row: borders and tabs; the lock; what a field of what is wanted takes beside its
+text, with its mark; the room for the button that wants something or a mark, and beside the text of
+what a figure was before; what a label takes beside its text, and the least room for names; all at a
+scale of 1."""
 LOCKS = {True: "LOCKED", False: "UNLOCKED"}
 
 
@@ -128,6 +129,13 @@ class DrawnRow(NamedTuple):
     sense: int
     is_noise: bool
 
+    @property
+    def wanted(self) -> str:
+        """The text of the field of what is wanted; empty without one."""
+        figure = self.row.figure
+        is_field = self.row.wanted is not None and figure.rule is not None
+        return figure.text(self.row.wanted) if is_field else ""
+
 
 def drawn_row(
     scene: Scene,
@@ -156,13 +164,15 @@ def drawn_row(
 
 class RowWidths(NamedTuple):
     """Room for the columns of the dashboard [px]; and whether what figures were before has room,
-    too. Figures are never cut: locks give way, then names, which are `text_room` wide."""
+    too. Figures are never cut: locks give way, then names, which are `text_room` wide, then the
+    fields of what is wanted."""
 
     name: float
     value: float
     wanted: float
     has_room: bool
     has_locks: bool
+    has_fields: bool
     text_room: float
 
     @classmethod
@@ -172,12 +182,14 @@ class RowWidths(NamedTuple):
         scale = size / context.preferences.ui_styles[0].widget.points
         value = max(text_px(each.value, size) for each in rows) + LABEL_PX * scale
         changes = [text_px(f"({each.before})", size) for each in rows if each.before]
-        is_field = any(each.row.wanted is not None and each.row.figure.rule for each in rows)
+        fields = [text_px(each.wanted, size) + FIELD_PX * scale for each in rows if each.wanted]
         room = whole - LOCK_PX * scale
-        least = (WANTED_PX if is_field else BUTTON_PX) * scale
+        gap = LABEL_PX * scale
+        short = max(text_px(each.row.figure.short or each.name, size) for each in rows) + gap
+        has_fields = whole - value - max(fields, default=0.0) >= short
+        least = max([BUTTON_PX * scale, *(fields if has_fields else [])])
         wanted = max([least, *(each + CHANGED_PX * scale for each in changes)])
         has_room = room - value - wanted >= LEAST_NAME_PX * scale
-        gap = LABEL_PX * scale
         wanted = wanted if has_room else min(least, max(room - value - gap, gap))
         name = max(text_px(each.name, size) for each in rows) + gap
         has_locks = name <= room - value - least  # also while figures change: rows stay in place
@@ -189,6 +201,7 @@ class RowWidths(NamedTuple):
             wanted=wanted,
             has_room=has_room,
             has_locks=has_locks,
+            has_fields=has_fields,
             text_room=name if has_locks else max(name - gap, 0.0),
         )
 
@@ -204,19 +217,26 @@ def draw_row(layout: UILayout, context: Context, drawn: DrawnRow, sides: RowWidt
             line.label(text="", icon="BLANK1")
     total = sides.name + sides.value + sides.wanted
     name, rest = columns(line, sides.name / total, align=True)
-    draw_label(name, shortened_to(context, drawn.name, sides.text_room))
+    draw_label(name, name_in(context, drawn, sides.text_room))
     value, wanted = columns(rest, sides.value / (sides.value + sides.wanted), align=True)
     draw_label(value, drawn.value)
     wanted = wanted.row(align=True)
     if drawn.before:
         before = f"({drawn.before})" if sides.has_room else ""
         draw_label(wanted, before, SENSE_ICONS[drawn.sense])
-    elif row.figure.rule is None:
+    elif row.figure.rule is None or (drawn.wanted and not sides.has_fields):
         wanted.label(text="")
     else:
         draw_wanted(wanted, context.scene, row)
     if row.met is not None:
         wanted.label(text="", icon=MET_ICONS[row.met])
+
+
+def name_in(context: Context, drawn: DrawnRow, room: float) -> str:
+    """Return the name of a figure that fits a room [px]: whole, else short, at last cut."""
+    whole = shortened_to(context, drawn.name, room)
+    short = drawn.row.figure.short
+    return shortened_to(context, short, room) if short and whole != drawn.name else whole
 
 
 def draw_lock(layout: UILayout, settings: PropertyGroup, figure: search.Figure) -> None:

@@ -6,11 +6,13 @@ A sensor's pose is its transform: the fields of the pose in the ground frame sto
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import bpy
 import numpy as np
 from bpy.types import Context, Object, PropertyGroup
+from mathutils import Matrix
 
 from .. import document
 from ..caches import edge_cache
@@ -38,12 +40,19 @@ FREE_BY_DEFAULT = tuple(axis in search.PAPER_FREE for axis in search.AXES)
 def shown_pose(obj: Object) -> pe.Pose:
     """Return the pose of an object in the ground frame, rounded as a score reads it. A scaled or
     mirrored object, which cannot be scored, gets the nearest pose."""
-    ground_from_sensor = np.array(obj.matrix_world, dtype=float)
+    rows = tuple(map(tuple, obj.matrix_world))
+    return _pose_of_rows(rows, tuple(obj.perception_entropy.placed))
+
+
+@lru_cache(maxsize=64)
+def _pose_of_rows(rows: tuple[tuple[float, ...], ...], placed: tuple[float, ...]) -> pe.Pose:
+    """Return the pose of a matrix, by its rows: the panel asks for it twelve times a redraw."""
+    ground_from_sensor = np.array(rows, dtype=float)
     try:
-        held = document.last_written_pose(obj, ground_from_sensor)
+        held = document.last_written_pose(placed, ground_from_sensor)
         return document.pose_of_matrix(ground_from_sensor) if held is None else held
     except pe.InputError:
-        location, rotation, _ = obj.matrix_world.decompose()
+        location, rotation, _ = Matrix(rows).decompose()
         angles = rotation.to_euler("XYZ")
         return document.pose_from_numbers((*location, *(math.degrees(angle) for angle in angles)))
 

@@ -98,6 +98,11 @@ def release_gpu() -> None:
 
 def text_size(text: str, size_px: float) -> tuple[float, float]:
     """Return the width and height of a line of text as it is drawn [px]."""
+    return _size_in(bpy.context.preferences.view.font_path_ui, text, size_px)
+
+
+@lru_cache(maxsize=1024)
+def _size_in(_font_path: str, text: str, size_px: float) -> tuple[float, float]:
     blf.size(FONT, size_px)
     width, height = blf.dimensions(FONT, typeset(text))
     return width, height
@@ -151,6 +156,7 @@ def draw_text(
     """Draw a line of text on a baseline; return its width [px].
     `left_of_x` is the share of the text that lies left of `x`: 0 begins there, 1 ends there."""
     width, _ = text_size(text, size_px)
+    blf.size(FONT, size_px)
     blf.color(FONT, *readable(color))
     blf.position(FONT, round(x - left_of_x * width), round(y), 0.0)
     blf.draw(FONT, typeset(text))
@@ -247,14 +253,19 @@ def is_lower_left(context: bpy.types.Context) -> bool:
     return context.region == min(windows, key=lambda region: (region.y, region.x))
 
 
-def beside_toolbar(context: bpy.types.Context) -> float:
-    """Return where a plate in the lower left corner begins, from the left: clear of the toolbar."""
+def toolbar_right(context: bpy.types.Context) -> float:
+    """Return where the toolbar ends that lies over the left part of a view [px]."""
     region = context.region
     left = 0.0
     for other in context.area.regions:
         if other.type == "TOOLS" and other.x < region.x + region.width / 2:
             left = max(left, other.x + other.width - region.x)
-    return left + MARGIN * ui_scale()
+    return left
+
+
+def beside_toolbar(context: bpy.types.Context) -> float:
+    """Return where a plate in the lower left corner begins, from the left: clear of the toolbar."""
+    return toolbar_right(context) + MARGIN * ui_scale()
 
 
 def sidebar_left(context: bpy.types.Context) -> float:

@@ -71,6 +71,8 @@ class Figure:
         Whether a rig's sight tells it, and not its score, its verdicts or its build.
     needs : str
         What a study has that has the figure.
+    short : str
+        Its label where there is little room; empty: the same.
     """
 
     key: str
@@ -88,6 +90,7 @@ class Figure:
     scale: float = 1.0
     is_seen: bool = True
     needs: str = ""
+    short: str = ""
 
     @property
     def name(self) -> str:

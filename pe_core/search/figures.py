@@ -62,6 +62,7 @@ _SIGHT = (
         of=lambda view: (view.blind_m2,),
         rule=Number(0.0, unit="m2"),
         shown=shown_end,
+        short="Ground",
     ),
     Figure(
         BLIND_SECTOR,
@@ -74,6 +75,7 @@ _SIGHT = (
         rule=Whole(0, 360, unit="deg"),
         shown=shown_end,
         least=1.0,  # its edges are known to half a degree each
+        short="Sector",
     ),
     Figure(
         REACH,
@@ -88,7 +90,7 @@ _SIGHT = (
         is_cut=lambda figures: bool(figures.reach) and min(figures.reach.values())[1],
     ),
     _Ap("ap_near", "AP near", about=f"{IN_TRAFFIC} nearer than 10 m", of=_ring("near")),
-    _Ap("ap_mid", "AP middle", about=f"{IN_TRAFFIC}, 10 to 40 m", of=_ring("mid")),
+    _Ap("ap_mid", "AP middle", about=f"{IN_TRAFFIC}, 10 to 40 m", of=_ring("mid"), short="AP mid"),
     _Ap("ap_far", "AP far", about=f"{IN_TRAFFIC} beyond 40 m", of=_ring("far")),
     _Ap(
         TRAFFIC_AP,
@@ -96,12 +98,19 @@ _SIGHT = (
         about=f"{IN_TRAFFIC}, at all distances",
         of=_ring(""),
         decimals=3,
+        short="AP all",
     ),
 )
 _Scored = partial(Figure, is_seen=False)
 _SCORE = (
     _Scored(
-        REQUIREMENTS, "Requirements", "met", "Requirements that are met", decimals=0, higher=True
+        REQUIREMENTS,
+        "Requirements",
+        "met",
+        "Requirements that are met",
+        decimals=0,
+        higher=True,
+        short="Verdicts",
     ),
     _Scored(
         ENTROPY,

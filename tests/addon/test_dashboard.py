@@ -137,13 +137,15 @@ def test_simple_has_eight_headers_at_most_and_no_terms(car):
     assert json.loads(car.perception_entropy.result_json)["dashboard"]
 
 
-@pytest.mark.parametrize("width", [180, 200, 215, 280, 500])
+@pytest.mark.parametrize("width", [180, 200, 215, 260, 280, 500])
 def test_figures_are_never_cut_names_give_way(car, width):
     """In a sidebar of 215 px it said "Score 3....."."""
     bpy.ops.pe.score()
     shown_in = layouts.Window(car, car.objects["roof"])
     shown_in.region.width = width
-    row = search.dashboard(None, 3.25)[0]
+    car.perception_entropy.limit_blind_ground = 12.5
+    limits = document.limits_of(car.perception_entropy)
+    row = search.dashboard(None, 3.25, limits=limits)[0]
     rows = [
         dashboard.DrawnRow(
             row, name="Requirements", value="12.3 m2", before=before, sense=1, is_noise=False
@@ -157,7 +159,15 @@ def test_figures_are_never_cut_names_give_way(car, width):
     assert sides.value > layout.text_px("12.3 m2", size)
     if sides.has_room:
         assert sides.wanted > layout.text_px("(45.6)", size)
-    assert sides.has_room == (width >= 280)
+    if sides.has_fields:
+        assert sides.wanted > layout.text_px("12.5 m2", size), "nor what is wanted"
+    assert sides.has_fields == (width >= 260)
+    assert sides.has_room == (width >= 260)
+    name = dashboard.name_in(shown_in, rows[0]._replace(name=row.figure.label), sides.text_room)
+    if width >= 200:
+        assert name in (row.figure.label, row.figure.short), "whole words"
+    if width == 500:
+        assert name == row.figure.label
 
 
 def test_simple_has_few_panels_fields_and_buttons(car):

@@ -48,6 +48,7 @@ from .result import (
 )
 from .rig import (
     TRANSFORM,
+    Transforms,
     color_of,
     last_written_pose,
     mounted_on_sensor,
@@ -57,6 +58,7 @@ from .rig import (
     pose_from_numbers,
     pose_of,
     pose_of_matrix,
+    restore_transforms,
     sensor_objects,
     transforms,
     view_layer_of,

@@ -69,12 +69,29 @@ def place_rig(scene: Scene, rig: pe.Rig, start: pe.Rig | None = None) -> list[st
     return place_poses(scene, {sensor.name: sensor.pose for sensor in moved}) + left
 
 
-def transforms(scene: Scene) -> dict[str, dict[str, tuple[float, ...]]]:
-    """Return what places the sensors of a scene, by name and property, as Blender stores it."""
+Transforms = dict[str, tuple[dict[str, tuple[float, ...]], tuple[float, ...]]]
+"""Of sensors, by name: their transforms by property, and the poses that were last written."""
+
+
+def transforms(scene: Scene) -> Transforms:
+    """Return what places the sensors of a scene, as Blender stores it."""
     return {
-        obj.name: {field: tuple(getattr(obj, field)) for field in TRANSFORM}
+        obj.name: (
+            {field: tuple(getattr(obj, field)) for field in TRANSFORM},
+            tuple(obj.perception_entropy.placed),
+        )
         for obj in sensor_objects(scene)
     }
+
+
+def restore_transforms(scene: Scene, before: Transforms) -> None:
+    """Place the sensors of a scene as they were, to the bit."""
+    for name, (transform, placed) in before.items():
+        if (obj := scene.objects.get(name)) is not None:
+            for field, value in transform.items():
+                setattr(obj, field, value)
+            obj.perception_entropy.placed = placed
+    view_layer_of(scene).update()
 
 
 def place_poses(scene: Scene, poses: Mapping[str, pe.Pose]) -> list[str]:

@@ -47,7 +47,7 @@ class Task(NamedTuple):
     `finish` writes its result to the scene, `progressed` what it has found so far: it gets the job.
     `outcome` is the job's attribute of the result; None while there is nothing to keep. `rescue`
     keeps what a job had found that ended without a result. `place` keeps and places the best so far
-    of a job that was stopped, before its result is there, and returns whether there was any.
+    of a job that was stopped, before its result is there.
     """
 
     job: Any
@@ -55,7 +55,7 @@ class Task(NamedTuple):
     outcome: str = "outcome"
     progressed: Callable[[bpy.types.Scene, Any], None] | None = None
     rescue: Callable[[bpy.types.Scene, Any], None] | None = None
-    place: Callable[[bpy.types.Scene, Any], bool] | None = None
+    place: Callable[[bpy.types.Scene, Any], None] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,8 +110,6 @@ class JobOperator(OperatorMixin):
     """The operator of jobs."""
 
     row: ClassVar[JobRow]
-    has_placed = False
-    """Whether the best so far was placed before the result was there: undo steps are made."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -178,7 +176,7 @@ class JobOperator(OperatorMixin):
         running_job.release(context)
         if self.task.place is not None and scene is not None:
             with document.as_drawn(scene):
-                self.has_placed = self.task.place(scene, running.seen)
+                self.task.place(scene, running.seen)
         return {"RUNNING_MODAL"}
 
     def _end(self, context: bpy.types.Context, scene: bpy.types.Scene | None) -> OperatorResult:
@@ -191,8 +189,7 @@ class JobOperator(OperatorMixin):
             if running.error is not None:
                 raise running.error
             report_answer(self, self.row.finish(scene, self.task, running.found, running.seen))
-            shown = self._show()
-            return {"CANCELLED"} if self.has_placed else shown
+            return self._show()
         except (Refused, *USER_ERRORS) as error:
             return report_error(self, error)
         finally:
@@ -290,13 +287,15 @@ def optimize_task(scene: bpy.types.Scene, study: pe.Study, taken: document.Finge
     document.check_placeable(scene, study)
     job = jobs.OptimizeJob(study, before=cached_score(scene, study, taken))
 
-    placed: dict[str, Any] = {}
+    before: document.Transforms = {}
+    placed: document.Transforms = {}
 
     def finish(scene: bpy.types.Scene, outcome: jobs.Outcome) -> Report:
-        if placed and placed != document.transforms(scene):
+        if placed != (document.transforms(scene) if placed else {}):
             document.store_search(scene, outcome, taken.surroundings)
             return Report(f"{search_line(outcome)}: kept as a variant, as sensors were moved since")
-        gone = store_search(scene, outcome, taken, is_placed=bool(placed))
+        document.restore_transforms(scene, before)  # its undo step begins where the search began
+        gone = store_search(scene, outcome, taken)
         if not gone:
             return Report(search_line(outcome))
         line = f"Sensors that were removed meanwhile are not placed: {', '.join(gone)}"
@@ -306,15 +305,15 @@ def optimize_task(scene: bpy.types.Scene, study: pe.Study, taken: document.Finge
         if job.best is not study:
             document.keep_rig(scene, "Best so far", job.best.rig)
 
-    def place(scene: bpy.types.Scene, job: jobs.OptimizeJob) -> bool:
+    def place(scene: bpy.types.Scene, job: jobs.OptimizeJob) -> None:
         if job.best.rig == study.rig:
-            return False
+            return
+        before.update(document.transforms(scene))
         with contextlib.suppress(pe.InputError):  # what holds a sensor is reported with the result
             keys = document.keep_search(scene, study, job.best.rig)
             place_variant(scene, keys, study.rig, best=job.best.rig)
             push_undo("Optimize")
-            placed.update(document.transforms(scene))
-        return bool(placed)
+        placed.update(document.transforms(scene))
 
     return Task(job, finish, rescue=rescue, place=place)
 
@@ -333,24 +332,16 @@ def place_variant(
 
 
 def store_search(
-    scene: bpy.types.Scene,
-    outcome: jobs.Outcome,
-    taken: document.Fingerprint,
-    *,
-    is_placed: bool = False,
+    scene: bpy.types.Scene, outcome: jobs.Outcome, taken: document.Fingerprint
 ) -> list[str]:
-    """Store the result of a search with its variants, and have the sensors as it has them; return
-    names of removed ones. `is_placed`: the best so far has its undo steps already."""
+    """Keep start and best rig as variants with their scores, then move the sensors; return names of
+    removed ones."""
     settings = scene.perception_entropy
     goes_on = settings.has_result and settings.result_signature == taken.text
     first = settings.result if goes_on else None
     best = outcome.study.rig
     keys = document.store_search(scene, outcome, taken.surroundings)
-    if is_placed:
-        gone = document.place_rig(scene, best, outcome.start.rig)
-        document.mark_active(scene, keys[1])
-    else:
-        gone = place_variant(scene, keys, outcome.start.rig, best=best)
+    gone = place_variant(scene, keys, outcome.start.rig, best=best)
     store_result(scene, outcome, taken.with_rig(best).text)
     if first is not None and first.kind == "optimize":  # of searches in a row
         document.begin_with(settings, first)

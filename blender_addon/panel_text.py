@@ -22,8 +22,8 @@ PLAIN = (
 
 @lru_cache(maxsize=1024)
 def typeset(text: str) -> str:
-    """Return a text as it is drawn: square metres with a raised 2."""
-    return text.replace(" m2", " m²").replace("[m2]", "[m²]")
+    """Return a text as it is drawn: square metres with a raised 2, errors with their sign."""
+    return text.replace(" m2", " m²").replace("[m2]", "[m²]").replace("+- ", "± ")
 
 
 @lru_cache(maxsize=1024)

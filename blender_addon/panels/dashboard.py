@@ -35,7 +35,7 @@ BESIDE_ROW_PX = 48
 LOCK_PX = 20
 FIELD_PX = 48
 BUTTON_PX = 26
-CHANGED_PX = 44
+CHANGED_PX = 34
 LABEL_PX = 14
 LEAST_NAME_PX = 30
 """What is beside a row: borders and tabs; the lock; what a field of what is wanted takes beside its
@@ -202,7 +202,7 @@ class RowWidths(NamedTuple):
             has_room=has_room,
             has_locks=has_locks,
             has_fields=has_fields,
-            text_room=name if has_locks else max(name - gap, 0.0),
+            text_room=max(name - gap, 0.0),
         )
 
 

@@ -35,7 +35,7 @@ BESIDE_ROW_PX = 48
 LOCK_PX = 20
 FIELD_PX = 48
 BUTTON_PX = 26
-CHANGED_PX = 34
+CHANGED_PX = 44
 LABEL_PX = 14
 LEAST_NAME_PX = 30
 """What is beside a row: borders and tabs; the lock; what a field of what is wanted takes beside its

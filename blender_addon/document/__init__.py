@@ -48,7 +48,7 @@ from .result import (
 )
 from .rig import (
     TRANSFORM,
-    Transforms,
+    StoredPlacements,
     color_of,
     last_written_pose,
     mounted_on_sensor,

@@ -69,11 +69,11 @@ def place_rig(scene: Scene, rig: pe.Rig, start: pe.Rig | None = None) -> list[st
     return place_poses(scene, {sensor.name: sensor.pose for sensor in moved}) + left
 
 
-Transforms = dict[str, tuple[dict[str, tuple[float, ...]], tuple[float, ...]]]
+StoredPlacements = dict[str, tuple[dict[str, tuple[float, ...]], tuple[float, ...]]]
 """Of sensors, by name: their transforms by property, and the poses that were last written."""
 
 
-def transforms(scene: Scene) -> Transforms:
+def transforms(scene: Scene) -> StoredPlacements:
     """Return what places the sensors of a scene, as Blender stores it."""
     return {
         obj.name: (
@@ -84,7 +84,7 @@ def transforms(scene: Scene) -> Transforms:
     }
 
 
-def restore_transforms(scene: Scene, before: Transforms) -> None:
+def restore_transforms(scene: Scene, before: StoredPlacements) -> None:
     """Place the sensors of a scene as they were, to the bit."""
     for name, (transform, placed) in before.items():
         if (obj := scene.objects.get(name)) is not None:

@@ -287,8 +287,8 @@ def optimize_task(scene: bpy.types.Scene, study: pe.Study, taken: document.Finge
     document.check_placeable(scene, study)
     job = jobs.OptimizeJob(study, before=cached_score(scene, study, taken))
 
-    before: document.Transforms = {}
-    placed: document.Transforms = {}
+    before: document.StoredPlacements = {}
+    placed: document.StoredPlacements = {}
 
     def finish(scene: bpy.types.Scene, outcome: jobs.Outcome) -> Report:
         if placed != (document.transforms(scene) if placed else {}):

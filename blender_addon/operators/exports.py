@@ -5,6 +5,7 @@ A format is a row of `FORMATS`. What takes long is a job, whose files are writte
 end. A file dialog's operator ends with it: the job then runs in an operator of its own.
 """
 
+import contextlib
 import shlex
 from collections.abc import Callable
 from dataclasses import dataclass, fields
@@ -225,7 +226,11 @@ FILES = {name: row.file for name, row in FORMATS.items() if not row.has_folder}
 
 
 def _propose(self: Any, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
-    """Open the file dialog; refuse at once what cannot be written now."""
+    """Open the file dialog; refuse at once what cannot be written now. A name that a script gives
+    tells the format."""
+    if self.filepath and not self.properties.is_property_set("format"):
+        with contextlib.suppress(pe.InputError):  # of a name that tells none the dialog decides
+            self.format = exchange.format_of_file(Path(self.filepath), FILES)
     row = FORMATS[self.format]
     reason = row.unless(context)
     if reason:

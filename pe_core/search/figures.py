@@ -4,6 +4,7 @@ Scores, the dashboard of the panel, the live read-out, comparisons, limits, fron
 from the rows of `FIGURES`.
 """
 
+import copyreg
 import math
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
@@ -189,6 +190,14 @@ def figure_of(name: str, currency: str = "") -> Figure:
         return replace(row, unit=currency) if name == PRICE else row
     label = name.replace("_", " ")
     return _Scored(name, f"{label[:1].upper()}{label[1:]}", "", label)
+
+
+def _as_name(row: Figure) -> tuple[Callable[..., Figure], tuple[str, ...]]:
+    """Return how a process gets the row of another one: by its name, as functions are no data."""
+    return figure_of, (row.key, row.unit) if row.key == PRICE else (row.key,)
+
+
+copyreg.pickle(Figure, _as_name)
 
 
 def on_dashboard() -> list[Figure]:

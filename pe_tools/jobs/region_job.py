@@ -137,13 +137,18 @@ class RegionJob(Job):
         if sensor not in names:
             raise InputError("region", "sensor", one_of(names, sensor), shown(sensor))
         self.sensor = sensor
-        self.row: PlaceFigure = PLACE_FIGURES[figure]
+        self.figure = figure
         usual = usual_loss(self.row.figure)
         self.allowed = LOSS.checked("region", "loss", usual if allowed is None else allowed)
         self.count = count or PLACES
         self._search_others = search_others
         self.found: FreeRegion | None = None
         self._waiting = Progress(PLACING, 0.0)
+
+    @property
+    def row(self) -> PlaceFigure:
+        """How the figure is measured; by its name, as a job is sent to another process."""
+        return PLACE_FIGURES[self.figure]
 
     @property
     def result(self) -> FreeRegion | None:

@@ -201,6 +201,8 @@ class ComparedRow(Recorded):
         less = self.differences[k]
         if less is None or abs(less) <= self.how.least or self.is_noise(0, k):
             return 0
+        if self.told[0] == self.told[k]:
+            return 0
         if (less < 0.0) == self.how.higher:
             return 1
         return -1 if self.differ(0, k) else 0
@@ -222,7 +224,10 @@ class ComparedRow(Recorded):
         return (max(self.values[k] or 0.0, low) - low) / (high - low) if high > low else 0.0
 
     def differ(self, one: int, other: int) -> bool:
-        """Whether two values, given by index, differ significantly; False where one is missing."""
+        """Whether two values, given by index, differ significantly; False where one is missing, or
+        where both are told alike."""
+        if self.told[one] == self.told[other]:
+            return False
         a = self.values[one]
         b = self.values[other]
         threshold = max(self.how.least, self.factor * self.errors[one][other])

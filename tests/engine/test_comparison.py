@@ -11,6 +11,7 @@ import pe_core as pe
 from pe_core.base import dump_json
 from pe_core.base.table_reader import finite
 from pe_core.scoring.score import Scatter
+from pe_core.search import FIGURES
 from pe_tools import advice
 from pe_tools.advice.score_comparison import difference_errors, sure_factor
 from pe_tools.cli.explain_verbs import comparison
@@ -184,3 +185,17 @@ def test_a_scenario_that_is_never_confirmed_is_the_worst_there_is(margins, sense
     assert row.spread == (math.inf if row.sense(1) else 0.0)
     assert row.share(1) == 0.0 <= row.share(0)
     dump_json(finite(row.to_dict()))
+
+
+@pytest.mark.parametrize("measure", list(FIGURES))
+def test_what_is_told_alike_is_neither_better_nor_worse(measure):
+    """Reach 37.9 and 37.1 m are both told as 37 m: a colour beside them is no news."""
+    step = 10.0 ** -FIGURES[measure].decimals / FIGURES[measure].scale
+    exact = ((0.0, 0.0), (0.0, 0.0))
+    alike = 0
+    for by in (0.1, 0.3, 0.9, 2.5):
+        row = advice.ComparedRow("rig", "", measure, (40.2 * step, (40.2 + by) * step), exact)
+        if row.text(0) == row.text(1):
+            alike += 1
+            assert row.sense(1) == 0 and row.spread == 0.0 and row.best == (False, False)
+    assert 0 < alike < 4

@@ -122,10 +122,10 @@ class FocusRegion(NamedTuple):
 
 
 def free_name(wanted: str, taken: set[str]) -> str:
-    """Return a name that is not taken, numbered if necessary: "Idea", "Idea 2"."""
+    """Return a name that is not taken, numbered if necessary: "Idea", "Idea 2"; "Seed 0 (2)"."""
     name = wanted
     number = 2
     while name in taken:
-        name = f"{wanted} {number}"
+        name = f"{wanted} ({number})" if wanted[-1:].isdigit() else f"{wanted} {number}"
         number = number + 1
     return name

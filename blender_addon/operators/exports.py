@@ -23,7 +23,16 @@ from ..processes import own_jobs
 from ..processes.own_jobs import ExportJob, WrittenFiles
 from ..view import film
 from . import running_job
-from .declared import Answer, OperatorResult, Refused, Report, Stopped, chosen_file, operator
+from .declared import (
+    Answer,
+    OperatorResult,
+    PollReason,
+    Refused,
+    Report,
+    Stopped,
+    chosen_file,
+    operator,
+)
 from .jobs import JobRow, Task, begin
 from .rows import unless_selected
 
@@ -41,6 +50,16 @@ class Asked(NamedTuple):
     path: Path
     options: Any
 
+    @property
+    def study(self) -> pe.Study:
+        """The study of the scene as it is shown."""
+        depsgraph = self.context.evaluated_depsgraph_get()
+        return document.study_from_scene(self.context.scene, depsgraph)
+
+
+def _always(_context: bpy.types.Context) -> None:
+    """Nothing keeps a format from being written."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class ExportFormat:
@@ -56,7 +75,7 @@ class ExportFormat:
     file: str
     write: Callable[[Asked], Answer]
     options: tuple[str, ...] = ()
-    unless: Callable[[bpy.types.Context], str | None] = lambda _context: None
+    unless: PollReason = _always
     has_folder: bool = False
     named_after_scene: bool = False
 
@@ -148,22 +167,19 @@ def _write_film(asked: Asked) -> str:
 
 def _write_scene(name: str, asked: Asked) -> Answer:
     row = outputs.scene_output(name)
-    scene = asked.context.scene
-    study = document.study_from_scene(scene, asked.context.evaluated_depsgraph_get())
     replace = asked.options.replace or not row.has_several  # of one file the dialog has asked
     reach = asked.options.range_m or None
-    job = own_jobs.scene_job(study, name, asked.path, reach, replace=replace)
+    job = own_jobs.scene_job(asked.study, name, asked.path, reach, replace=replace)
     return run(job, asked.options.asked_in_window)
 
 
 def _write_rig(name: str, asked: Asked) -> Answer:
     row = exchange.rig_format(name)
-    scene = asked.context.scene
-    study = document.study_from_scene(scene, asked.context.evaluated_depsgraph_get())
+    study = asked.study
     replace = asked.options.replace or not (row.beside or row.is_folder)  # as `_write_scene`
     target = bpy.path.abspath(asked.options.into) or None
     if row.write_scene is not None:
-        result = document.stored_result(scene, study)
+        result = document.stored_result(asked.context.scene, study)
         job = own_jobs.rig_job(study, name, asked.path, target, replace=replace, result=result)
         return run(job, asked.options.asked_in_window)
     return told_of(own_jobs.write_rig(study, name, asked.path, target, replace=replace))
@@ -176,7 +192,7 @@ def _of_rig(name: str) -> ExportFormat:
         file=f"{name}_rig" if row.is_folder else row.files[0],
         write=partial(_write_rig, name),
         options=("into", "replace"),
-        unless=_unless_running if row.write_scene is not None else lambda _context: None,
+        unless=_unless_running if row.write_scene is not None else _always,
         has_folder=row.is_folder,
     )
 

@@ -20,7 +20,7 @@ with lazy_face(__name__):
     from .key_figures import built_lines
     from .kriging import Kriging
     from .location import AskedPlace, SensorAtPlace, ask_place
-    from .mount_checks import check_mirror_image, occluded_shares
+    from .mount_checks import check_mirror_image, nearest_point, occluded_shares
     from .mountable import Consensus, Rounding, SensorSpread, consensus_of
     from .ranking import (
         costs_nothing,

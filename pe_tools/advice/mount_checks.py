@@ -165,6 +165,12 @@ def odd_together(sensors: Sequence[Sensor]) -> Iterator[Advice]:
 
 def distance_to(vehicle: Vehicle, point: Floats) -> float:
     """Return the distance from a point (3,) to the nearest triangle of a vehicle [m]."""
+    gap = nearest_point(vehicle, point) - point
+    return float(np.sqrt(dot(gap, gap)))
+
+
+def nearest_point(vehicle: Vehicle, point: Floats) -> Floats:
+    """Return the point (3,) of a vehicle's surface that is nearest to a point (3,) [m]."""
     low, high = vehicle.bounds
     gap = np.maximum(np.maximum(low - point, point - high), 0.0)
     radius = NEAR_M + float(np.sqrt(dot(gap, gap)))
@@ -172,9 +178,10 @@ def distance_to(vehicle: Vehicle, point: Floats) -> float:
         near = vehicle.triangles[vehicle.faces_near(point, radius)]
         if len(near):
             points = closest_points(point, near)
-            distance = float(np.sqrt(dot(points - point, points - point).min()))
-            if distance <= radius:
-                return distance
+            square = dot(points - point, points - point)
+            nearest = int(np.argmin(square))
+            if np.sqrt(square[nearest]) <= radius:
+                return points[nearest]
         radius *= 2.0
 
 

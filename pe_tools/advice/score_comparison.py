@@ -177,6 +177,10 @@ class ComparedRow(Recorded):
         b = self.values[other]
         return a is not None and b is not None and is_noise(a - b, self.errors[one][other])
 
+    def is_told_alike(self, one: int, other: int) -> bool:
+        """Whether two values, given by index, are the same to a reader."""
+        return self.told[one] == self.told[other]
+
     @property
     def differences(self) -> tuple[float | None, ...]:
         """Each value minus the first one; None where one of the two is missing."""
@@ -201,7 +205,7 @@ class ComparedRow(Recorded):
         less = self.differences[k]
         if less is None or abs(less) <= self.how.least or self.is_noise(0, k):
             return 0
-        if self.told[0] == self.told[k]:
+        if self.is_told_alike(0, k):
             return 0
         if (less < 0.0) == self.how.higher:
             return 1
@@ -226,7 +230,7 @@ class ComparedRow(Recorded):
     def differ(self, one: int, other: int) -> bool:
         """Whether two values, given by index, differ significantly; False where one is missing, or
         where both are told alike."""
-        if self.told[one] == self.told[other]:
+        if self.is_told_alike(one, other):
             return False
         a = self.values[one]
         b = self.values[other]

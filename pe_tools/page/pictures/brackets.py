@@ -7,9 +7,8 @@ import numpy as np
 import pe_core as pe
 from pe_core import scene
 from pe_core.base.arrays import Floats
-from pe_core.scene.vehicle import closest_points
 
-from ... import graphics
+from ... import advice, graphics
 from .painted_mesh import PaintedMesh, lathe
 
 GAP_M = 0.03
@@ -30,8 +29,7 @@ def post_of(vehicle: pe.Vehicle, housing: scene.Housing, pose: pe.Pose) -> Post 
     where the housing is within `GAP_M` of that point. No score contains it."""
     turn = pose.ground_from_sensor
     head = np.array(pose.position) + scene.rotate(turn, np.array([housing.center]))[0]
-    near = closest_points(head, vehicle.triangles)
-    foot = near[np.argmin(((near - head) ** 2).sum(axis=1))]
+    foot = advice.nearest_point(vehicle, head)
     way = head - foot
     length = float(np.sqrt(way @ way))
     along = np.abs(np.array(turn).T @ way) / max(length, 1e-9)

@@ -1,7 +1,7 @@
 """The Evaluator: one problem, made ready to score many rigs."""
 
 from collections.abc import Sequence
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -69,22 +69,26 @@ class Evaluator:
         self._shift = shift
         self._model = model
         self._workers = workers
-        classes = len(prior.class_names)
-        require_room_for_samples(samples, columns_bytes(space, classes))
-        require_room_for(space, lambda any_space: columns_bytes(any_space, classes))
-        fusion = Fusion(model or PerceptionModel())
-        densities = prior.densities(space)
-        self._scorer: GridScorer | SampledScorer
-        if samples == 0:
-            self._scorer = GridScorer(space, densities, vehicle, fusion, workers=workers)
-        else:
-            self._scorer = SampledScorer(
-                space, densities, vehicle, fusion, samples=samples, shift=shift
-            )
+        _ = self._scorer  # made here, so that what is wrong is told here
 
-    def __reduce__(self) -> tuple[object, ...]:
-        """Pickle the arguments: another process makes an evaluator of its own from them."""
-        return partial(self._like_this, samples=self.samples), ()
+    @cached_property
+    def _scorer(self) -> GridScorer | SampledScorer:
+        space = self.space
+        classes = len(self.prior.class_names)
+        require_room_for_samples(self.samples, columns_bytes(space, classes))
+        require_room_for(space, lambda any_space: columns_bytes(any_space, classes))
+        fusion = Fusion(self._model or PerceptionModel())
+        densities = self.prior.densities(space)
+        if self.samples == 0:
+            return GridScorer(space, densities, self.vehicle, fusion, workers=self._workers)
+        return SampledScorer(
+            space, densities, self.vehicle, fusion, samples=self.samples, shift=self._shift
+        )
+
+    def __getstate__(self) -> dict[str, object]:
+        """Pickle the arguments. Another process makes a scorer of its own from them, once it scores
+        a rig: of the evaluators that it is sent it perhaps needs a few."""
+        return {name: value for name, value in vars(self).items() if name != "_scorer"}
 
     @property
     def _like_this(self) -> "partial[Evaluator]":

@@ -18,9 +18,11 @@ def candidate_workers(
 ) -> Iterator[ExecutorSource]:
     """Yield the source of the executor that evaluates candidates of a job. The job's executor does,
     if it has one. Otherwise processes are started, which end here. They are sent what the
-    objectives share, and `others` that searches have in common, such as models."""
+    objectives share, the models of the study's rig, and `others` that searches have in common. All
+    of it is known from the first: what came later would start all processes anew."""
     parts = (part for objective in objectives for part in objective.shared_parts())
-    common = chain(parts, others)  # read when the processes start, if they do
+    models = (sensor.model for sensor in job.study.rig)
+    common = chain(parts, models, others)  # read when the processes start, if they do
     if job.executor is not None:
         given = job.executor
         with suppress(Unreadable):  # such candidates are evaluated here

@@ -400,8 +400,8 @@ class FrontJob(Job):
         if self._helpers is None:
             offered = [o.model for c in self.study.selection.choices for o in c.options]
             levels = map(self.evaluators.searching, self.study.level_samples)
-            common = [*levels, *offered, *(sensor.model for sensor in self.study.rig)]
-            self._helpers = self._open.enter_context(candidate_workers(self, objectives, common))
+            helpers = candidate_workers(self, objectives, [*levels, *offered])
+            self._helpers = self._open.enter_context(helpers)
         return self._helpers
 
 

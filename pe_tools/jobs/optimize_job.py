@@ -430,8 +430,12 @@ class OptimizeJob(Job):
 
     def _candidate_workers(self) -> AbstractContextManager[ExecutorSource]:
         """Return what evaluates candidates of the search and of its analysis."""
-        models = (sensor.model for sensor in self.study.rig)
-        return candidate_workers(self, self._objectives, models)
+        return candidate_workers(self, self._evaluated())
+
+    def _evaluated(self) -> Iterator[Objective]:
+        """Yield what workers will evaluate, that of the analysis, too."""
+        yield from self._objectives
+        yield from self._held_out
 
     def _search_from(
         self, rig: Rig, watch: StopWatch, share: tuple[float, float]

@@ -8,7 +8,7 @@ bad: some places are scored again on a larger sample, and all losses are moved b
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -22,7 +22,6 @@ from pe_core.scoring.score import standard_error
 from pe_core.search import (
     DEFAULT_METHOD,
     KEPT,
-    FeasibilityRule,
     Limit,
     MountArea,
     Objective,
@@ -162,12 +161,11 @@ class RegionJob(Job):
         self._places = region_places(held, self.sensor)
         self._not_held = (*not_held, *self._places.broken)
         self._mount = MountCorners.of(self._places)
-        constraints = constraints_of(held)
+        self._constraints = constraints_of(held)
         levels = (SAMPLES,) if self.row.exact else (COARSE_SAMPLES, SAMPLES)
         measures = [self.row.measured(study, samples, CENTERED) for samples in levels]
-        objectives = [as_objective(each).under(constraints) for each in measures]
-        models = {sensor.model.name: sensor.model for sensor in study.rig}.values()
-        with candidate_workers(self, objectives, models) as workers:
+        objectives = [as_objective(each).under(self._constraints) for each in measures]
+        with candidate_workers(self, self._evaluated(objectives)) as workers:
             for number, samples in enumerate(levels):
                 is_last = number == len(levels) - 1
                 level = _Level(self, measures[number], objectives[number], workers, samples=samples)
@@ -177,10 +175,35 @@ class RegionJob(Job):
                 self.found = region
                 yield self._waiting
             if self._search_others and not self.stopped and len(self._mount.faces):
-                gain = yield from self._gain_of_others(level, constraints)
+                gain = yield from self._gain_of_others(level)
                 if gain is not None and self.found is not None:
                     self.found = self.found.with_gain(*gain)
         yield Progress("done", 1.0)
+
+    def _evaluated(self, objectives: Sequence[Objective]) -> Iterator[Objective]:
+        """Yield what workers will evaluate, on all levels and after them."""
+        yield from objectives
+        if not self.row.exact:
+            yield self._confirming
+        if self._search_others:
+            yield self._searching
+
+    @cached_property
+    def _larger(self) -> Any:
+        """What measures the figure on the sample that tells how far off the region's losses are."""
+        is_small = int(np.prod(self.study.space.shape)) <= CONFIRMED_SAMPLES
+        samples = 0 if is_small else CONFIRMED_SAMPLES
+        return self.row.measured(self.study, samples, CENTERED)
+
+    @cached_property
+    def _confirming(self) -> Objective:
+        return as_objective(self._larger)
+
+    @cached_property
+    def _searching(self) -> Objective:
+        """What the search of the other sensors minimises."""
+        measured = self.row.measured(self.study, SAMPLES, SEARCHED)
+        return as_objective(measured).under(self._constraints)
 
     def _region_on(self, level: "_Level", is_last: bool) -> ProgressSteps[FreeRegion]:
         """Yield progress; return the region on one level, None where the job ends before."""
@@ -306,15 +329,12 @@ class RegionJob(Job):
             level.with_loss, key=lambda each: abs((each.place.value or 0.0) - self.allowed)
         )
         chosen = close[: CLOSE * CONFIRMED : CLOSE]
-        is_small = int(np.prod(self.study.space.shape)) <= CONFIRMED_SAMPLES
-        samples = 0 if is_small else CONFIRMED_SAMPLES
-        larger = self.row.measured(self.study, samples, CENTERED)
         rigs = [self.study.rig, *(each.rig for each in chosen)]
-        base, *values = level.values(as_objective(larger), rigs)
+        base, *values = level.values(self._confirming, rigs)
         smooth, _ = kriging.at(features_of(chosen))
         off = np.array([value.objective - base.objective for value in values]) - smooth
         scatter = float(np.var(off, ddof=1)) if len(off) > 1 else 0.0
-        level.shared_noise = scatter / len(off) + paired_noise(larger, rigs)
+        level.shared_noise = scatter / len(off) + paired_noise(self._larger, rigs)
         return float(off.mean()), level.shared_noise + rough
 
     def _turns(self, level: "_Level", offset: float, spread: float) -> Iterator[Way]:
@@ -343,9 +363,7 @@ class RegionJob(Job):
             kriging = Kriging.fit(points, np.array([*losses.values()]), noise, LENGTHS_DEG)
             yield from ways_of_turn(LossModel(kriging, spread), axis, barred, TURNS_DEG[-1])
 
-    def _gain_of_others(
-        self, level: "_Level", constraints: Sequence[FeasibilityRule]
-    ) -> ProgressSteps[tuple[Floats, Floats]]:
+    def _gain_of_others(self, level: "_Level") -> ProgressSteps[tuple[Floats, Floats]]:
         """Search the other sensors again with this one at places outside, the nearest first. Return
         by how much the loss falls at each corner, and the error of that; None where the job ends
         before, or there is nothing to search."""
@@ -357,12 +375,11 @@ class RegionJob(Job):
         outside.sort(key=lambda each: each.place.value or 0.0)
         spread = min(max(len(outside) // OTHERS, 1), SPREAD)
         chosen = outside[: spread * OTHERS : spread]
-        searched = as_objective(self.row.measured(study, SAMPLES, SEARCHED)).under(constraints)
         gains: list[float] = []
         for number, placed in enumerate(chosen):
             best = placed.rig
             for step in optimize(
-                searched,
+                self._searching,
                 placed.rig,
                 held.with_rig(placed.rig).search_space(),
                 study.search.seed,

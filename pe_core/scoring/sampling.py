@@ -218,12 +218,22 @@ def _rings(space: PerceptionSpace) -> tuple[Ints, Ints]:
     # y on the unit square sorts like the azimuth, and has the same bits on every system.
     around = y / np.maximum(np.abs(x) + np.abs(y), np.finfo(float).tiny)
     around = np.where(x >= 0.0, around, np.where(y >= 0.0, 2.0, -2.0) - around).reshape(-1)
-    # Rings of 16 bits and as fine azimuths are sorted by their digits; hardly ever are two equal.
-    keys = ring * AZIMUTHS + ((around + 2.0) * ((AZIMUTHS - 1) / 4.0)).astype(np.int64)
-    order = stable_order(keys)
-    if ring.max() >= AZIMUTHS or not np.diff(keys[order]).all():
-        order = np.lexsort((around, ring))
+    order = _ring_order(ring, around) if ring.max() < AZIMUTHS else np.lexsort((around, ring))
     return read_only(ring[order]), read_only(order)
+
+
+def _ring_order(rings: Ints, azimuths: Floats) -> Ints:
+    """Return the stable order by ring of 16 bits, then by azimuth in -2 .. 2."""
+    # Azimuths as fine as 16 bits are sorted by their digits; only columns with equal keys are
+    # then sorted by the azimuth itself.
+    keys = rings * AZIMUTHS + ((azimuths + 2.0) * ((AZIMUTHS - 1) / 4.0)).astype(np.int64)
+    order = stable_order(keys)
+    sorted_keys = keys[order]
+    repeats = np.pad(sorted_keys[1:] == sorted_keys[:-1], 1)
+    is_tied = repeats[1:] | repeats[:-1]
+    tied = order[is_tied]
+    order[is_tied] = tied[np.lexsort((azimuths[tied], keys[tied]))]
+    return order
 
 
 def _draw_height(densities: list[ClassDensity], i: Ints, j: Ints, w: Floats) -> tuple[Ints, Floats]:

@@ -39,7 +39,9 @@ def _value(default: Any, rule: Any, label: str, text: str, **panel: Any) -> Any:
     return studies.setting(default, rule, text, studies.Panel("", label, **panel))
 
 
-def _menu(default: str, label: str, text: str, *items: tuple[str, str, str], when: str = "") -> str:
+def _menu(
+    default: str, label: str, text: str, items: tuple[tuple[str, str, str], ...], when: str = ""
+) -> str:
     """Return a setting of one of several texts, each with its label and its meaning."""
     panel = studies.Panel("", label, menu=tuple(item[1:] for item in items), when=when)
     return studies.setting(default, studies.OneOf(tuple(item[0] for item in items)), text, panel)
@@ -54,30 +56,44 @@ class ViewSettings:
         "ENTROPY",
         "Show",
         "Quantity that the colours of the ground show",
-        ("SENSORS", "Sensors", "Number of sensors that see a location: none, 1, 2, 3 or more"),
-        ("COVERAGE", "Coverage", "Share of a location that is visible to a sensor"),
-        ("ENTROPY", "Entropy", "Uncertainty of a detector in nats; lower is better"),
+        items=(
+            ("SENSORS", "Sensors", "Number of sensors that see a location: none, 1, 2, 3 or more"),
+            ("COVERAGE", "Coverage", "Share of a location that is visible to a sensor"),
+            ("ENTROPY", "Entropy", "Uncertainty of a detector in nats; lower is better"),
+        ),
     )
     ground_height: str = _menu(
         AVERAGE,
         "Height",
         "Height above the ground that is evaluated",
-        (AVERAGE, "Average", "All heights, by how likely an object is there: as scored"),
-        ("H0", "Ground", "The voxels that stand on the ground"),
-        ("H50", "0.5 m", "As high as a bumper or a cone"),
-        ("H100", "1 m", "As high as a bonnet"),
-        ("H150", "1.5 m", "As high as heads and roofs"),
+        items=(
+            (AVERAGE, "Average", "All heights, by how likely an object is there: as scored"),
+            ("H0", "Ground", "The voxels that stand on the ground"),
+            ("H50", "0.5 m", "As high as a bumper or a cone"),
+            ("H100", "1 m", "As high as a bonnet"),
+            ("H150", "1.5 m", "As high as heads and roofs"),
+        ),
     )
     ground_opacity: float = _value(0.35, OPACITY, "Opacity", "Opacity of the map's colours")
     ground_range: str = _menu(
         FITTED,
         "Range",
         "Range of values of the ground map's colours; the bright end is good",
-        (FITTED, "Fitted", "Colours are spread over what this scene shows: all but the lowest and "
-         "the highest 2 % of its places. Kept from the first score on, until it is fitted again"),
-        (WHOLE, "Whole", "From what nobody sees to what is seen best: the same colours in every "
-         "scene, and on review pages"),
-    )  # fmt: skip
+        items=(
+            (
+                FITTED,
+                "Fitted",
+                "Colours are spread over what this scene shows: all but the lowest and the highest "
+                "2 % of its places. Kept from the first score on, until it is fitted again",
+            ),
+            (
+                WHOLE,
+                "Whole",
+                "From what nobody sees to what is seen best: the same colours in every scene, and "
+                "on review pages",
+            ),
+        ),
+    )
     ground_fits: int = _value(0, KEY, "Fits", "How often the range of the colours was fitted again")
     ground_difference: bool = _switch(
         False,
@@ -94,10 +110,16 @@ class ViewSettings:
         "H50",
         "Height",
         "Height of an object on the ground; ground where it is invisible is blind",
-        ("H0", "Flat", "What lies flat on the ground: the gaps between a LiDAR's rings are blind"),
-        ("H50", "0.5 m", "A cone, a crouching child, a low wall"),
-        ("H100", "1 m", "A child"),
-        ("H150", "1.5 m", "A car, a grown person"),
+        items=(
+            (
+                "H0",
+                "Flat",
+                "What lies flat on the ground: the gaps between a LiDAR's rings are blind",
+            ),
+            ("H50", "0.5 m", "A cone, a crouching child, a low wall"),
+            ("H100", "1 m", "A child"),
+            ("H150", "1.5 m", "A car, a grown person"),
+        ),
     )
     show_reach: bool = _switch(
         False,
@@ -110,9 +132,11 @@ class ViewSettings:
         RIG,
         "Of",
         "Sensors whose reach is drawn",
-        (RIG, "Rig", "All sensors together"),
-        (SELECTED, "Selected", "All together, and each selected sensor alone"),
-        (ALL, "All", "All together, and each sensor alone"),
+        items=(
+            (RIG, "Rig", "All sensors together"),
+            (SELECTED, "Selected", "All together, and each selected sensor alone"),
+            (ALL, "All", "All together, and each sensor alone"),
+        ),
     )
     show_requirements: bool = _switch(
         True,
@@ -152,25 +176,35 @@ class ViewSettings:
         SELECTED,
         "Of",
         "Sensors whose beams are drawn",
-        (SELECTED, "Selected", "Beams of selected sensors"),
-        (ALL, "All", "Beams of all sensors"),
+        items=(
+            (SELECTED, "Selected", "Beams of selected sensors"),
+            (ALL, "All", "Beams of all sensors"),
+        ),
     )
     channels: str = _menu(
         "FEW",
         "Channels",
         "Channels whose beams are drawn",
-        ("FEW", "Few", "A few channels from the highest to the lowest"),
-        ("ALL", "All", "All channels"),
+        items=(
+            ("FEW", "Few", "A few channels from the highest to the lowest"),
+            ("ALL", "All", "All channels"),
+        ),
     )
     beam_colors: str = _menu(
         BY_SENSOR,
         "Color By",
         "Quantity that the colours of beams show",
-        (BY_STATE, "Free or Occluded", "Blue beams are free, orange beams end on the vehicle"),
-        (BY_SENSOR, "Sensor", "Each sensor has a colour of its own, as in the list; orange beams "
-         "end on the vehicle"),
-        (BY_CHANNEL, "Channel", "From the lowest channel, dark, to the highest, bright"),
-    )  # fmt: skip
+        items=(
+            (BY_STATE, "Free or Occluded", "Blue beams are free, orange beams end on the vehicle"),
+            (
+                BY_SENSOR,
+                "Sensor",
+                "Each sensor has a colour of its own, as in the list; orange beams end on the "
+                "vehicle",
+            ),
+            (BY_CHANNEL, "Channel", "From the lowest channel, dark, to the highest, bright"),
+        ),
+    )
     beam_length: float = _value(
         8.0, LENGTH, "Length", "Drawn length of beams that hit nothing", soft_max=200.0
     )

@@ -108,7 +108,20 @@ def _road_class(
     any_heading: float = 0.0,
 ) -> ObjectClass:
     """Return a class; `density` is its decay_x, laplace_y, gauss_y and laplace_share."""
-    return ObjectClass(name, size, height_spread, *density, (0.0,), 1.0, *spread, any_heading)
+    decay_x, laplace_y, gauss_y, laplace_share = density
+    length_spread, width_spread = spread
+    return ObjectClass(
+        name=name,
+        size=size,
+        height_spread=height_spread,
+        decay_x=decay_x,
+        laplace_y=laplace_y,
+        gauss_y=gauss_y,
+        laplace_share=laplace_share,
+        length_spread=length_spread,
+        width_spread=width_spread,
+        any_heading=any_heading,
+    )
 
 
 ROAD_CLASSES = (
@@ -166,8 +179,19 @@ def _highway_class(
     off_lanes: float = OFF_LANES,
     lanes: tuple[float, ...] = LANES,
 ) -> ObjectClass:
+    length_spread, width_spread = spread
     return ObjectClass(
-        name, size, height_spread, decay_x, OFF_LANES_M, IN_LANE_M, off_lanes, lanes, share, *spread
+        name=name,
+        size=size,
+        height_spread=height_spread,
+        decay_x=decay_x,
+        laplace_y=OFF_LANES_M,
+        gauss_y=IN_LANE_M,
+        laplace_share=off_lanes,
+        lanes=lanes,
+        share=share,
+        length_spread=length_spread,
+        width_spread=width_spread,
     )
 
 

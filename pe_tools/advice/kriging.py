@@ -59,7 +59,14 @@ class Kriging:
         square = _squares(points, points)
         tried = []
         for length, variance, factor in product(lengths, VARIANCE, NOISE):
-            own = cls._solved(points, values, factor * floor, square, length, variance * scatter)
+            own = cls._solved(
+                points,
+                values,
+                noise=factor * floor,
+                square=square,
+                length=length,
+                variance=variance * scatter,
+            )
             tried.append(own)
         _, best = max(tried, key=lambda each: each[0])
         return best
@@ -83,7 +90,16 @@ class Kriging:
         mean = float(ones @ values) / float(ones.sum())
         weights = inverse @ (values - mean)
         likelihood = -0.5 * float((values - mean) @ weights) - float(np.log(np.diag(lower)).sum())
-        own = cls(points, length, variance, noise, inverse, weights, mean, 1.0 / float(ones.sum()))
+        own = cls(
+            points,
+            length,
+            variance,
+            noise=noise,
+            _inverse=inverse,
+            _weights=weights,
+            _mean=mean,
+            _mean_variance=1.0 / float(ones.sum()),
+        )
         return likelihood, own
 
     @property

@@ -2,7 +2,7 @@
 
 A value that was checked cannot change afterwards."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, NoReturn
 
 import numpy as np
@@ -52,3 +52,8 @@ def read_only(array: NDArray[Any]) -> NDArray[Any]:
     """Make an array read-only, in place, and return it."""
     array.flags.writeable = False
     return array
+
+
+def each(function: Callable[[float], float], values: Floats) -> Floats:
+    """Return a function of `math` of each value (N,): the same bits in all builds of NumPy."""
+    return np.array([*map(function, values.tolist())], dtype=np.float64)

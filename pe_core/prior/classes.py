@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.arrays import Floats
+from ..base.arrays import Floats, each
 from ..base.errors import InputError, shown
 from ..base.values import A_NAME, LENGTH, SHARE, WEIGHT, Number, listed, real, vector
 from ..geometry.grids import PerceptionSpace
@@ -243,22 +243,23 @@ def uniform_shape(space: PerceptionSpace) -> Shape:
     return np.full((nx, ny), 1.0 / (nx * ny)), np.full(nz, 1.0 / nz)
 
 
+@np.errstate(over="ignore")  # far beyond a tiny spread
 def class_shape(cls: ObjectClass, space: PerceptionSpace) -> Shape:
     """Return the density of the voxels inside boxes of a class."""
     length, width, height = cls.size
     along = _blurred(lambda x: _exponential_mass(x, cls.decay_x), space.centers(0), length)
     across = _blurred(lambda y: _lateral_mass(y, cls), space.centers(1), width)
     ground = along[:, None] * across
-    profile = np.array(
-        [1.0 - _normal_cdf((z - height) / cls.height_spread) for z in space.centers(2).tolist()]
-    )
+    profile = 1.0 - _normal_cdf((space.centers(2) - height) / cls.height_spread)
     return normed(ground, profile)
 
 
+@np.errstate(over="ignore")
 def mass_in(cls: ObjectClass, space: PerceptionSpace) -> float:
     """Return the mass of a class's centres in a space, up to a constant factor of the class."""
-    along = _exponential_mass(space.x[1], cls.decay_x) - _exponential_mass(space.x[0], cls.decay_x)
-    return along * (_lateral_mass(space.y[1], cls) - _lateral_mass(space.y[0], cls))
+    near, far = _exponential_mass(np.array(space.x), cls.decay_x).tolist()
+    right, left = _lateral_mass(np.array(space.y), cls).tolist()
+    return (far - near) * (left - right)
 
 
 def sampled_positions(
@@ -272,13 +273,12 @@ def sampled_positions(
 
 
 @lru_cache(maxsize=16)
+@np.errstate(over="ignore")
 def _masses(
     cls: ObjectClass, x: tuple[float, float], y: tuple[float, float]
 ) -> tuple[Floats, Floats]:
     """Tabulate the cumulative masses of a class's centres along both axes between bounds."""
-    xs = [_exponential_mass(edge, cls.decay_x) for edge in _edges(x).tolist()]
-    ys = [_lateral_mass(edge, cls) for edge in _edges(y).tolist()]
-    return np.array(xs), np.array(ys)
+    return _exponential_mass(_edges(x), cls.decay_x), _lateral_mass(_edges(y), cls)
 
 
 def _edges(bounds: tuple[float, float]) -> Floats:
@@ -306,26 +306,26 @@ def normed(ground: NDArray[Any], profile: NDArray[Any]) -> Shape:
     return ground, profile / profile.sum()
 
 
-def _blurred(mass: Callable[[float], float], centers: Floats, size: float) -> Floats:
+def _blurred(mass: Callable[[Floats], Floats], centers: Floats, size: float) -> Floats:
     """Probability that each centre is inside a box of that size; `mass` is cumulative."""
-    return np.array([mass(c + size / 2.0) - mass(c - size / 2.0) for c in centers.tolist()])
+    return mass(centers + size / 2.0) - mass(centers - size / 2.0)
 
 
-def _exponential_mass(x: float, scale: float) -> float:
-    """Integral of exp(-|x| / scale) from 0 to x."""
-    return math.copysign(scale * -math.expm1(-abs(x) / scale), x)
+def _exponential_mass(x: Floats, scale: float) -> Floats:
+    """Integrals of exp(-|x| / scale) from 0 to each x."""
+    return np.copysign(scale * -each(math.expm1, -np.abs(x) / scale), x)
 
 
-def _lateral_mass(y: float, cls: ObjectClass) -> float:
-    """Mass from minus infinity to y, up to a constant: the mean over the lanes."""
-
-    def in_lane(off: float) -> float:
-        laplace = 0.5 * math.copysign(-math.expm1(-abs(off) / cls.laplace_y), off)
+def _lateral_mass(y: Floats, cls: ObjectClass) -> Floats:
+    """Masses from minus infinity to each y, up to a constant: the mean over the lanes."""
+    masses = np.zeros(len(y))
+    for lane in cls.lanes:
+        off = y - lane
+        laplace = 0.5 * np.copysign(-each(math.expm1, -np.abs(off) / cls.laplace_y), off)
         normal = _normal_cdf(off / cls.gauss_y)
-        return cls.laplace_share * laplace + (1.0 - cls.laplace_share) * normal
+        masses += cls.laplace_share * laplace + (1.0 - cls.laplace_share) * normal
+    return masses / len(cls.lanes)
 
-    return sum(in_lane(y - lane) for lane in cls.lanes) / len(cls.lanes)
 
-
-def _normal_cdf(z: float) -> float:
-    return 0.5 * (1.0 + math.erf(z / math.sqrt(2.0)))
+def _normal_cdf(z: Floats) -> Floats:
+    return 0.5 * (1.0 + each(math.erf, z / math.sqrt(2.0)))

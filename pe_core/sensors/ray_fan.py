@@ -16,7 +16,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.arrays import Flags, Floats, Ints
+from ..base.arrays import Flags, Floats, Ints, each
 from ..geometry.poses import rotate
 from ..scene.rig import Sensor, SensorModel
 from ..scene.vehicle import Vehicle
@@ -198,8 +198,7 @@ def _middles(low: float, high: float, count: int) -> Floats:
 
 
 def _circle(angles: Floats) -> tuple[Floats, Floats]:
-    values = angles.tolist()
-    return np.array([math.cos(a) for a in values]), np.array([math.sin(a) for a in values])
+    return each(math.cos, angles), each(math.sin, angles)
 
 
 def field_picture_of(

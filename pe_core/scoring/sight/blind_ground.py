@@ -24,7 +24,7 @@ from typing import Any
 
 import numpy as np
 
-from ...base.arrays import Flags, Floats, Ints, ReadOnlyDict, read_only
+from ...base.arrays import Flags, Floats, Ints, ReadOnlyDict, each, read_only
 from ...base.notebook import ShortRepr
 from ...base.values import rounded
 from ...geometry.grids import GroundGrid, PerceptionSpace, top_heights
@@ -154,9 +154,9 @@ def _circle() -> tuple[Ints, Ints]:
     """Return the squares (N,), (N,) of `sector_cells` that points of the circle lie in."""
     cells = sector_cells()
     count = math.ceil(2.0 * math.pi * SECTOR_RADIUS_M / ARC_STEP_M)
-    angles = [2.0 * math.pi * k / count for k in range(count)]
+    angles = 2.0 * math.pi * np.arange(count) / count
     i, j = (
-        np.floor((SECTOR_RADIUS_M * np.array([turn(a) for a in angles]) - low[0]) / cells.step)
+        np.floor((SECTOR_RADIUS_M * each(turn, angles) - low[0]) / cells.step)
         for turn, low in ((math.cos, cells.x0), (math.sin, cells.y0))
     )
     return i.astype(np.int64), j.astype(np.int64)

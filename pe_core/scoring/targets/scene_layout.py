@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...base.arrays import Floats, Ints
+from ...base.arrays import Floats, Ints, each
 from ...base.errors import InputError
 from ...geometry.grids import PerceptionSpace
 from ...prior.boxes import Boxes
@@ -114,8 +114,7 @@ def _scattered(u: Floats, mean: float, spread: float) -> Floats:
     max_spreads = min(SPREADS, mean / 2.0 / spread)
     low = NORMAL.cdf(-max_spreads)
     high = NORMAL.cdf(max_spreads)
-    inside = (low + u * (high - low)).tolist()
-    return mean + spread * np.array([NORMAL.inv_cdf(v) for v in inside])
+    return mean + spread * each(NORMAL.inv_cdf, low + u * (high - low))
 
 
 class GroundRectangles(NamedTuple):
@@ -144,10 +143,13 @@ class GroundRectangles(NamedTuple):
 
 def ground_rectangles(centers: Floats, sizes: Floats, yaws: Floats) -> GroundRectangles:
     """Return the footprints of boxes at (N, 2), with sizes (N, 3) and headings (N,)."""
-    turns = yaws.tolist()
-    cos, sin = (np.array([f(a) for a in turns]) for f in (math.cos, math.sin))
     return GroundRectangles(
-        centers[:, 0], centers[:, 1], cos, sin, along=sizes[:, 0] / 2.0, across=sizes[:, 1] / 2.0
+        centers[:, 0],
+        centers[:, 1],
+        each(math.cos, yaws),
+        each(math.sin, yaws),
+        along=sizes[:, 0] / 2.0,
+        across=sizes[:, 1] / 2.0,
     )
 
 

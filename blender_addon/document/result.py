@@ -118,15 +118,15 @@ class Result:
         made = []
         for name, part in self.after["per_zone"].items():
             label = advice.WHERE.get(name, name)
-            figures = part["entropy"], part["coverage"]
-            made.append(ResultPart(label[:1].upper() + label[1:], False, *figures))
+            shown = label[:1].upper() + label[1:]
+            made.append(ResultPart(shown, False, part["entropy"], part["coverage"]))
         found = self.after.get("objects", {}).get("per_class", {})
         ahead = self.figures.get("after", {}).get("reach", {})
         for name, part in self.after["per_class"].items():
-            figures = part["entropy"], part["coverage"]
             found_to, is_least = ahead.get(name, (None, False))
             reach = "" if found_to is None else sight.reach_text(found_to, is_least)
-            row = ResultPart(name[:1].upper() + name[1:], True, *figures, reach=reach)
+            shown = name[:1].upper() + name[1:]
+            row = ResultPart(shown, True, part["entropy"], part["coverage"], reach=reach)
             if (own := found.get(name)) is not None:
                 reach = advice.lone_reach(own["reach"]["front"])
                 row = row._replace(ap=f"{own['ap']:.2f}", reach=reach)
@@ -240,7 +240,9 @@ class ShownFront:
 def front_of(text: str) -> ShownFront:
     """Return the front in a text; one without designs in an empty text."""
     data = json.loads(text or "{}")
-    return ShownFront(**{**data, "rows": tuple(FrontRow(*row) for row in data.get("rows", ()))})
+    return ShownFront(
+        **{**data, "rows": tuple(FrontRow._make(row) for row in data.get("rows", ()))}
+    )
 
 
 class ResultViews:

@@ -194,11 +194,12 @@ class _Sheet:
         a = corners[rows, k]
         b = corners[rows, (k + 1) % 3]
         depth, u, v = self._look.face.split(np.stack([a, b, b]).transpose(2, 0, 1))
-        spans = (spans_of_triangles(depth, u), spans_of_triangles(depth, v))
-        some = np.flatnonzero((corner_max(depth) > 0.0) & self._window.touches(*spans))
+        across = spans_of_triangles(depth, u)
+        down = spans_of_triangles(depth, v)
+        some = np.flatnonzero((corner_max(depth) > 0.0) & self._window.touches(across, down))
         plane = np.stack(self._look.face.split(cross(a[some], b[some]).T))
         reach = np.maximum(dot(a[some], a[some]), dot(b[some], b[some]))
-        within = [(w[0][some], w[1][some]) for w in spans]
+        within = [(w[0][some], w[1][some]) for w in (across, down)]
         shown = row_spans(
             self._window,
             (within[0], within[1]),

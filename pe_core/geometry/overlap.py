@@ -135,9 +135,11 @@ def _nearest_on_edge(start: Floats, end: Floats, top: float) -> Floats:
     """Distance (N,) from the axis to edges, cut at heights -top and top; inf for no part."""
     rise = end[:, 2] - start[:, 2]
     level = rise == 0.0
-    steps = [(height - start[:, 2]) / np.where(level, 1.0, rise) for height in (-top, top)]
-    first = np.where(level, 0.0, np.maximum(np.minimum(*steps), 0.0))
-    last = np.where(level, 1.0, np.minimum(np.maximum(*steps), 1.0))
+    at_bottom, at_top = (
+        (height - start[:, 2]) / np.where(level, 1.0, rise) for height in (-top, top)
+    )
+    first = np.where(level, 0.0, np.maximum(np.minimum(at_bottom, at_top), 0.0))
+    last = np.where(level, 1.0, np.minimum(np.maximum(at_bottom, at_top), 1.0))
     outside = (first > last) | (level & (np.abs(start[:, 2]) > top))
     along = end - start
     ends = (start + t[:, None] * along for t in (first, last))
@@ -157,7 +159,7 @@ def _nearest_on_section(triangles: Floats, height: float) -> Floats:
         t = (height - one[:, 2]) / np.where(rise == 0.0, 1.0, rise)
         ends.append((one + t[:, None] * (other - one))[:, :2])
     cut = over.any(axis=1) & ~over.all(axis=1)
-    return np.where(cut, _nearest(*ends), np.inf)
+    return np.where(cut, _nearest(ends[0], ends[1]), np.inf)
 
 
 def _nearest(start: Floats, end: Floats) -> Floats:

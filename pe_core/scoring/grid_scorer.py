@@ -186,14 +186,14 @@ class GridScorer:
                 reduced.append(block)
                 progress.add()
         sums = np.sum([by_part for by_part, _, _ in reduced], axis=0)
-        by_part = {members: Sums(*row) for members, row in zip(parts, sums, strict=True)}
+        by_part = {members: Sums._make(row) for members, row in zip(parts, sums, strict=True)}
         columns = np.concatenate([columns for _, columns, _ in reduced], axis=1)
         whole = by_part[parts[0]]
         if is_sparse:
             sums_by_sensor = np.sum([sums for _, _, sums in reduced], axis=0)
             blind = H_BLIND * float(self._masses.sum())
             more = parts_by_sums(rig, float(whole.entropy.sum()), blind, sums_by_sensor)
-            by_part |= {members: Sums(*row) for members, row in more.items()}
+            by_part |= {members: Sums._make(row) for members, row in more.items()}
         return Score(
             entropy=self._mean(whole.entropy),
             coverage=self._mean(whole.coverage),

@@ -153,14 +153,15 @@ class SampledScorer:
         progress = ScoreProgress(watch, count * (1.0 + 1.0 / SENSORS_FUSED))
         with self._lock:
             self._sensors.measure(rig, progress.add)
-            values = self._entropies(rig, [s.name for s in rig])
-            whole = self._summary(rig, *values)
+            entropies, visible = self._entropies(rig, [s.name for s in rig])
+            whole = self._summary(rig, entropies, visible)
             failed = self._without_each(rig)
             per_sensor = {
                 s.name: self._sensor(s, rig, failed[s.name] - whole.entropy, progress) for s in rig
             }
             assert whole.scatter is not None
-            by_figure = {**whole.scatter.residuals, **self._class_residuals(*values)}
+            of_classes = self._class_residuals(entropies, visible)
+            by_figure = {**whole.scatter.residuals, **of_classes}
             scatter = Scatter(self._digest, by_figure)
             return replace(whole, per_sensor=per_sensor, scatter=scatter)
 

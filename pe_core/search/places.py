@@ -52,9 +52,10 @@ class SurfacePlace:
     value: float | None = None
 
 
-def outward_yaw(x: float, y: float) -> float:
+def outward_yaw(away: tuple[float, float]) -> float:
     """Return the yaw away from the vehicle's middle of a place at x, y from it [m], in whole
     degrees [rad]; straight ahead where there is no such direction."""
+    x, y = away
     if math.hypot(x, y) < NO_HEADING_M:
         return 0.0
     return math.radians(round(math.degrees(math.atan2(y, x))))
@@ -64,7 +65,7 @@ def surface_points(triangles: Floats, count: int) -> tuple[Floats, Ints]:
     """Return points (N, 3) on triangles (F, 3, 3) [m], and their faces (N,). The coarse cover is
     first; N is `count`. The same triangles give the same points."""
     edges = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
-    normals = cross(*edges)
+    normals = cross(edges[0], edges[1])
     area = np.cumsum(np.sqrt(dot(normals, normals)))
     number = np.arange(count * POOL)
     at = (number + 0.5) / len(number) * area[-1]
@@ -154,17 +155,17 @@ class MountingPlaces:
     def _angles(self, x: float, y: float, z: float) -> tuple[float, float]:
         """Return pitch and yaw of a sensor at a place [m], in whole degrees [rad]."""
         if self._look_at is None or not (self._turned or self._tilted):
-            outward = outward_yaw(x - self._middle[0], y - self._middle[1])
+            outward = outward_yaw((x - self._middle[0], y - self._middle[1]))
             return 0.0, outward if self._turned else 0.0
         away = self._look_at[0] - x, self._look_at[1] - y
         down = math.degrees(math.atan2(z - self._look_at[2], math.hypot(*away)))
         if self._turned:
-            return math.radians(round(down)), outward_yaw(*away)
+            return math.radians(round(down)), outward_yaw(away)
         unseen = down - math.degrees(self._lowest_ray)
         if unseen <= 0.0:
             return 0.0, 0.0
         tilt = min(unseen + SPARE_DEG, MAX_TILT_DEG)
-        return math.radians(math.ceil(tilt)), outward_yaw(*away)
+        return math.radians(math.ceil(tilt)), outward_yaw(away)
 
     def with_sensor(self, pose: Pose) -> Rig:
         """Return the rig with the sensor at a pose."""

@@ -86,17 +86,18 @@ class PlacedBoxes:
             np.minimum(leave, np.maximum(t0, t1), out=leave)
         return enter, leave
 
-    def side_points(self, count: int, turn: int) -> "tuple[BoxRays, Floats]":
+    def side_points(self, lattice: tuple[int, int]) -> "tuple[BoxRays, Floats]":
         """Return rays to points on the sides that face the sensor, and solid angles (R,) [sr].
 
-        A side has `count` points, each with the solid angle of an equal piece of its area: a
-        Fibonacci lattice, if `turn` and `count` are neighbouring Fibonacci numbers. No two points
-        have the same distance from an edge of the side, so an edge that cuts the side at any angle
-        has the right share of them on each side.
+        A side has points on a Fibonacci lattice, each with the solid angle of an equal piece of its
+        area: `lattice` has their count and the Fibonacci number before it. No two points have the
+        same distance from an edge of the side, so an edge that cuts the side at any angle has the
+        right share of them on each side.
         """
+        count, turn = lattice
         step = np.arange(count) + 0.5
-        lattice = np.stack([step / count, (step * turn / count) % 1.0], axis=1) * 2.0 - 1.0
-        return self._rays_to_sides(lattice)
+        points = np.stack([step / count, (step * turn / count) % 1.0], axis=1) * 2.0 - 1.0
+        return self._rays_to_sides(points)
 
     def side_corners(self, count: int) -> "tuple[BoxRays, Floats]":
         """Return rays to the corners of `count` x `count` equal patches of the sides that face the

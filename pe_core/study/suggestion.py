@@ -160,9 +160,10 @@ class Suggestion:
         }
 
 
-def with_blind_spot(study: Study, x: float, y: float) -> Study:
+def with_blind_spot(study: Study, place: tuple[float, float]) -> Study:
     """Return the study with the place x, y [m] as a requirement, `BLIND_SPOT`: nothing as tall as
     for blind ground is invisible in a square round it, of the same size with voxels of any size."""
+    x, y = place
     zone = Zone(x=(x - SPOT_M, x + SPOT_M), y=(y - SPOT_M, y + SPOT_M))
     height = max(BLIND_TO_M, study.space.z[0])
     spot = Requirement(BLIND_SPOT, zone, (), Criterion(blind_m2=0.0, blind_height=height))

@@ -93,8 +93,13 @@ class Host(Protocol):
 def _page(*, is_front: bool) -> More:
     """Return the page beside the results of a search, or of a front."""
     if is_front:
-        return More([jobs.FRONT_PAGE], lambda *given: shipped("page.front")(*given))
-    return More([REVIEW_PAGE], lambda *given: shipped("page.search")(*given))
+        return More(
+            [jobs.FRONT_PAGE],
+            lambda front, data, folder: shipped("page.front")(front, data, folder),
+        )
+    return More(
+        [REVIEW_PAGE], lambda outcome, data, folder: shipped("page.search")(outcome, data, folder)
+    )
 
 
 def run_study(host: Host, args: argparse.Namespace) -> Answer:

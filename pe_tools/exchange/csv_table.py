@@ -165,8 +165,9 @@ def _picture(
     path: Path, place: str, cells: Mapping[str, Any], number: Callable[..., float]
 ) -> Picture:
     """Return the lens of a row."""
-    size = ((f"{place}, {key}", cells[key]) for key in FIGURES[:2])
-    width, height = (values.whole_figure(path, *each) for each in size)
+    width, height = (
+        values.whole_figure(path, f"{place}, {key}", cells[key]) for key in FIGURES[:2]
+    )
     fx, fy, cx, cy = map(number, FIGURES[2:])
     lens = LENSES[choice(path, f"{place}, lens", cells.get("lens") or "pinhole", LENSES)]
     field = f"{place}, coefficients"

@@ -144,11 +144,11 @@ def _poses(path: Path, robot: Element) -> tuple[dict[str, tuple[str, Pose]], dic
         origin = joint.find("origin")
         field = f"joint {joint.get('name', '')!r}"
         texts = {} if origin is None else origin.attrib
-        numbers = [
+        position, rpy = (
             values.figures(path, f"{field}, {key}", texts.get(key, "0 0 0"), 3)
             for key in ("xyz", "rpy")
-        ]
-        joints[child] = parent, values.pose_from(path, field, *numbers)
+        )
+        joints[child] = parent, values.pose_from(path, field, position, rpy)
     return joints, frames.poses_from_root(path, joints, links, "link")
 
 

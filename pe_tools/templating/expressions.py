@@ -4,7 +4,7 @@ look-up of attributes. No text is run."""
 import ast
 import operator
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 from .markup import Markup
@@ -115,6 +115,10 @@ class ExpressionParser:
         return self._tokens[0]
 
     def skip(self, *texts: str) -> str:
+        """Skip the next token if it is one of these signs or words; return it, else ""."""
+        return self.skip_any(texts)
+
+    def skip_any(self, texts: Collection[str]) -> str:
         """Skip the next token if it is one of some signs or words; return it, else ""."""
         sort, text = self.next
         if sort not in ("sign", "name") or text not in texts:
@@ -232,13 +236,13 @@ class ExpressionParser:
         if self.next == ("name", "not") and self._tokens[1] == ("name", "in"):
             del self._tokens[:2]
             return "not in"
-        return self.skip(*COMPARED)
+        return self.skip_any(COMPARED)
 
     def _operated(
         self, signs: Mapping[str, Callable[[Any, Any], Any]], closer: Callable[[], Expression]
     ) -> Expression:
         left = closer()
-        while sign := self.skip(*signs):
+        while sign := self.skip_any(signs):
             left = _applied(signs[sign], left, closer())
         return left
 

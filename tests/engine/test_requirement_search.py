@@ -156,7 +156,7 @@ def test_a_blind_place_is_mended_and_what_is_seen_needs_nothing():
     """The place is blind before, and not after; the study's requirements tell what breaks."""
     start = study()
     place = (0.0, 1.6)
-    found = repairs(with_blind_spot(start, *place), (BLIND_SPOT,))[BLIND_SPOT]
+    found = repairs(with_blind_spot(start, place), (BLIND_SPOT,))[BLIND_SPOT]
     assert [each.added for each in found] in ([False, True], [True])
     sight = start.sight()
 
@@ -170,14 +170,14 @@ def test_a_blind_place_is_mended_and_what_is_seen_needs_nothing():
         met = {v.name: v.met for v in start.verdicts(each.rig)}
         assert set(each.breaks) == {name for name in ("ahead",) if not met[name]}
     assert all(each.after.blind_m2 < each.before.blind_m2 for each in found)
-    assert repairs(with_blind_spot(start, 8.0, 0.0), (BLIND_SPOT,)) == {}
+    assert repairs(with_blind_spot(start, (8.0, 0.0)), (BLIND_SPOT,)) == {}
 
 
 def test_a_lidar_is_added_where_a_person_would_mount_it():
     """Beside the sedan's door it is tilted over the edge of the roof: at the wheel arch the body
     hides four of ten of its rays."""
     start = pe.load_study(SEDAN)
-    (own,) = repairs(with_blind_spot(start, 0.4, 1.7), (BLIND_SPOT,))[BLIND_SPOT]
+    (own,) = repairs(with_blind_spot(start, (0.4, 1.7)), (BLIND_SPOT,))[BLIND_SPOT]
     assert own.added and own.occluded <= 0.1 and own.is_gain
     pose = own.rig[own.moved[0]].pose
     assert pose.position[2] > 0.9 * start.vehicle.bounds[1][2]
@@ -191,7 +191,7 @@ def test_a_rig_that_cannot_see_the_ground_is_told_so():
     radar = replace(start.rig["rear"], model=catalog.load("Continental ARS408-21"))
     blind = replace(start, rig=pe.Rig([radar]), requirements=(), search=pe.Search())
     with pytest.raises(pe.InputError, match="can be held to"):
-        repairs(with_blind_spot(blind, 0.0, 1.6), (BLIND_SPOT,))
+        repairs(with_blind_spot(blind, (0.0, 1.6)), (BLIND_SPOT,))
 
 
 def test_shortfalls_are_zero_exactly_where_a_verdict_says_met():

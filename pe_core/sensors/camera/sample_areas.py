@@ -177,8 +177,8 @@ def pixel_areas(
     the vehicle from the camera's position; it hides a voxel by its centre."""
     axes = axes_of(pose)
     area = np.zeros(len(centers))
-    roughly = in_sensor_frame(axes, centers - np.asarray(pose.position))
-    index = np.flatnonzero(in_view(camera, *roughly, side))
+    depth, left, up = in_sensor_frame(axes, centers - np.asarray(pose.position))
+    index = np.flatnonzero(in_view(camera, depth, left, up, side=side))
     offsets = offsets_of(centers[index], pose.position, side)
     depth, left, up = in_sensor_frame(axes, offsets)
     plain = depth > (NEAR_SIDES + MARGIN) * side

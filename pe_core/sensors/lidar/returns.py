@@ -65,9 +65,10 @@ def expected_points(
     """Return the expected points (N,) on objects of beams that enter them. `hits` (H,) each are
     box, beam, and the distance at which it enters [m]; `scenes` (N,): objects of one scene take
     beams from each other. Below `LEAST` no point is expected, and it is 0."""
-    box, _, enter = hits
+    box, beam, enter = hits
     fill, half = surfaces(objects)
-    points = passed(*hits, scenes, fill[box]) * fill[box] * return_probability(enter, half[box])
+    reaching = passed(box, beam, enter, scenes=scenes, fill=fill[box])
+    points = reaching * fill[box] * return_probability(enter, half[box])
     points[enter < min_range] = 0.0
     found = np.bincount(box, points, len(objects)).astype(float)
     found[found < LEAST] = 0.0

@@ -148,8 +148,8 @@ def _count_bracketed(
     undecided[affected] = False
     for some, without_vehicle in ((np.flatnonzero(undecided), True), (affected, False)):
         offsets = voxels.offsets(lidar.position, index[some])
-        beams = lattice.window_beams(bounds, some)
-        counts[some] = count_pairs(offsets, lidar, *beams, without_vehicle=without_vehicle)
+        voxel, beam = lattice.window_beams(bounds, some)
+        counts[some] = count_pairs(offsets, lidar, voxel, beam, without_vehicle=without_vehicle)
     return counts
 
 

@@ -240,7 +240,7 @@ class _BodyOutline:
     def of(cls, boxes: PlacedBoxes, is_cautious: bool) -> "_BodyOutline":
         if is_cautious:
             return cls(*boxes.side_corners(SIDE_PATCHES), True)
-        return cls(*boxes.side_points(*SIDE_POINTS), False)
+        return cls(*boxes.side_points(SIDE_POINTS), False)
 
     def mean(self, values: Floats, count: int) -> Floats:
         """Return the mean of values (R,) over the silhouettes of `count` boxes; of a cautious radar

@@ -140,7 +140,7 @@ def objects_heard(sensor: Sensor, objects: Objects, fan: RayFan, traffic: bool) 
     if not len(near):
         return m
     own = boxes.take(near)
-    sides, _ = own.side_points(*SIDE_POINTS)
+    sides, _ = own.side_points(SIDE_POINTS)
     high = own.offsets + own.halves
     low = own.offsets - own.halves
     nearest = np.clip(0.0, low, high)

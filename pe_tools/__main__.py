@@ -26,7 +26,9 @@ def main() -> None:
 
     if signal.getsignal(signal.SIGINT) is _leave:
         signal.signal(signal.SIGINT, signal.default_int_handler)
-    leave(run())
+    status = run()
+    gc.freeze()  # else Python looks once more through all that there is, as it ends
+    leave(status)
 
 
 def _printed(text: str) -> bool:

@@ -2,14 +2,16 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pe_core.base.codec import Recorded
 from pe_core.scoring.score import SURE
 from pe_core.search import Reading
-from pe_core.study.suggestion import Suggestion
 
 from ..wording import warning_text
+
+if TYPE_CHECKING:
+    from pe_core.study import Suggestion
 
 FRAGILE = "fragile"  # Code of the warning that concerns the placement of all sensors
 UNMET = "requirement"  # Code of the warning about a requirement that a search could not keep
@@ -74,7 +76,7 @@ def fragile(
     return (Advice(None, FRAGILE, values),)
 
 
-def unmet(found: Mapping[str, Suggestion | None]) -> tuple[Advice, ...]:
+def unmet(found: "Mapping[str, Suggestion | None]") -> tuple[Advice, ...]:
     """Return a warning for each requirement that a search could not keep. `found` has the nearest
     placement that meets each, and what it breaks; None: it was met nowhere."""
     return tuple(

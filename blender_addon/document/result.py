@@ -118,15 +118,15 @@ class Result:
         made = []
         for name, part in self.after["per_zone"].items():
             label = advice.WHERE.get(name, name)
-            figures = part["entropy"], part["coverage"]
-            made.append(ResultPart(label[:1].upper() + label[1:], False, *figures))
+            title = label[:1].upper() + label[1:]
+            made.append(ResultPart(title, False, part["entropy"], part["coverage"]))
         found = self.after.get("objects", {}).get("per_class", {})
         ahead = self.figures.get("after", {}).get("reach", {})
         for name, part in self.after["per_class"].items():
-            figures = part["entropy"], part["coverage"]
             found_to, is_least = ahead.get(name, (None, False))
             reach = "" if found_to is None else sight.reach_text(found_to, is_least)
-            row = ResultPart(name[:1].upper() + name[1:], True, *figures, reach=reach)
+            title = name[:1].upper() + name[1:]
+            row = ResultPart(title, True, part["entropy"], part["coverage"], reach=reach)
             if (own := found.get(name)) is not None:
                 reach = advice.lone_reach(own["reach"]["front"])
                 row = row._replace(ap=f"{own['ap']:.2f}", reach=reach)

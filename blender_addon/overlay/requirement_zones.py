@@ -160,9 +160,10 @@ def _margin_line(verdict: Verdict) -> tuple[graphics.Primitives, graphics.Tag] |
     probe = start + PROBE_M * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
     distance = zone.distance(probe)
     outwards = np.array([distance[0] - distance[1], distance[2] - distance[3]])
-    if not np.hypot(*outwards):
+    length = np.hypot(*outwards)
+    if not length:
         return None
-    outwards = outwards / np.hypot(*outwards)
+    outwards = outwards / length
     end = start + verdict.margin * outwards
     across = TICK_M * np.array([-outwards[1], outwards[0]])
     points = np.array([start, end, *(p + way for p in (start, end) for way in (-across, across))])

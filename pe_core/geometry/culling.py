@@ -237,9 +237,10 @@ class FaceLook:
         index, side = self._inside(boxes, level=0)
         corners = self.tree.triangles[index] - self.origin
         depth, u, v = self.split(np.ascontiguousarray(corners.transpose(2, 1, 0)), side)
-        spans = self._moved(spans_of_triangles(depth, u), side), spans_of_triangles(depth, v)
-        facing = Facing(corners, index, side, *spans)
-        shown = (corner_max(depth) > 0.0) & select(*spans)
+        across = self._moved(spans_of_triangles(depth, u), side)
+        up = spans_of_triangles(depth, v)
+        facing = Facing(corners, index, side, u=across, v=up)
+        shown = (corner_max(depth) > 0.0) & select(across, up)
         return facing[np.flatnonzero(shown)]
 
     def _below(self, boxes: VisibleBoxes, level: int) -> VisibleBoxes:

@@ -187,7 +187,7 @@ class Fusion:
             by_others = np.logical_or.reduce([m > 0 for _, m in others])
             visible |= by_others
             seen = np.flatnonzero(by_others | (not ignores_blind))  # faster than by flags
-            precisions = [self._precision_at(seen, *group) for group in groups]  # eqs. 4 and 5
+            precisions = [self._precision_at(seen, kind, m) for kind, m in groups]  # eqs. 4 and 5
             fused = self.fused([kind for kind, _ in groups], precisions)
             np.put(entropies, seen, entropy_of(fused))
         return entropies, visible
@@ -376,7 +376,9 @@ class LeaveOneOut:
         self, fused: PlaneFusion, groups: Sequence[Sequence[Group]], totals: Sequence[Group]
     ) -> None:
         self._fused = fused
-        self._groups = [_FusionGroup(*pair) for pair in zip(groups, totals, strict=True)]
+        self._groups = [
+            _FusionGroup(sensors, total) for sensors, total in zip(groups, totals, strict=True)
+        ]
 
     def of_plane(self, plane: int, entropies: Floats, weights: Floats) -> Floats:
         """Return weighted sums (3, S) over the voxels of a plane that each sensor sees.

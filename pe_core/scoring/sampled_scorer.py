@@ -145,7 +145,8 @@ class SampledScorer:
         """Return the score without the part by sensor."""
         with self._lock:
             self._sensors.measure(rig)
-            return self._summary(rig, *self._entropies(rig, [s.name for s in rig]))
+            entropies, visible = self._entropies(rig, [s.name for s in rig])
+            return self._summary(rig, entropies, visible)
 
     def score(self, rig: Rig, watch: Watch | None = None) -> Score:
         """Return the full score; `watch` gets the share that is done after each sensor."""
@@ -153,14 +154,14 @@ class SampledScorer:
         progress = ScoreProgress(watch, count * (1.0 + 1.0 / SENSORS_FUSED))
         with self._lock:
             self._sensors.measure(rig, progress.add)
-            values = self._entropies(rig, [s.name for s in rig])
-            whole = self._summary(rig, *values)
+            entropies, visible = self._entropies(rig, [s.name for s in rig])
+            whole = self._summary(rig, entropies, visible)
             failed = self._without_each(rig)
             per_sensor = {
                 s.name: self._sensor(s, rig, failed[s.name] - whole.entropy, progress) for s in rig
             }
             assert whole.scatter is not None
-            by_figure = {**whole.scatter.residuals, **self._class_residuals(*values)}
+            by_figure = {**whole.scatter.residuals, **self._class_residuals(entropies, visible)}
             scatter = Scatter(self._digest, by_figure)
             return replace(whole, per_sensor=per_sensor, scatter=scatter)
 

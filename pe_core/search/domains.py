@@ -106,7 +106,8 @@ class DesignVariable:
 def variable_of(axis: str, bounds: tuple[float, float]) -> DesignVariable:
     """Return the design variable of a coordinate, with its bounds [m or rad]."""
     unit = METRE if axis in POSITION_AXES else RADIAN
-    return DesignVariable(*bounds, unit, -1.0 if axis in ("y", "roll", "yaw") else 1.0)
+    low, high = bounds
+    return DesignVariable(low, high, unit, -1.0 if axis in ("y", "roll", "yaw") else 1.0)
 
 
 class MountSurface:

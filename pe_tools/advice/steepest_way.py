@@ -268,7 +268,7 @@ def _slope_of_turn(places: OwnPlaces, evaluator: RigEvaluator, axis: str) -> Ste
     for rig in both:
         scores.append(evaluator.summary(rig))
         yield
-    row = _difference(*scores) / 2.0
+    row = _difference(scores[0], scores[1]) / 2.0
     sense = int(row[0] > 0.0)
     name = f"{axis} {TURN_WORDS[axis][sense]}"
     error = standard_error(row[1:].tolist())

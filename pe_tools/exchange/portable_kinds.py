@@ -151,9 +151,8 @@ def camera_of(name: str, p: Picture, usual: Size | None = None) -> tuple[Camera,
 
 def lidar_of(name: str, scan: Scan) -> Lidar:
     """Return the LiDAR model of a scan, from its listed beams or else with even channels."""
-    ranges = scan.max_range, scan.min_range
     if scan.directions is not None:
-        return Lidar.from_directions(name, scan.directions, *ranges)
+        return _listed(name, scan, scan.directions)
     if scan.compute_emitters is not None:
         emitters = scan.compute_emitters()
         return Lidar(
@@ -169,19 +168,24 @@ def lidar_of(name: str, scan: Scan) -> Lidar:
     if high - low < NO_EXTENT_RAD:  # it does not rotate: all of its channels have one azimuth
         level = np.cos(elevations)
         beams = [level * math.cos(low), level * math.sin(low), np.sin(elevations)]
-        return Lidar.from_directions(name, np.stack(beams, axis=1), *ranges)
+        return _listed(name, scan, np.stack(beams, axis=1))
     if scan.ends is not None and scan.azimuths > 1:
         return _lidar_between(name, scan, scan.ends, elevations)
     share = min((high - low) / (2.0 * math.pi), 1.0)
     steps = max(round(scan.azimuths / share), 1)
-    return Lidar(name, elevations, steps, ranges[0], horizontal_fov=scan.fov, min_range=ranges[1])
+    return Lidar(
+        name, elevations, steps, scan.max_range, horizontal_fov=scan.fov, min_range=scan.min_range
+    )
+
+
+def _listed(name: str, scan: Scan, directions: Floats) -> Lidar:
+    return Lidar.from_directions(name, directions, scan.max_range, scan.min_range)
 
 
 def _lidar_between(name: str, scan: Scan, ends: tuple[float, float], elevations: Floats) -> Lidar:
     """Return the LiDAR of a scan with azimuths at both ends and evenly between. It has the steps of
     a full circle if these fit, else its beams are listed. A scan of a whole turn has the azimuth
     at its seam once."""
-    ranges = scan.max_range, scan.min_range
     low, high = ends
     nominal = (high - low) / (scan.azimuths - 1)
     steps = round(2.0 * math.pi / nominal)
@@ -190,7 +194,7 @@ def _lidar_between(name: str, scan: Scan, ends: tuple[float, float], elevations:
         up = np.repeat(elevations, scan.azimuths)
         level = np.cos(up)
         beams = [level * np.cos(azimuths), level * np.sin(azimuths), np.sin(up)]
-        return Lidar.from_directions(name, np.stack(beams, axis=1), *ranges)
+        return _listed(name, scan, np.stack(beams, axis=1))
     step = 2.0 * math.pi / steps
     first = round(low / step)
     offset = low - first * step
@@ -202,10 +206,10 @@ def _lidar_between(name: str, scan: Scan, ends: tuple[float, float], elevations:
         name,
         elevations,
         steps,
-        ranges[0],
+        scan.max_range,
         azimuth_offsets=np.full(len(elevations), offset),
         horizontal_fov=fov,
-        min_range=ranges[1],
+        min_range=scan.min_range,
     )
 
 

@@ -73,7 +73,11 @@ class BuiltJob(Job):
             met.append(found or {})
         if not self.stopped:
             self.found = AsBuilt(
-                self._pairing, rows, tuple(moved), fallen=fallen_verdicts(*met), notes=self._notes
+                self._pairing,
+                rows,
+                tuple(moved),
+                fallen=fallen_verdicts(met[0], met[1]),
+                notes=self._notes,
             )
         yield Progress("done", 1.0)
 

@@ -177,9 +177,10 @@ class RegionJob(Job):
                 self.found = region
                 yield self._waiting
             if self._search_others and not self.stopped and len(self._mount.faces):
-                gain = yield from self._gain_of_others(level, constraints)
-                if gain is not None and self.found is not None:
-                    self.found = self.found.with_gain(*gain)
+                estimate = yield from self._gain_of_others(level, constraints)
+                if estimate is not None and self.found is not None:
+                    gain, error = estimate
+                    self.found = self.found.with_gain(gain, error)
         yield Progress("done", 1.0)
 
     def _region_on(self, level: "_Level", is_last: bool) -> ProgressSteps[FreeRegion]:

@@ -17,9 +17,9 @@ IN_FRONT = 1e-6
 """In sides; a corner nearer to a camera's plane is behind it."""
 
 
-def rotation(roll: float, pitch: float, yaw: float) -> Floats:
+def rotation(rpy: Sequence[float]) -> Floats:
     """Return the rotation (3, 3), ground from sensor, of roll, pitch and yaw [rad]."""
-    cr, sr, cp, sp, cy, sy = (f(a) for a in (roll, pitch, yaw) for f in (math.cos, math.sin))
+    cr, sr, cp, sp, cy, sy = (f(a) for a in rpy for f in (math.cos, math.sin))
     rx = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
     ry = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
     rz = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])
@@ -32,7 +32,7 @@ def beam_directions(elevations: ArrayLike, azimuths: Floats, rpy: Sequence[float
     local = np.stack(
         [np.cos(e) * np.cos(azimuths), np.cos(e) * np.sin(azimuths), np.sin(e) + 0 * azimuths], -1
     )
-    return local.reshape(-1, 3) @ rotation(*rpy).T
+    return local.reshape(-1, 3) @ rotation(rpy).T
 
 
 def first_hits(
@@ -94,7 +94,7 @@ def pixel_area(
     points = []
     for signs in np.ndindex(2, 2, 2):
         corner = center + side * (np.array(signs) - 0.5) - origin
-        x, y, z = rotation(*rpy).T @ corner
+        x, y, z = rotation(rpy).T @ corner
         if x <= IN_FRONT * side:
             return 0.0
         points.append((width / 2 - focal * y / x, height / 2 - focal * z / x))

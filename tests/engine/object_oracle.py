@@ -16,7 +16,7 @@ FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (
 def corners(objects, item):
     """(8, 3) of one object."""
     own = np.array(list(np.ndindex(2, 2, 2))) - 0.5
-    turn = oracle.rotation(0.0, 0.0, objects.yaws[item])
+    turn = oracle.rotation((0.0, 0.0, objects.yaws[item]))
     return objects.centers[item] + (own * objects.sizes[item]) @ turn.T
 
 
@@ -66,7 +66,7 @@ def pixels(sensor, ray_of, finer, objects, vehicle, traffic):
     )
     right, below = (w.ravel() for w in np.meshgrid(across, down))
     rays = ray_of(right, below)
-    rays = rays[~np.isnan(rays[:, 0])] @ oracle.rotation(*sensor.pose.rpy).T
+    rays = rays[~np.isnan(rays[:, 0])] @ oracle.rotation(sensor.pose.rpy).T
     counts = np.zeros(len(objects))
     for item, distance in taken(
         np.array(sensor.pose.position), rays, objects, vehicle, traffic=traffic
@@ -83,7 +83,7 @@ def visible_shares(sensor, ray_of, objects, vehicle, want=10_000):
     object, evenly spread over that part, decide.
     """
     origin = np.array(sensor.pose.position)
-    turn = oracle.rotation(*sensor.pose.rpy)
+    turn = oracle.rotation(sensor.pose.rpy)
     camera = sensor.model
     shares = np.full((2, len(objects)), np.nan)
 
@@ -143,7 +143,7 @@ def hull_area(sensor, objects, item):
     camera = sensor.model
     points = []
     focal = camera.width / (2.0 * math.tan(camera.hfov / 2.0))
-    seen = (corners(objects, item) - sensor.pose.position) @ oracle.rotation(*sensor.pose.rpy)
+    seen = (corners(objects, item) - sensor.pose.position) @ oracle.rotation(sensor.pose.rpy)
     for x, y, z in seen:
         if x <= 0.01:
             return None

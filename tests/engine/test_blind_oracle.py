@@ -87,7 +87,7 @@ class LowBeams:
     """A LiDAR's beams from above, where they are between the ground and a height."""
 
     def __init__(self, sensor, height, vehicle, reach=20.0):
-        way = sensor.model.directions @ oracle.rotation(*sensor.pose.rpy).T
+        way = sensor.model.directions @ oracle.rotation(sensor.pose.rpy).T
         self.start = np.array(sensor.pose.position)
         x, y, z = way.T
         with np.errstate(divide="ignore"):
@@ -132,7 +132,7 @@ class SeenPoints:
         z = np.broadcast_to(self.heights[:, None, None], (len(self.heights), len(points), 1))
         there = np.concatenate([np.broadcast_to(points, (*z.shape[:2], 2)), z], axis=-1)
         rays = there.reshape(-1, 3) - start
-        depth, left, up = (rays @ oracle.rotation(*self.sensor.pose.rpy)).T
+        depth, left, up = (rays @ oracle.rotation(self.sensor.pose.rpy)).T
         with np.errstate(divide="ignore", invalid="ignore"):
             wide = np.abs(left / depth) <= math.tan(camera.hfov / 2.0)
             tall = np.abs(up / depth) <= math.tan(camera.hfov / 2.0) * camera.height / camera.width

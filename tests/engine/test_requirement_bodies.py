@@ -104,7 +104,7 @@ def camera_points(sensor, foot, radius, high, vehicle, low=0.0):
     )
     offset = points - start
     length = np.linalg.norm(offset, axis=1)
-    own = offset @ oracle.rotation(*sensor.pose.rpy)
+    own = offset @ oracle.rotation(sensor.pose.rpy)
     focal = sensor.model.width / 2.0 / math.tan(sensor.model.hfov / 2.0)
     with np.errstate(divide="ignore"):
         inside = (own[:, 0] > 0) & (abs(own[:, 1] / own[:, 0]) * focal < sensor.model.width / 2.0)
@@ -127,7 +127,7 @@ def test_a_cylinder_that_is_seen_is_seen_by_rays_too():
     points = seen["top"].samples.points
     lidar = whole["top"]
     start = np.array(lidar.pose.position)
-    way = lidar.model.directions @ oracle.rotation(*lidar.pose.rpy).T
+    way = lidar.model.directions @ oracle.rotation(lidar.pose.rpy).T
     ends = oracle.first_hits(start, way, vehicle.triangles)[0]
     wrong = []
     missed = []
@@ -198,7 +198,7 @@ def test_a_ring_that_a_side_of_the_picture_cuts_is_not_whole(rotation):
     what is met has all points in it. The posts are at the corners of a box, up to 0.41 radii
     outside of the rim: what is 12 mm inside is met."""
     camera = shapes.camera(60.0, (0.0, 0.0, 0.905), rotation, "front")
-    turn = oracle.rotation(*camera.pose.rpy)
+    turn = oracle.rotation(camera.pose.rpy)
     focal = 960.0 / math.tan(math.radians(30.0))
     whole = cut = 0
     for side, most in ((1, 960.0), (-1, -960.0), (2, 540.0), (-2, -540.0)):
@@ -258,7 +258,7 @@ def test_a_ring_that_a_part_of_the_vehicle_cuts_is_not_whole(wide_m):
 
 def box_entries(start, way, foot, heading, low, high):
     """Distance (B,) at which lines enter a box turned by a heading; inf: they do not."""
-    turn = oracle.rotation(0.0, 0.0, heading)
+    turn = oracle.rotation((0.0, 0.0, heading))
     own = way @ turn
     offset = (start - [*foot, 0.0]) @ turn
     with np.errstate(divide="ignore"):
@@ -277,7 +277,7 @@ def test_beams_are_shared_out_among_bands_by_where_they_end(lidar):
     """
     vehicle = van()
     start = np.array(lidar.pose.position)
-    way = lidar.model.directions @ oracle.rotation(*lidar.pose.rpy).T
+    way = lidar.model.directions @ oracle.rotation(lidar.pose.rpy).T
     ends = np.minimum(oracle.first_hits(start, way, vehicle.triangles)[0], lidar.model.max_range)
     feet = [(3.312, 0.413, 0.0), (4.127, -0.731, 0.0), (5.618, 2.239, 0.0)]
     passed_on = 0
@@ -323,7 +323,7 @@ def test_a_share_by_a_lidar_is_never_too_high(lidar):
         *(Requirement(f"{s}", zone, (body,), Criterion(share=s)) for s in shares),
         of=pe.Rig([lidar]),
     )
-    way = lidar.model.directions @ oracle.rotation(*lidar.pose.rpy).T
+    way = lidar.model.directions @ oracle.rotation(lidar.pose.rpy).T
     ends = oracle.first_hits(start, way, vehicle.triangles)[0]
     truth = []
     for foot in verdicts[0].samples.points:

@@ -35,13 +35,13 @@ def car():
 def test_a_view_projects_where_it_looks():
     """Its rays and its projection are each other's inverse; left of the eye is left."""
     view = Viewpoint((-10.0, 0.0, 2.0), (0.0, 0.0, 1.0), 40.0)
-    camera = view.camera(*SIZE)
+    camera = view.camera(SIZE)
     right = np.array([3.5, 48.0, 90.0])
     down = np.array([5.0, 27.0, 50.5])
     points = np.array(view.eye) + 7.0 * camera.rays_through(right, down)
-    found = view.project(points, *SIZE)
+    found = view.project(points, SIZE)
     np.testing.assert_allclose(found, (right, down), atol=1e-9)
-    (x,), (y,) = view.project(np.array([[5.0, 2.0, 3.0]]), *SIZE)
+    (x,), (y,) = view.project(np.array([[5.0, 2.0, 3.0]]), SIZE)
     assert x < SIZE[0] / 2 and y < SIZE[1] / 2  # what is left and higher
 
 

@@ -53,8 +53,9 @@ class Viewpoint:
         right = right / max(math.sqrt(float(right @ right)), 1e-9)
         return np.stack([ahead, right, np.cross(right, ahead)])
 
-    def camera(self, width: int, height: int) -> RayCamera:
-        """Return the rays of a picture of that size [px]."""
+    def camera(self, size: tuple[int, int]) -> RayCamera:
+        """Return the rays of a picture of a size (width, height) [px]."""
+        width, height = size
         ahead, right, up = self.axes
         focal = self.focal_px(width)
 
@@ -70,8 +71,10 @@ class Viewpoint:
         """Return the focal length of a picture of that width [px]."""
         return width / 2.0 / math.tan(math.radians(self.fov_deg) / 2.0)
 
-    def project(self, points: Floats, width: int, height: int) -> tuple[Floats, Floats]:
-        """Return the positions (right, down) [px] of points (N, 3); NaN behind the eye."""
+    def project(self, points: Floats, size: tuple[int, int]) -> tuple[Floats, Floats]:
+        """Return the positions (right, down) of points (N, 3) in a picture of a size (width,
+        height) [px]; NaN behind the eye."""
+        width, height = size
         depth, x, y = self.axes @ (np.asarray(points, float) - np.array(self.eye)).T
         scale = self.focal_px(width) / np.where(depth > 1e-6, depth, np.nan)
         return width / 2.0 + x * scale, height / 2.0 - y * scale

@@ -66,10 +66,11 @@ def vehicle_picture(
 
 def _mark(picture: Floats, rig: pe.Rig, view: Viewpoint) -> None:
     """Draw a disc in a sensor's colour, with a dark edge, over each sensor of a picture."""
-    down, right = np.mgrid[: picture.shape[0], : picture.shape[1]] + 0.5
-    places = view.project(np.array([s.pose.position for s in rig]), *picture.shape[1::-1])
+    height, width = picture.shape[:2]
+    down, right = np.mgrid[:height, :width] + 0.5
+    xs, ys = view.project(np.array([s.pose.position for s in rig]), (width, height))
     colors = graphics.sensor_colors_on_paper(rig).values()
-    for x, y, color in zip(*places, colors, strict=True):
+    for x, y, color in zip(xs, ys, colors, strict=True):
         far = np.hypot(right - x, down - y)
         picture[far < MARK_PX] = EDGE_COLOR
         picture[far < MARK_PX - 1.5] = color
@@ -86,7 +87,7 @@ def rendered(
         held = [painted_post(post) for post in posts if post is not None]
         solids = [painted_vehicle(vehicle), *solids, *held]
     bodies = RayScene(solids, vehicle is not None)
-    return render(view.camera(*size), bodies, _studio(_bounds(vehicle, rig)))
+    return render(view.camera(size), bodies, _studio(_bounds(vehicle, rig)))
 
 
 def default_view(
@@ -100,10 +101,10 @@ def default_view(
     far = 2.0 * float(np.abs(high - low).max())
     for _ in range(4):  # each step comes nearer to filling the picture
         view = _view(target + way * far, target)
-        right, down = view.project(corners, *size)
+        right, down = view.project(corners, size)
         spans = (right.max() - right.min()) / size[0], (down.max() - down.min()) / size[1]
         far *= max(spans) / 0.84
-    right, down = view.project(corners, *size)
+    right, down = view.project(corners, size)
     return _view(target + way * far, target)
 
 
@@ -164,7 +165,7 @@ def region_picture(context: ReportContext, found: advice.FreeRegion, alt: str) -
     across = np.cross(along[:, 0], along[:, 1])
     outward = np.sign((across * found.outward(patch)).sum(axis=1))[:, None] * across
     facing = ((np.array(view.eye) - patch[:, 0]) * outward).sum(axis=1) > 0.0
-    right, down = view.project(patch[facing].reshape(-1, 3), *SIZE)
+    right, down = view.project(patch[facing].reshape(-1, 3), SIZE)
     corners = np.round(np.stack([right, down], axis=1), 1).reshape(-1, 6).tolist()
     parts = ("M{:g} {:g}L{:g} {:g}L{:g} {:g}Z".format(*each) for each in corners)
     canvas.add("path", d="".join(parts), fill=REGION_COLOR, fill_opacity=0.6)
@@ -241,7 +242,7 @@ class NumberLabel(NamedTuple):
 def labels(vehicle: pe.Vehicle | None, rig: pe.Rig, view: Viewpoint) -> list[NumberLabel]:
     """Return the label of each sensor, in a picture of `SIZE`."""
     positions = np.array([sensor.pose.position for sensor in rig])
-    ends = np.stack(view.project(positions, *SIZE), axis=1)
+    ends = np.stack(view.project(positions, SIZE), axis=1)
     rays = positions - np.array(view.eye)
     distance = np.sqrt((rays * rays).sum(axis=1))
     hidden = np.zeros(len(rays), bool)

@@ -80,5 +80,5 @@ def parser(
             prints=tuple[Mapping[str, Any], ...],
         )
     )
-    top, _ = app.command_parser(prog, f"pe {pe.__version__}", verbs, source, argv)
+    top, _ = app.command_parser(prog, f"pe {pe.__version__}", verbs, source, argv=argv)
     return top

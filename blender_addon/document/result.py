@@ -118,15 +118,15 @@ class Result:
         made = []
         for name, part in self.after["per_zone"].items():
             label = advice.WHERE.get(name, name)
-            shown = label[:1].upper() + label[1:]
-            made.append(ResultPart(shown, False, part["entropy"], part["coverage"]))
+            title = label[:1].upper() + label[1:]
+            made.append(ResultPart(title, False, part["entropy"], part["coverage"]))
         found = self.after.get("objects", {}).get("per_class", {})
         ahead = self.figures.get("after", {}).get("reach", {})
         for name, part in self.after["per_class"].items():
             found_to, is_least = ahead.get(name, (None, False))
             reach = "" if found_to is None else sight.reach_text(found_to, is_least)
-            shown = name[:1].upper() + name[1:]
-            row = ResultPart(shown, True, part["entropy"], part["coverage"], reach=reach)
+            title = name[:1].upper() + name[1:]
+            row = ResultPart(title, True, part["entropy"], part["coverage"], reach=reach)
             if (own := found.get(name)) is not None:
                 reach = advice.lone_reach(own["reach"]["front"])
                 row = row._replace(ap=f"{own['ap']:.2f}", reach=reach)

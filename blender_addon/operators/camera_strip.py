@@ -114,8 +114,9 @@ def strip_sizes(
     return [PictureSize(max(int(ratio * height), 2), int(height)) for ratio in ratios]
 
 
-def picture_at(region: int, x: float, y: float) -> str:
-    """Return the sensor whose picture in the strip is at a place in a region [px]; "": none."""
+def picture_at(region: int, location: tuple[float, float]) -> str:
+    """Return the sensor whose picture in the strip is at a location in a region [px]; "": none."""
+    x, y = location
     for name, (left, bottom, right, top) in _in_strip.get(region, ()):
         if left <= x <= right and bottom <= y <= top:
             return name
@@ -133,11 +134,11 @@ class PE_GT_camera_strip(bpy.types.Gizmo):
 
     def test_select(self, context: bpy.types.Context, location: tuple[float, float]) -> int:
         """Whether the mouse is over a picture: 0, else -1."""
-        return 0 if picture_at(context.region.as_pointer(), *location) else -1
+        return 0 if picture_at(context.region.as_pointer(), location) else -1
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Look through the camera under the mouse."""
-        name = picture_at(context.region.as_pointer(), event.mouse_region_x, event.mouse_region_y)
+        name = picture_at(context.region.as_pointer(), (event.mouse_region_x, event.mouse_region_y))
         if name and bpy.ops.pe.look_through.poll():
             bpy.ops.pe.look_through("INVOKE_DEFAULT", name=name)
         return {"FINISHED"}

@@ -1,6 +1,6 @@
 """Details of a score: warnings, explanations, and figures by sensor, zone and class."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from bpy.types import Context, PropertyGroup, UILayout
 
@@ -126,7 +126,7 @@ def surroundings(layout: UILayout, settings: PropertyGroup, context: Context) ->
         chosen.name = name
         if context.active_object == context.scene.objects[name]:
             for each in body.seeing:
-                draw_part_row(column, each.name, each.text)
+                draw_part_row(column, each.name, [each.text])
 
 
 def draw_breakdown(layout: UILayout, settings: PropertyGroup) -> None:
@@ -138,18 +138,20 @@ def draw_breakdown(layout: UILayout, settings: PropertyGroup) -> None:
     for is_class, title in ((False, "Zone"), (True, "Class")):
         has_ap = is_class and bool(result.ap)
         more = ("AP", "ahead") if has_ap else ("ahead",) * is_class
-        draw_part_row(column, title, "nats", "seen", *more, header=True)
+        draw_part_row(column, title, ["nats", "seen", *more], header=True)
         for part in result.parts:
             if part.is_class == is_class:
                 more = (part.ap, part.reach) if has_ap else (part.reach,) * is_class
                 digits = 0 if has_ap else 1  # four figures have to fit
                 nats = f"{part.entropy:.{digits + 1}f}"
-                draw_part_row(column, part.name, nats, f"{part.coverage:.{digits}%}", *more)
+                draw_part_row(column, part.name, [nats, f"{part.coverage:.{digits}%}", *more])
         if not is_class:
             column.separator()
 
 
-def draw_part_row(layout: UILayout, name: str, *figures: str, header: bool = False) -> None:
+def draw_part_row(
+    layout: UILayout, name: str, figures: Sequence[str], header: bool = False
+) -> None:
     """Draw a row of the table; figures are aligned to the right."""
     split = layout.split(factor=PART_SHARE if len(figures) == 2 else NARROW_PART_SHARE)
     split.active = not header

@@ -2,7 +2,7 @@
 
 A value that was checked cannot change afterwards."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, NoReturn
 
 import numpy as np
@@ -12,6 +12,11 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 Singles = NDArray[np.float32]
+
+
+def join_columns(parts: Iterable[Iterable[NDArray[Any]]]) -> tuple[NDArray[Any], ...]:
+    """Return the columns of a table, whose parts have one array of rows for each column."""
+    return tuple(np.concatenate(column) for column in zip(*parts, strict=True))
 
 
 class ReadOnlyDict(dict[str, Any]):

@@ -238,9 +238,9 @@ class FaceLook:
         corners = self.tree.triangles[index] - self.origin
         depth, u, v = self.split(np.ascontiguousarray(corners.transpose(2, 1, 0)), side)
         across = self._moved(spans_of_triangles(depth, u), side)
-        down = spans_of_triangles(depth, v)
-        facing = Facing(corners, index, side, u=across, v=down)
-        shown = (corner_max(depth) > 0.0) & select(across, down)
+        up = spans_of_triangles(depth, v)
+        facing = Facing(corners, index, side, u=across, v=up)
+        shown = (corner_max(depth) > 0.0) & select(across, up)
         return facing[np.flatnonzero(shown)]
 
     def _below(self, boxes: VisibleBoxes, level: int) -> VisibleBoxes:

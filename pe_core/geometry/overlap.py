@@ -135,11 +135,11 @@ def _nearest_on_edge(start: Floats, end: Floats, top: float) -> Floats:
     """Distance (N,) from the axis to edges, cut at heights -top and top; inf for no part."""
     rise = end[:, 2] - start[:, 2]
     level = rise == 0.0
-    at_bottom, at_top = (
+    to_bottom, to_top = (
         (height - start[:, 2]) / np.where(level, 1.0, rise) for height in (-top, top)
     )
-    first = np.where(level, 0.0, np.maximum(np.minimum(at_bottom, at_top), 0.0))
-    last = np.where(level, 1.0, np.minimum(np.maximum(at_bottom, at_top), 1.0))
+    first = np.where(level, 0.0, np.maximum(np.minimum(to_bottom, to_top), 0.0))
+    last = np.where(level, 1.0, np.minimum(np.maximum(to_bottom, to_top), 1.0))
     outside = (first > last) | (level & (np.abs(start[:, 2]) > top))
     along = end - start
     ends = (start + t[:, None] * along for t in (first, last))

@@ -99,67 +99,62 @@ class ObjectClass:
 FIELDS = tuple(field.name for field in fields(ObjectClass))
 
 
-def _road_class(
-    name: str,
-    size: tuple[float, float, float],
-    height_spread: float,
-    density: tuple[float, float, float, float],
-    spread: tuple[float, float],
-    any_heading: float = 0.0,
-) -> ObjectClass:
-    """Return a class; `density` is its decay_x, laplace_y, gauss_y and laplace_share."""
-    decay_x, laplace_y, gauss_y, laplace_share = density
-    length_spread, width_spread = spread
-    return ObjectClass(
-        name=name,
-        size=size,
-        height_spread=height_spread,
-        decay_x=decay_x,
-        laplace_y=laplace_y,
-        gauss_y=gauss_y,
-        laplace_share=laplace_share,
-        length_spread=length_spread,
-        width_spread=width_spread,
-        any_heading=any_heading,
-    )
-
-
 ROAD_CLASSES = (
-    _road_class(
+    ObjectClass(
         "car",
         (4.6, 1.9, 1.7),
         height_spread=0.195,
-        density=(39.4, 12.82, 20.03, 0.533),
-        spread=(0.362, 0.115),
+        decay_x=39.4,
+        laplace_y=12.82,
+        gauss_y=20.03,
+        laplace_share=0.533,
+        length_spread=0.362,
+        width_spread=0.115,
     ),
-    _road_class(
+    ObjectClass(
         "pedestrian",
         (0.8, 0.7, 1.75),
         height_spread=0.120,
-        density=(32.2, 659.55, 16.15, 0.171),
-        spread=(0.102, 0.059),
+        decay_x=32.2,
+        laplace_y=659.55,
+        gauss_y=16.15,
+        laplace_share=0.171,
+        length_spread=0.102,
+        width_spread=0.059,
         any_heading=1.0,
     ),
-    _road_class(
+    ObjectClass(
         "cyclist",
         (1.76, 0.65, 1.74),
         height_spread=0.267,
-        density=(28.7, 170.45, 14.89, 0.033),
-        spread=(0.265, 0.122),
+        decay_x=28.7,
+        laplace_y=170.45,
+        gauss_y=14.89,
+        laplace_share=0.033,
+        length_spread=0.265,
+        width_spread=0.122,
     ),
-    _road_class(
+    ObjectClass(
         "truck",
         (7.5, 2.55, 3.0),
         height_spread=0.785,
-        density=(58.5, 20.1, 22.33, 0.365),
-        spread=(3.470, 0.441),
+        decay_x=58.5,
+        laplace_y=20.1,
+        gauss_y=22.33,
+        laplace_share=0.365,
+        length_spread=3.470,
+        width_spread=0.441,
     ),
-    _road_class(
+    ObjectClass(
         "cone",
         (0.4, 0.4, 0.9),
         height_spread=0.232,
-        density=(14.8, 34.25, 10.05, 0.024),
-        spread=(0.092, 0.075),
+        decay_x=14.8,
+        laplace_y=34.25,
+        gauss_y=10.05,
+        laplace_share=0.024,
+        length_spread=0.092,
+        width_spread=0.075,
         any_heading=1.0,
     ),
 )
@@ -181,10 +176,10 @@ def _highway_class(
 ) -> ObjectClass:
     length_spread, width_spread = spread
     return ObjectClass(
-        name=name,
-        size=size,
-        height_spread=height_spread,
-        decay_x=decay_x,
+        name,
+        size,
+        height_spread,
+        decay_x,
         laplace_y=OFF_LANES_M,
         gauss_y=IN_LANE_M,
         laplace_share=off_lanes,

@@ -346,7 +346,7 @@ def is_open(vehicle: Vehicle, position: Floats) -> bool:
     if gaps[nearest] < 0.0 or position[2] > high[2]:  # beside the vehicle, or above it
         return True
     sides = (2, 1.0), (nearest % 2, 1.0 if nearest > 1 else -1.0)
-    return any(_shaft_is_empty(vehicle, position, *side) for side in sides)
+    return any(_shaft_is_empty(vehicle, position, axis, sign) for axis, sign in sides)
 
 
 def _shaft_is_empty(vehicle: Vehicle, position: Floats, axis: int, sign: float) -> bool:

@@ -302,8 +302,8 @@ class GridScorer:
         """Return the prior (ny, nz) of a plane's voxels; 0 inside the vehicle's volume."""
         ground = self._grounds[plane]
         outside = self._outside(plane)
-        pairs = zip(ground.T, self._profiles.T, strict=True)
-        weights = reduce(add, (np.multiply.outer(*pair) for pair in pairs))
+        by_class = zip(ground.T, self._profiles.T, strict=True)
+        weights = reduce(add, (np.multiply.outer(across, profile) for across, profile in by_class))
         return weights if outside is None else weights * outside
 
     def _mass(self, plane: int) -> Floats:

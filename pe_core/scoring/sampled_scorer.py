@@ -145,7 +145,8 @@ class SampledScorer:
         """Return the score without the part by sensor."""
         with self._lock:
             self._sensors.measure(rig)
-            return self._summary(rig, *self._entropies(rig, [s.name for s in rig]))
+            entropies, visible = self._entropies(rig, [s.name for s in rig])
+            return self._summary(rig, entropies, visible)
 
     def score(self, rig: Rig, watch: Watch | None = None) -> Score:
         """Return the full score; `watch` gets the share that is done after each sensor."""
@@ -160,8 +161,7 @@ class SampledScorer:
                 s.name: self._sensor(s, rig, failed[s.name] - whole.entropy, progress) for s in rig
             }
             assert whole.scatter is not None
-            of_classes = self._class_residuals(entropies, visible)
-            by_figure = {**whole.scatter.residuals, **of_classes}
+            by_figure = {**whole.scatter.residuals, **self._class_residuals(entropies, visible)}
             scatter = Scatter(self._digest, by_figure)
             return replace(whole, per_sensor=per_sensor, scatter=scatter)
 

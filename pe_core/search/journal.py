@@ -79,7 +79,7 @@ class Journal:
                 break
             values.append(value)
         new_rigs = rigs[len(values) :]
-        new_values = evaluate_all(objective, new_rigs, cutoff, executor, leader)
+        new_values = evaluate_all(objective, new_rigs, cutoff, executor, leader=leader)
         for rig, value in zip(new_rigs, new_values, strict=True):
             self.record(rig, level, value)
         return values + new_values

@@ -205,15 +205,9 @@ class GridWalk:
             reach = (-FARTHEST_M, FARTHEST_M) if of_pose else (variable.low, variable.high)
             low, high = (end / step for end in reach)
             slack = SLACK * max(abs(low), abs(high), 1.0)
-            yield _Coordinate(
-                index,
-                name,
-                axis,
-                step,
-                low=ceil(low - slack),
-                high=floor(high + slack),
-                of_pose=of_pose,
-            )
+            first = ceil(low - slack)
+            last = floor(high + slack)
+            yield _Coordinate(index, name, axis, step, low=first, high=last, of_pose=of_pose)
 
     def _third(self, name: str) -> str:
         """Return the axis of a position that follows from the other two on a sensor's surface."""

@@ -20,7 +20,6 @@ ORIENTATIONS = (UPRIGHT, "normal", "facing")
 SLOPE = Angle(0.0, 180.0)
 STANDOFF = Number(0.0, 10.0, unit="m")
 SIDES = Pair(ANY)
-Range = tuple[float, float]
 NO_MOUNT = "the name of an [[optimize.mount]]"
 
 
@@ -166,14 +165,18 @@ class SlotMount:
 AnyMount = SurfaceMount | SlotMount
 
 
+def _range_along(axis: str) -> Any:
+    return setting(None, SIDES, f"From and to along {axis}")
+
+
 @dataclass(frozen=True, slots=True)
 class NoGo:
     """A box where no part of a sensor may be [m]; an axis without a range is unbounded."""
 
     name: Named
-    x: Range | None = setting(None, SIDES, "From and to along x")
-    y: Range | None = setting(None, SIDES, "From and to along y")
-    z: Range | None = setting(None, SIDES, "From and to along z")
+    x: tuple[float, float] | None = _range_along("x")
+    y: tuple[float, float] | None = _range_along("y")
+    z: tuple[float, float] | None = _range_along("z")
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "name", A_NAME.checked("no_go", "name", self.name))

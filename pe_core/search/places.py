@@ -64,8 +64,9 @@ def outward_yaw(away: tuple[float, float]) -> float:
 def surface_points(triangles: Floats, count: int) -> tuple[Floats, Ints]:
     """Return points (N, 3) on triangles (F, 3, 3) [m], and their faces (N,). The coarse cover is
     first; N is `count`. The same triangles give the same points."""
-    edges = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
-    normals = cross(edges[0], edges[1])
+    first = triangles[:, 1] - triangles[:, 0]
+    second = triangles[:, 2] - triangles[:, 0]
+    normals = cross(first, second)
     area = np.cumsum(np.sqrt(dot(normals, normals)))
     number = np.arange(count * POOL)
     at = (number + 0.5) / len(number) * area[-1]
@@ -75,7 +76,7 @@ def surface_points(triangles: Floats, count: int) -> tuple[Floats, Ints]:
     outside = a + b > 1.0  # the other half of the parallelogram
     a = np.where(outside, 1.0 - a, a)
     b = np.where(outside, 1.0 - b, b)
-    pool = triangles[face, 0] + a[:, None] * edges[0][face] + b[:, None] * edges[1][face]
+    pool = triangles[face, 0] + a[:, None] * first[face] + b[:, None] * second[face]
     order = [int(np.argmax(pool[:, 2]))]
     away = np.full(len(pool), np.inf)
     while len(order) < count:
@@ -157,15 +158,16 @@ class MountingPlaces:
         if self._look_at is None or not (self._turned or self._tilted):
             outward = outward_yaw((x - self._middle[0], y - self._middle[1]))
             return 0.0, outward if self._turned else 0.0
-        away = self._look_at[0] - x, self._look_at[1] - y
-        down = math.degrees(math.atan2(z - self._look_at[2], math.hypot(*away)))
+        ahead = self._look_at[0] - x
+        left = self._look_at[1] - y
+        down = math.degrees(math.atan2(z - self._look_at[2], math.hypot(ahead, left)))
         if self._turned:
-            return math.radians(round(down)), outward_yaw(away)
+            return math.radians(round(down)), outward_yaw(ahead, left)
         unseen = down - math.degrees(self._lowest_ray)
         if unseen <= 0.0:
             return 0.0, 0.0
         tilt = min(unseen + SPARE_DEG, MAX_TILT_DEG)
-        return math.radians(math.ceil(tilt)), outward_yaw(away)
+        return math.radians(math.ceil(tilt)), outward_yaw(ahead, left)
 
     def with_sensor(self, pose: Pose) -> Rig:
         """Return the rig with the sensor at a pose."""

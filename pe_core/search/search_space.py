@@ -244,10 +244,10 @@ def rules_of(
     names = [sensor.name for sensor in rig if sensor.name in moving]
     start = space.placement(rig)
     rules = [
-        Rule(*rule)
+        Rule(text, broken)
         for figure in BUILD_FIGURES.values()
         if (limit := space.figure_limits.kept(figure.key)) is not None
-        for rule in figure.rules(limit.value, start, moving)
+        for text, broken in figure.rules(limit.value, start, moving)
     ]
     rules += [rule for name in names for rule in _of_one(name, space)]
     has_slots = any(isinstance(mount, SlotMount) for mount in space.mounting.mounts.values())

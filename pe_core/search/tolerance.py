@@ -18,14 +18,14 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from statistics import NormalDist
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from ..base.arrays import Floats
 from ..base.errors import InputError
-from ..base.setting import FLAG, Panel, check_settings, setting
-from ..base.values import Angle, Number, Whole, degrees_in_file, error_text, rounded
+from ..base.setting import FLAG, NotStored, Panel, check_settings, setting
+from ..base.values import Angle, Number, degrees_in_file, error_text, rounded
 from ..geometry.poses import FARTHEST_M, Pose, rotate, rotation_matrix, rpy_from_matrix
 from ..scene.rig import Rig
 from ..scoring.rig_batch import mean_or_worst
@@ -34,7 +34,9 @@ from .domains import AXES, pose_from_values
 from .objective import Objective
 from .race import entropy_objective
 
-DRAWS = 8  # Draws by default
+DRAWS = 8
+"""Errors of each sensor that a candidate is evaluated with; a search takes as many times as long.
+The least whose antithetic halves still have four levels a coordinate."""
 COMBINATIONS = 4
 """In how many ways the sensors' draws are combined; only one is used when sensors fail, too."""
 SEARCHED = 0
@@ -46,8 +48,9 @@ FRESH = 1
 class Tolerance:
     """Mounting errors and failures that a candidate is evaluated with; by default, none.
 
-    Its fields say what they mean. Errors are 1 sigma of each coordinate: along x, y and z of
-    the ground frame [m]; of roll, pitch and yaw in the sensor's own frame [rad].
+    Its settings say what they mean; `draws`, an even number, is no setting. Errors are 1 sigma of
+    each coordinate: along x, y and z of the ground frame [m]; of roll, pitch and yaw in the
+    sensor's own frame [rad].
 
     `InputError` when a number is out of its range, or `worst` is set without errors or failures.
     """
@@ -64,9 +67,7 @@ class Tolerance:
         "How far off sensors are turned about each of their axes: 1 sigma",
         Panel("tolerance_angle", "Angle °", default=0.3, precision=2, step=1.0),
     )
-    draws: int = setting(
-        DRAWS, Whole(2, 1024), "Number of draws of mounting errors: an even number"
-    )
+    draws: Annotated[int, NotStored] = DRAWS
     failures: bool = setting(
         False,
         FLAG,
@@ -82,8 +83,8 @@ class Tolerance:
 
     def __post_init__(self) -> None:
         check_settings(self, "optimize", "tolerance.")
-        if self.draws % 2:
-            raise InputError("optimize", "tolerance.draws", "an even number", self.draws)
+        if self.draws < 2 or self.draws % 2:
+            raise InputError("tolerance", "draws", "an even number from 2 on", self.draws)
         if self.worst and not self.is_on:
             raise InputError(
                 "optimize", "tolerance.worst", "a tolerance, or failures = true", "neither"

@@ -498,11 +498,17 @@ class Study(Tabular):
         """Return free axes and bounds [m or rad], with mounts and constraints."""
         search = self.search
         _check_pairs(self.rig, search.mounting)
-        where = search.free, search.limits, search.mounting, housings_of(self.rig)
         # Prices are of the designs, not of the sensors that they replace.
         limits = self.limits.changed(price=None) if self.selection.choices else self.limits
         return SearchSpace.on_vehicle(
-            self.rig, self.vehicle, *where, fixed=search.goals.fixed, figure_limits=limits
+            self.rig,
+            self.vehicle,
+            search.free,
+            search.limits,
+            mounting=search.mounting,
+            housings=housings_of(self.rig),
+            fixed=search.goals.fixed,
+            figure_limits=limits,
         )
 
     def on_mounts(self) -> "Study":

@@ -101,7 +101,9 @@ def explain(source: StudyFiles, args: argparse.Namespace) -> Answer:
             suggested = suggested_for(SuggestJob(study, spot=(at[0], at[1])))
             repairs = tuple(each.to_dict() for own in suggested.values() for each in own)
             answer = replace(answer, suggestions=repairs)
-            fixes = [line for each in suggested.items() for line in suggestion_lines(*each)]
+            fixes = [
+                line for name, found in suggested.items() for line in suggestion_lines(name, found)
+            ]
             told += fixes or [NOT_BLIND] * (not place.in_vehicle)
         return answered(args, answer, told), DONE
     if with_edges:

@@ -117,7 +117,7 @@ def answer(args: argparse.Namespace, prog: str, argv: Sequence[str]) -> Answer:
 
 def parser(argv: Sequence[str] = ()) -> argparse.ArgumentParser:
     """Return the parser of ``pe``, as `command_parser` does."""
-    top, verbs = command_parser("pe", versions_text(), VERBS, StudyFiles(), argv)
+    top, verbs = command_parser("pe", versions_text(), VERBS, StudyFiles(), argv=argv)
     is_own = bool(_asked(VERBS, argv))
     for plugin in () if is_own else find_plugins("verb"):
         _add_plugin_verbs(plugin, verbs)

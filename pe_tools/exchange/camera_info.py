@@ -116,7 +116,9 @@ def picture_of_info(source: str, text: str) -> Picture:
     cy = k[5]
     if not any(bent) and LENSES[model] is BrownConrady:
         return Picture(Pinhole(fx, fy, cx, cy), size)
-    return Picture(LENSES[model](fx, fy, cx, cy, None, *bent), size)
+    lens = LENSES[model]
+    bends = dict(zip(lens.coefficients, bent, strict=False))
+    return Picture(lens(fx, fy, cx, cy, **bends), size)
 
 
 def _data(table: Table, lengths: Sequence[int]) -> list[float]:

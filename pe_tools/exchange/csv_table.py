@@ -180,4 +180,4 @@ def _picture(
     if cells.get("fov_deg"):
         fov = math.radians(FOV_DEG.checked(path, f"{place}, fov_deg", number("fov_deg")))
     bent = dict(zip(lens.coefficients, figures, strict=False))
-    return Picture(lens(fx, fy, cx, cy, fov, **bent), (width, height))
+    return Picture(lens(fx, fy, cx, cy, fov=fov, **bent), (width, height))

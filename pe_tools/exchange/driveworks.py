@@ -181,7 +181,8 @@ def read_properties(properties: Table) -> tuple[Picture | None, str]:
         if direction != FORWARD:
             forward, error_px = _turned_round(coefficients, max_radius)
             note = TURNED.format(error_px) if error_px > NOTICED_PX else ""
-        return Picture(FTheta(1.0, 1.0, cx, cy, None, *forward[1:]), (width, height)), note
+        bends = dict(zip(FTheta.coefficients, forward[1:], strict=False))
+        return Picture(FTheta(1.0, 1.0, cx, cy, **bends), (width, height)), note
     if not all(key in properties for key in FOCAL_KEYS):
         return None, ""
     fx, fy = (number(name, values.FOCAL) for name in FOCAL_KEYS)

@@ -200,7 +200,8 @@ def _modelled(sensor: PortableSensor, row: RigFormat) -> Modelled:
         own = None
         reason = f"its lens is left out, {error.at('')}"
     if own is not None:
-        return Modelled(sensor, *own)
+        model, line = own
+        return Modelled(sensor, model, line)
     for text in filter(None, (sensor.model, sensor.name)):
         if name := model_by_name(text, sensor.kind):
             model = portable_kinds.with_ranges(catalog.load(name), sensor)

@@ -120,8 +120,8 @@ def of_driveworks(p: Picture) -> Picture:
         return opencv_of_five(p)
     if not isinstance(lens, FTheta) or lens.fx != lens.fy or lens.k6:
         return straight(p)
-    scaled = [lens.fx * getattr(lens, key) for key in lens.coefficients]
-    return Picture(FTheta(1.0, 1.0, *p.center, None, *scaled), p.size)
+    scaled = {key: lens.fx * getattr(lens, key) for key in lens.coefficients}
+    return Picture(replace(lens, fx=1.0, fy=1.0, fov=None, **scaled), p.size)
 
 
 def lost(p: Picture, kept: Picture) -> list[str]:

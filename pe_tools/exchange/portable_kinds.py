@@ -152,7 +152,7 @@ def camera_of(name: str, p: Picture, usual: Size | None = None) -> tuple[Camera,
 def lidar_of(name: str, scan: Scan) -> Lidar:
     """Return the LiDAR model of a scan, from its listed beams or else with even channels."""
     if scan.directions is not None:
-        return _listed_lidar(name, scan, scan.directions)
+        return _listed(name, scan, scan.directions)
     if scan.compute_emitters is not None:
         emitters = scan.compute_emitters()
         return Lidar(
@@ -168,7 +168,7 @@ def lidar_of(name: str, scan: Scan) -> Lidar:
     if high - low < NO_EXTENT_RAD:  # it does not rotate: all of its channels have one azimuth
         level = np.cos(elevations)
         beams = [level * math.cos(low), level * math.sin(low), np.sin(elevations)]
-        return _listed_lidar(name, scan, np.stack(beams, axis=1))
+        return _listed(name, scan, np.stack(beams, axis=1))
     if scan.ends is not None and scan.azimuths > 1:
         return _lidar_between(name, scan, scan.ends, elevations)
     share = min((high - low) / (2.0 * math.pi), 1.0)
@@ -178,8 +178,7 @@ def lidar_of(name: str, scan: Scan) -> Lidar:
     )
 
 
-def _listed_lidar(name: str, scan: Scan, directions: Floats) -> Lidar:
-    """Return the LiDAR of a scan whose beams (B, 3) are listed."""
+def _listed(name: str, scan: Scan, directions: Floats) -> Lidar:
     return Lidar.from_directions(name, directions, scan.max_range, scan.min_range)
 
 
@@ -195,7 +194,7 @@ def _lidar_between(name: str, scan: Scan, ends: tuple[float, float], elevations:
         up = np.repeat(elevations, scan.azimuths)
         level = np.cos(up)
         beams = [level * np.cos(azimuths), level * np.sin(azimuths), np.sin(up)]
-        return _listed_lidar(name, scan, np.stack(beams, axis=1))
+        return _listed(name, scan, np.stack(beams, axis=1))
     step = 2.0 * math.pi / steps
     first = round(low / step)
     offset = low - first * step

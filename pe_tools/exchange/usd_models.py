@@ -121,7 +121,7 @@ def _lens(values: PrimValues, model: str, size: tuple[int, int] | None) -> Pictu
     fx, fy = (float(width) if f is None else f for f in focal)
     cx, cy = (middle if c is None else c for c, middle in zip(center, half, strict=True))
     bent = {key: values.number(prefix + key) or 0.0 for key in kind.coefficients}
-    lens = kind(fx * scale[0], fy * scale[1], cx * scale[0], cy * scale[1], None, **bent)
+    lens = kind(fx * scale[0], fy * scale[1], cx * scale[0], cy * scale[1], **bent)
     if isinstance(lens, BrownConrady) and not any(bent.values()):
         lens = Pinhole(lens.fx, lens.fy, lens.cx, lens.cy)
     return Picture(lens, size or (width, height))

@@ -175,9 +175,10 @@ class RegionJob(Job):
                 self.found = region
                 yield self._waiting
             if self._search_others and not self.stopped and len(self._mount.faces):
-                gain = yield from self._gain_of_others(level)
-                if gain is not None and self.found is not None:
-                    self.found = self.found.with_gain(*gain)
+                estimate = yield from self._gain_of_others(level, constraints)
+                if estimate is not None and self.found is not None:
+                    gain, error = estimate
+                    self.found = self.found.with_gain(gain, error)
         yield Progress("done", 1.0)
 
     def _evaluated(self, objectives: Sequence[Objective]) -> Iterator[Objective]:

@@ -19,7 +19,7 @@ IN_FRONT = 1e-6
 
 def rotation(rpy: Sequence[float]) -> Floats:
     """Return the rotation (3, 3), ground from sensor, of roll, pitch and yaw [rad]."""
-    cr, sr, cp, sp, cy, sy = (turn(angle) for angle in rpy for turn in (math.cos, math.sin))
+    cr, sr, cp, sp, cy, sy = (f(a) for a in rpy for f in (math.cos, math.sin))
     rx = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
     ry = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
     rz = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])

@@ -206,8 +206,11 @@ class _CheckedSet:
             """How far a zone of bodies could grow is not known yet."""
             if number not in pairs:
                 return self._grounds[number].verdict(rig, preview, cases)
-            own = pairs[number]
-            return body_verdict(*own, results[number], rig, vehicle=self._vehicle, preview=preview)
+            requirement, samples = pairs[number]
+            result = results[number]
+            return body_verdict(
+                requirement, samples, result, rig, vehicle=self._vehicle, preview=preview
+            )
 
         verdicts: dict[int, Verdict] = {}
         for number in numbers if early else ():

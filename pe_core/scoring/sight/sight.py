@@ -297,7 +297,9 @@ class Sight:
         kernels = self._voxel_sets.kernel_cache
         return self._voxel_sets.cached(
             ("blind", float(height), cells.key, ring),
-            lambda: BlindSearch.of(cells, max(float(height), 0.0), self.vehicle, kernels, ring),
+            lambda: BlindSearch.of(
+                cells, max(float(height), 0.0), self.vehicle, kernels, ring=ring
+            ),
         )
 
     def reach(

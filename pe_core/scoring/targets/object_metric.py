@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ...base.arrays import Floats, Ints
+from ...base.arrays import Floats, Ints, join_columns
 from ...base.errors import InputError
 from ...base.values import rounded
 from ...metric.entropy import H_BLIND, OwnCurve, ap_of_entropy
@@ -286,7 +286,7 @@ def ring_objects(drawn: SampledObjects, vehicle: Vehicle | None) -> RingObjects:
         yaws = drawn.objects.yaws[members[np.arange(per_class) % len(members)]]
         cells = c * len(SECTORS) * RINGS + np.arange(per_class) // PER_CELL
         by_class.append((np.hstack([positions, z]), sizes, yaws, cells))
-    centers, sizes, yaws, cells = (np.concatenate(arrays) for arrays in zip(*by_class, strict=True))
+    centers, sizes, yaws, cells = join_columns(by_class)
     beside = ~overlap(ground_rectangles(centers[:, :2], sizes, yaws), vehicle_rectangle(vehicle))
     labels = cells // (len(SECTORS) * RINGS)
     placed = [values[beside] for values in (centers, sizes, yaws)]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...base.arrays import Floats, Ints, read_only
+from ...base.arrays import Floats, Ints, join_columns, read_only
 from ...base.errors import InputError
 from ...base.setting import FLAG, OneOf, Panel, check_settings, setting
 from ...base.values import Whole
@@ -148,7 +148,7 @@ def _each_once(
     labels = np.repeat(np.arange(len(by_class)), [len(boxes.yaws) for boxes in by_class])
     if not len(labels):
         raise InputError(prior.boxes.source, "boxes", "a box in the space", "none")
-    return LaidOutBoxes(*(np.concatenate(parts) for parts in zip(*by_class, strict=True))), labels
+    return LaidOutBoxes(*join_columns(by_class)), labels
 
 
 def _beside_vehicle(boxes: LaidOutBoxes, vehicle: Vehicle | None) -> LaidOutBoxes:

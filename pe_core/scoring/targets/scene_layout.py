@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...base.arrays import Floats, Ints, each
+from ...base.arrays import Floats, Ints, join_columns
 from ...base.errors import InputError
 from ...geometry.grids import PerceptionSpace
 from ...prior.boxes import Boxes
@@ -202,7 +202,7 @@ def place_boxes(
     @cache
     def proposed(attempt: int) -> tuple[LaidOutBoxes, GroundRectangles]:
         by_class = [source.proposed(attempt) for source in sources]
-        boxes = LaidOutBoxes(*(np.concatenate(parts) for parts in zip(*by_class, strict=True)))
+        boxes = LaidOutBoxes(*join_columns(by_class))
         return boxes, ground_rectangles(boxes.centers[:, :2], boxes.sizes, boxes.yaws)
 
     result = LaidOutBoxes(*(values.copy() for values in proposed(0)[0]))

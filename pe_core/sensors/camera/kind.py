@@ -94,7 +94,7 @@ def read_lens(name: str, table: Mapping[str, Any]) -> Lens:
     fov = None
     if "fov_deg" in table:
         fov = math.radians(FOV_DEG.checked(name, "fov_deg", table["fov_deg"]))
-    return lens(fx, fy, cx, cy, fov, **values)
+    return lens(fx, fy, cx, cy, fov=fov, **values)
 
 
 def lens_table(lens: Lens) -> dict[str, Any]:

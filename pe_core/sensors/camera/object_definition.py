@@ -23,7 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...base.arrays import Flags, Floats, Ints
+from ...base.arrays import Flags, Floats, Ints, join_columns
 from ...geometry.bins import blocks
 from ...geometry.poses import dot, rotate
 from ...scene.objects import Objects
@@ -237,7 +237,7 @@ def visible_share(
         found = list(_met(camera, axes, boxes, images, which=which[some], hits=hits))
         if not found:
             break
-        rank, directions, distance = (np.concatenate(w) for w in zip(*found, strict=True))
+        rank, directions, distance = join_columns(found)
         hidden = is_hidden(BoxRays(which[some[rank]], directions, distance))
         whole, unseen = (np.bincount(w, minlength=len(some)) for w in (rank, rank[hidden]))
         share[some] = (whole - unseen) / whole

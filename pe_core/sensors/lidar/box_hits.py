@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ...base.arrays import Flags, Floats, Ints
+from ...base.arrays import Flags, Floats, Ints, join_columns
 from ...geometry.bins import blocks, count_up
 from ...geometry.poses import rotate
 from ...scene.rig import Sensor
@@ -70,7 +70,7 @@ class BoxTester:
                 index = index[kept]
                 enter = enter[kept]
             parts.append((index + block.start, enter))
-        index, enter = (np.concatenate(w) for w in zip(*parts, strict=True))
+        index, enter = join_columns(parts)
         return index, enter
 
     def hits(self, box: Ints, beam: Ints) -> BoxHits:

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...base.arrays import Floats, Ints
+from ...base.arrays import Floats, Ints, join_columns
 from ...geometry.bins import blocks
 from ...geometry.poses import dot, rotate
 from ...scene.objects import Objects
@@ -251,4 +251,4 @@ def _box_hits(boxes: PlacedBoxes, directions: Floats, ends: Floats) -> BoxHits:
         enter, leave = boxes.crossing(box, directions[beam])
         hit = np.flatnonzero((enter < leave) & (enter <= ends[beam]))
         parts.append((box[hit], beam[hit], enter[hit]))
-    return BoxHits(*(np.concatenate(w) for w in zip(*parts, strict=True)))
+    return BoxHits(*join_columns(parts))

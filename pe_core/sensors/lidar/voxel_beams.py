@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ...base.arrays import Floats, Ints, Singles
+from ...base.arrays import Floats, Ints, Singles, join_columns
 from ...geometry.bins import blocks
 from ...geometry.poses import rotate
 from .bracket import Bracket, bracket
@@ -205,7 +205,7 @@ def count_pairs(
             at = np.flatnonzero(lidar.ends.occludable[pairs[1]])
             occludable.append((pairs[0][at], pairs[1][at], enter[at]))
     if occludable:
-        voxel, beam, distance = (np.concatenate(w) for w in zip(*occludable, strict=True))
+        voxel, beam, distance = join_columns(occludable)
         occluded = distance > lidar.ends.take(beam) / lidar.side
         counts -= np.bincount(voxel[occluded], minlength=len(counts))
     return counts

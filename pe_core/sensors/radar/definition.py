@@ -73,7 +73,8 @@ def mode_signal(
     """Return Pd (...,) of cells of `rcs` [m2] in directions at distances; 0 if not `counted`.
     `angles` are azimuths and elevations in the sensor frame [rad], `loss_db` the loss of covers one
     way, None for none."""
-    reach = mode.reach(*angles)
+    azimuth, elevation = angles
+    reach = mode.reach(azimuth, elevation)
     snr = signal_to_noise(
         rcs, distance, reach, radar.anchor, attenuation_db_km=radar.attenuation_db_km
     )
@@ -163,7 +164,8 @@ def seen_through(
     """Return whether the vehicle hides nothing before the distances (...,), and the loss [dB]."""
     if fan.is_free:
         return np.ones(distance.shape, bool), None
-    bins = fan.bins(*angles)
+    azimuth, elevation = angles
+    bins = fan.bins(azimuth, elevation)
     return fan.distance.reshape(-1)[bins] >= distance, fan.loss_db.reshape(-1)[bins]
 
 

@@ -54,7 +54,7 @@ class Viewpoint:
         return np.stack([ahead, right, np.cross(right, ahead)])
 
     def camera(self, size: tuple[int, int]) -> RayCamera:
-        """Return the rays of a picture of that width and height [px]."""
+        """Return the rays of a picture of a size (width, height) [px]."""
         width, height = size
         ahead, right, up = self.axes
         focal = self.focal_px(width)
@@ -72,8 +72,8 @@ class Viewpoint:
         return width / 2.0 / math.tan(math.radians(self.fov_deg) / 2.0)
 
     def project(self, points: Floats, size: tuple[int, int]) -> tuple[Floats, Floats]:
-        """Return the positions (right, down) [px] of points (N, 3) in a picture of that width and
-        height [px]; NaN behind the eye."""
+        """Return the positions (right, down) of points (N, 3) in a picture of a size (width,
+        height) [px]; NaN behind the eye."""
         width, height = size
         depth, x, y = self.axes @ (np.asarray(points, float) - np.array(self.eye)).T
         scale = self.focal_px(width) / np.where(depth > 1e-6, depth, np.nan)

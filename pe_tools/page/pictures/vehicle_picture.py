@@ -66,11 +66,11 @@ def vehicle_picture(
 
 def _mark(picture: Floats, rig: pe.Rig, view: Viewpoint) -> None:
     """Draw a disc in a sensor's colour, with a dark edge, over each sensor of a picture."""
-    down, right = np.mgrid[: picture.shape[0], : picture.shape[1]] + 0.5
-    size = (picture.shape[1], picture.shape[0])
-    right_px, down_px = view.project(np.array([s.pose.position for s in rig]), size)
+    height, width = picture.shape[:2]
+    down, right = np.mgrid[:height, :width] + 0.5
+    xs, ys = view.project(np.array([s.pose.position for s in rig]), (width, height))
     colors = graphics.sensor_colors_on_paper(rig).values()
-    for x, y, color in zip(right_px, down_px, colors, strict=True):
+    for x, y, color in zip(xs, ys, colors, strict=True):
         far = np.hypot(right - x, down - y)
         picture[far < MARK_PX] = EDGE_COLOR
         picture[far < MARK_PX - 1.5] = color

@@ -184,7 +184,7 @@ def _holds(rectangle: bpy.types.Area | bpy.types.Region, x: int, y: int) -> bool
 
 def outward_yaw(point: Vector, middle: Vector) -> float:
     """Yaw from the vehicle's middle to a point of it [rad], in whole degrees."""
-    return search.outward_yaw((point.x - middle.x, point.y - middle.y))
+    return search.outward_yaw(point.x - middle.x, point.y - middle.y)
 
 
 def vehicle_center(vehicle: bpy.types.Collection | None) -> Vector:

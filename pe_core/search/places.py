@@ -52,10 +52,9 @@ class SurfacePlace:
     value: float | None = None
 
 
-def outward_yaw(away: tuple[float, float]) -> float:
+def outward_yaw(x: float, y: float) -> float:
     """Return the yaw away from the vehicle's middle of a place at x, y from it [m], in whole
     degrees [rad]; straight ahead where there is no such direction."""
-    x, y = away
     if math.hypot(x, y) < NO_HEADING_M:
         return 0.0
     return math.radians(round(math.degrees(math.atan2(y, x))))
@@ -156,7 +155,7 @@ class MountingPlaces:
     def _angles(self, x: float, y: float, z: float) -> tuple[float, float]:
         """Return pitch and yaw of a sensor at a place [m], in whole degrees [rad]."""
         if self._look_at is None or not (self._turned or self._tilted):
-            outward = outward_yaw((x - self._middle[0], y - self._middle[1]))
+            outward = outward_yaw(x - self._middle[0], y - self._middle[1])
             return 0.0, outward if self._turned else 0.0
         ahead = self._look_at[0] - x
         left = self._look_at[1] - y

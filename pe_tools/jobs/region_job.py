@@ -175,7 +175,7 @@ class RegionJob(Job):
                 self.found = region
                 yield self._waiting
             if self._search_others and not self.stopped and len(self._mount.faces):
-                estimate = yield from self._gain_of_others(level, constraints)
+                estimate = yield from self._gain_of_others(level)
                 if estimate is not None and self.found is not None:
                     gain, error = estimate
                     self.found = self.found.with_gain(gain, error)

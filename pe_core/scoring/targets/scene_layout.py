@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...base.arrays import Floats, Ints, join_columns
+from ...base.arrays import Floats, Ints, each, join_columns
 from ...base.errors import InputError
 from ...geometry.grids import PerceptionSpace
 from ...prior.boxes import Boxes

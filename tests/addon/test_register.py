@@ -29,7 +29,8 @@ SIGNALS = (
 )
 TIMERS = (change_events.emit_moving, change_events.emit_idle, scheduler.update_now)
 TOY = """
-import os, sys
+import sys
+from os import _exit
 from dataclasses import make_dataclass, replace
 from types import SimpleNamespace
 
@@ -74,7 +75,7 @@ assert ("prop", "hail") in layouts.drawn(conditions, **vars(layouts.Window(scene
 assert "- `hail` ([m], 0–90, `0.0`): Size of hailstones" in settings_page().page()
 print("seen everywhere")
 sys.stdout.flush()
-os._exit(0)
+_exit(0)
 """
 
 

@@ -89,7 +89,7 @@ def visible_shares(sensor, ray_of, objects, vehicle, want=10_000):
 
     def through(across, down):
         places = [w.ravel() for w in np.meshgrid(across, down)]
-        rays = ray_of(*places)
+        rays = ray_of(places[0], places[1])
         some = np.flatnonzero(~np.isnan(rays[:, 0]))
         return [w[some] for w in places], rays[some] @ turn.T
 

@@ -1,6 +1,5 @@
 """Results are written over no file that we did not write, and the set of a run is one."""
 
-import numpy as np
 import pytest
 
 import pe_core as pe
@@ -22,8 +21,7 @@ def a_study(boxes=True, x=-0.43):
 
 
 def shapes_boxes():
-    columns = [np.array([v]) for v in (20.0, 3.0, 0.8, 4.0, 2.0, 1.6, 0.5)]
-    return pe.Boxes(np.array(["car"]), *columns)
+    return pe.Boxes.of([("car", 20.0, 3.0, 0.8, 4.0, 2.0, 1.6, 0.5)])
 
 
 @pytest.fixture

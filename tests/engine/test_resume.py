@@ -120,7 +120,7 @@ def test_a_journal_of_other_placements_is_refused():
         list(search(other, [Recorder(distance_to({"x": 0.1}))], journal=again))
 
 
-def broken_off(signum, moment, *arguments):
+def broken_off(signum, moment, arguments):
     """Run a search that a signal ends; return the number of placements it had told of."""
     code = ENDING_ITSELF.format(signal=signum.name, moment=moment)
     command = [sys.executable, "-c", code, *map(str, arguments)]
@@ -133,7 +133,7 @@ def test_a_kill_at_any_moment_loses_at_most_a_round(path, tmp_path, out):
     assert main(["optimize", "--no-review", str(path), "-o", str(tmp_path / "whole")]) == 0
     begin = (path, "-o", out)
     for moment in (("told", 20), ("replaced", 2), ("told", 71)):
-        told = broken_off(signal.SIGKILL, moment, "optimize", "--no-review", *begin)
+        told = broken_off(signal.SIGKILL, moment, ["optimize", "--no-review", *begin])
         kept = len(read_search(out).evaluated)
         assert kept >= told - CANDIDATES - 1, "a round, and the candidate that had been evaluated"
         begin = ("--resume", out)

@@ -16,7 +16,9 @@ from pe_tools.page.pictures.vehicle_picture import vehicle_picture
 from tests.engine.test_masks import decoded
 from tests.review.conftest import box
 
-SIZE = (96, 54)
+WIDTH = 96
+HEIGHT = 54
+SIZE = (WIDTH, HEIGHT)
 
 
 @pytest.fixture(scope="module")
@@ -35,19 +37,20 @@ def car():
 def test_a_view_projects_where_it_looks():
     """Its rays and its projection are each other's inverse; left of the eye is left."""
     view = Viewpoint((-10.0, 0.0, 2.0), (0.0, 0.0, 1.0), 40.0)
-    camera = view.camera(*SIZE)
+    camera = view.camera(WIDTH, HEIGHT)
     right = np.array([3.5, 48.0, 90.0])
     down = np.array([5.0, 27.0, 50.5])
     points = np.array(view.eye) + 7.0 * camera.rays_through(right, down)
-    found = view.project(points, *SIZE)
+    found = view.project(points, WIDTH, HEIGHT)
     np.testing.assert_allclose(found, (right, down), atol=1e-9)
-    (x,), (y,) = view.project(np.array([[5.0, 2.0, 3.0]]), *SIZE)
-    assert x < SIZE[0] / 2 and y < SIZE[1] / 2  # what is left and higher
+    (x,), (y,) = view.project(np.array([[5.0, 2.0, 3.0]]), WIDTH, HEIGHT)
+    assert x < WIDTH / 2 and y < HEIGHT / 2  # what is left and higher
 
 
 def test_a_still_shows_the_vehicle_and_is_the_same_each_time(car):
-    png = vehicle_picture(*car, SIZE)
-    assert png == vehicle_picture(*car, SIZE)
+    vehicle, rig = car
+    png = vehicle_picture(vehicle, rig, SIZE)
+    assert png == vehicle_picture(vehicle, rig, SIZE)
     pixels = decoded(png).astype(int)
     assert pixels.shape == (54, 96, 3)
     assert abs(pixels[0, 0] - pixels[0, -1]).max() <= 1  # paper in the corners

@@ -282,7 +282,7 @@ def test_sizes_that_are_no_vehicle():
 
 def test_a_part_as_large_as_a_room(sedan):
     """It is named; the vehicle in it is evaluated without it, and nobody is inside the body."""
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
+    rig = shapes.roof_rig()
     for rooms in ([FLOOR], [STUDIO], [FLOOR, BACKDROP]):
         found = advice.warnings(rig, with_parts(*rooms, vehicle=sedan), SPACE, PRIOR)
         ours = [(each.code, each.part) for each in found if each.subject is None]

@@ -29,7 +29,7 @@ def study(goals=None, names=("roof",), **search):
     goals = goals or Goals()
     given = {"free": dict.fromkeys(names, ("z", "pitch")), "evaluations": 60} | search
     settings = pe.Search(samples=1024, goals=goals, **given)
-    return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=settings, samples=1024)
+    return shapes.car_study(rig, search=settings, samples=1024)
 
 
 def finished(given, **more):

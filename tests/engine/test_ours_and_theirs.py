@@ -17,7 +17,7 @@ SHORT = ("--method", "random", "--set", "optimize.candidates=2", "--set", "optim
 def a_study(boxes=True, x=-0.43):
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180), (x, 0.0, 1.8))])
     prior = pe.Prior.from_boxes(shapes_boxes()) if boxes else pe.Prior.road()
-    return pe.Study(rig, shapes.box_car(), shapes.small_space(), prior)
+    return shapes.car_study(rig, prior=prior)
 
 
 def shapes_boxes():

@@ -50,13 +50,9 @@ main()
 
 
 def a_study(method="random"):
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 90))])
-    schedule = pe.Schedule(candidates=CANDIDATES)
-    more = {"method": method, "evaluations": 90}
-    search = pe.Search(
-        {"roof": ("x", "z", "pitch")}, limits={}, seed=3, samples=1024, schedule=schedule, **more
-    )
-    return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search, samples=1024)
+    more = {"method": method, "evaluations": 90, "schedule": pe.Schedule(candidates=CANDIDATES)}
+    search = shapes.short_search({"roof": ("x", "z", "pitch")}, **more)
+    return shapes.car_study(shapes.roof_rig(16, 90), search=search, samples=1024)
 
 
 @pytest.fixture

@@ -36,13 +36,8 @@ def study():
         pe.Sensor(name, model, pose)
         for name, model, pose in zip(("roof", "front"), models, poses, strict=True)
     ]
-    return pe.Study(
-        pe.Rig(sensors),
-        shapes.box_car(),
-        shapes.small_space(),
-        samples=1024,
-        requirements=(CHILD,),
-        frames=Frames(frames=2),
+    return shapes.car_study(
+        pe.Rig(sensors), samples=1024, requirements=(CHILD,), frames=Frames(frames=2)
     )
 
 

@@ -41,9 +41,9 @@ Evaluator.score = score
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
+    rig = shapes.roof_rig(16, 180)
     path = tmp_path_factory.mktemp("sweep") / "car.toml"
-    pt.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space()), path)
+    pt.export_study(shapes.car_study(rig), path)
     return path
 
 

@@ -38,7 +38,7 @@ def toys(tmp_path_factory):
     rig = pe.Rig([pe.Sensor("roof", shapes.small_lidar(4, 90), pose)])
     search = pe.Search({"roof": ("z", "pitch")}, samples=1024, evaluations=20)
     given = {"search": search, "samples": 1024}
-    study = pe.Study(rig, shapes.box_car(), shapes.small_space(), **given)
+    study = shapes.car_study(rig, **given)
     pt.export_study(study, folder / "study.toml")
     text = (folder / "study.toml").read_text("utf-8")
     limit = "[limits]\ndroop = { value = 3, kept = false }\n\n[optimize]\n"

@@ -59,9 +59,9 @@ _rendering = False
 _rendered_count = 0
 _rest_at = 0.0
 """How often it had changed when pictures were rendered last, and when all others will be."""
-_pictures: dict[PictureKey, tuple[Hashable, ViewportPicture]] = {}
+rendered: dict[PictureKey, tuple[Hashable, ViewportPicture]] = {}
 """Pictures, with what they were made from."""
-_requested: dict[PictureKey, WantedPicture] = {}
+requested: dict[PictureKey, WantedPicture] = {}
 """Pictures that are to be rendered, in turn."""
 
 
@@ -81,22 +81,22 @@ def clear() -> None:
     for timer in (render_requested, render_rest):
         if not bpy.app.background and bpy.app.timers.is_registered(timer):
             bpy.app.timers.unregister(timer)
-    _requested.clear()
-    for key in tuple(_pictures):
+    requested.clear()
+    for key in tuple(rendered):
         release(key)
 
 
 def release(key: PictureKey) -> None:
     """Release a picture, if there is one."""
-    _requested.pop(key, None)
-    cached = _pictures.pop(key, None)
+    requested.pop(key, None)
+    cached = rendered.pop(key, None)
     if cached is not None:
         cached[1].free()
 
 
 def keep_only(region: int, plate: str, names: Collection[str]) -> None:
     """Release the pictures of a plate in a region except those with these names."""
-    for key in tuple(_pictures):
+    for key in tuple(rendered):
         if key[:2] == (region, plate) and key.name not in names:
             release(key)
 
@@ -142,9 +142,9 @@ def picture(
     shown = shading.type, shading.light, shading.color_type
     clip = tuple(map(tuple, look.projection))
     made_of = (size, look.eye, clip, _change_count, context.scene.name, shown)
-    cached = _pictures.get(key)
+    cached = rendered.get(key)
     if cached is None or cached[0] != made_of:
-        _requested[key] = WantedPicture(made_of, look, size)
+        requested[key] = WantedPicture(made_of, look, size)
         if not bpy.app.timers.is_registered(render_requested):
             bpy.app.timers.register(render_requested, first_interval=0.0)
     return None if cached is None else cached[1]
@@ -159,16 +159,16 @@ def render_requested(rest: bool = False) -> None:
     is_moving = not rest and _rendered_count != _change_count
     _rendered_count = _change_count
     _rest_at = time.monotonic() + STILL_S
-    in_turn = list(_requested)
+    in_turn = list(requested)
     now = in_turn[:1] if is_moving else in_turn
     for key in now:
-        wanted = _requested.pop(key)
+        wanted = requested.pop(key)
         view = _view_of(key.region)
         if view is not None:
-            cached = _pictures.get(key)
+            cached = rendered.get(key)
             camera = cached[1] if cached is not None else ViewportPicture()
             _render(view, camera, wanted)
-            _pictures[key] = wanted.made_of, camera
+            rendered[key] = wanted.made_of, camera
     if not is_moving:
         viewport.redraw_editors()
     if is_moving and in_turn and not bpy.app.timers.is_registered(render_rest):

@@ -2,6 +2,7 @@
 
 import contextlib
 import io
+import json
 import os
 import subprocess
 import sys
@@ -60,6 +61,17 @@ def pe_here(arguments) -> Answer:
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         status = verbs.main([str(each) for each in arguments])
     return Answer(status, out.getvalue(), err.getvalue())
+
+
+def same_in_both(folder, verb, options) -> dict:
+    """What a verb says of the scene in Blender, and of its exported study without: the same."""
+    blend = folder / "car.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+    assert run_here(blend, ["export", "-o", folder / "study"]).returncode == 0
+    inside = run_here(blend, [verb, *options, "--json"])
+    outside = pe_here([verb, folder / "study" / "study.toml", *options, "--json"])
+    assert inside.stdout == outside.stdout and inside.returncode == outside.returncode == 0
+    return json.loads(inside.stdout)
 
 
 def command(blend, arguments) -> list[str]:

@@ -1,6 +1,7 @@
 """The add-on in bpy, without a window. Where there is no bpy the tests are skipped."""
 
 import ctypes
+import importlib
 import importlib.util
 import os
 import sys
@@ -11,6 +12,8 @@ from tests.few_errors import all_errors, few_errors
 
 __all__ = ["all_errors", "few_errors"]
 HAVE_BPY = importlib.util.find_spec("bpy") is not None
+if HAVE_BPY:
+    importlib.import_module("bpy")  # mathutils comes with it
 # There is no bpy for every Python; where CI runs there is.
 collect_ignore_glob = [] if HAVE_BPY or os.environ.get("CI") == "true" else ["test_*.py"]
 

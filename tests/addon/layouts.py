@@ -1,6 +1,7 @@
 """Panels and menus drawn without a window: a layout that notes what is put into it."""
 
 from types import SimpleNamespace
+from typing import ClassVar
 
 import bpy
 
@@ -75,3 +76,19 @@ class Window:
         self.active_object = active_object
         self.region = SimpleNamespace(width=600)
         self.preferences = bpy.context.preferences
+
+
+class View3D:
+    """Stands for Blender's 3D views: counts what is drawn into them."""
+
+    handles: ClassVar[set] = set()
+
+    @classmethod
+    def draw_handler_add(cls, *_):
+        handle = object()
+        cls.handles.add(handle)
+        return handle
+
+    @classmethod
+    def draw_handler_remove(cls, handle, _region):
+        cls.handles.remove(handle)

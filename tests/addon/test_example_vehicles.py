@@ -17,6 +17,7 @@ from pe_core.geometry.poses import rotation_matrix
 from pe_core.sensors import kind_of
 from tests.addon import scenes
 from tests.addon.command_line import run_here
+from tests.engine import surfaces
 
 TOOLS = scenes.ASSETS.parent / "tools"
 sys.path.insert(0, str(TOOLS))
@@ -70,7 +71,7 @@ def test_body_glass_and_lamps_are_one_closed_shell(bus):
     triangles = bus.vehicle.triangles[np.isin(bus.vehicle.parts, skin)]
     assert scenes.open_edges(triangles) == 0
     assert scenes.sharpest_fold(triangles) > -0.8
-    assert scenes.volume(triangles) > 20.0
+    assert surfaces.volume(triangles) > 20.0
 
 
 @pytest.mark.parametrize(

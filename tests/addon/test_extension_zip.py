@@ -19,9 +19,9 @@ ROOT = Path(__file__).resolve().parents[2]
 SEDAN = ROOT / "blend_assets" / "sedan.blend"
 
 INSTALL_AND_SCORE = """
-import os
 import pathlib
 import sys
+from os import _exit
 import bpy
 archive, blend, study = sys.argv[1:]
 bpy.ops.extensions.package_install_files(
@@ -39,7 +39,7 @@ bpy.ops.pe.export_file(filepath=study)
 print("scored", settings.result_json)
 bpy.ops.preferences.addon_disable(module="bl_ext.user_default.perception_entropy")
 sys.stdout.flush()
-os._exit(0)  # bpy's own threads may wait for each other for ever while Python ends
+_exit(0)  # bpy's own threads may wait for each other for ever while Python ends
 """
 # What extensions.blender.org asks for, held over the files that are in the zip.
 MAX_ZIP_BYTES = 4_000_000

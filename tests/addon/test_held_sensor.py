@@ -2,7 +2,6 @@
 
 import math
 from types import SimpleNamespace
-from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -12,31 +11,15 @@ from blender_addon.engine import catalog
 from blender_addon.operators import place_sensor, placement, surface_pose
 from blender_addon.operators.surface_pose import SurfaceSpot
 from blender_addon.view import viewport
-from tests.addon import scenes
+from tests.addon import layouts, scenes
 
 ROOF = SurfaceSpot(Vector((-0.3, 0.0, 1.5)), Vector((0.0, 0.0, 1.0)), "cabin")
-
-
-class View3D:
-    """Stands for Blender's 3D views: counts what is drawn into them."""
-
-    handles: ClassVar[set] = set()
-
-    @classmethod
-    def draw_handler_add(cls, *_):
-        handle = object()
-        cls.handles.add(handle)
-        return handle
-
-    @classmethod
-    def draw_handler_remove(cls, handle, _region):
-        cls.handles.remove(handle)
 
 
 @pytest.fixture
 def held(car, monkeypatch):
     """Return a camera that is held, as it is when the button was pressed."""
-    monkeypatch.setattr(viewport, "VIEW", View3D)
+    monkeypatch.setattr(viewport, "VIEW", layouts.View3D)
     told = []
     workspace = SimpleNamespace(name="none", status_text_set=told.append)
     context = SimpleNamespace(
@@ -45,7 +28,7 @@ def held(car, monkeypatch):
     placement.begin(context, catalog.load("Camera 60 deg"), surface_pose.Stance(0.05))
     yield placement.current
     placement.end()
-    assert not View3D.handles
+    assert not layouts.View3D.handles
 
 
 def test_what_is_held_changes_nothing_in_the_scene(held, car):

@@ -8,6 +8,7 @@ import pe_core as pe
 from blender_addon.view import housing as surfaces
 from blender_addon.view.housing import KEY, model_surface
 from tests.addon import scenes
+from tests.engine.surfaces import volume
 
 MODELS = ["Pandar64", "Velodyne HDL-32E", "Hesai QT128C2X", "Hesai AT128E2X", "Camera 60 deg"]
 
@@ -34,7 +35,7 @@ def test_its_surface_is_closed_and_looks_outwards(name):
     surface = model_surface(name)
     triangles = triangles_of(surface)
     assert scenes.open_edges(triangles) == 0
-    assert scenes.volume(triangles) > 0.5 * np.prod(np.ptp(surface.points, axis=0)) / 2.0
+    assert volume(triangles) > 0.5 * np.prod(np.ptp(surface.points, axis=0)) / 2.0
     assert len(surface.faces) == len(surface.made_of)
     assert {surfaces.BODY, surfaces.GLASS, surfaces.MARK} <= set(surface.made_of)
 

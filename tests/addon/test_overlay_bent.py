@@ -9,7 +9,8 @@ from blender_addon.document.view_camera import WIDEST, shown_fov
 from pe_core import Camera, FTheta, KannalaBrandt, Pinhole, Pose, Sensor
 from pe_tools.graphics import kinds
 
-FISHEYE = Camera("fisheye", 1280, 966, lens=FTheta(1, 1, 640, 483, None, 339.7, -32.0, 48.3, -7.2))
+LENS = FTheta(fx=1, fy=1, cx=640, cy=483, fov=None, k1=339.7, k2=-32.0, k3=48.3, k4=-7.2)
+FISHEYE = Camera("fisheye", 1280, 966, lens=LENS)
 OFF = Camera("off", 1000, 1000, lens=Pinhole(500.0, 500.0, 400.0, 500.0))
 
 

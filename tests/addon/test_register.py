@@ -3,7 +3,6 @@
 import subprocess
 import sys
 from pathlib import Path
-from typing import ClassVar
 
 import bpy
 import pytest
@@ -14,6 +13,7 @@ from blender_addon.caches import change_events, sensor_cache
 from blender_addon.operators import running_job
 from blender_addon.overlay import scheduler
 from blender_addon.view import viewport
+from tests.addon import layouts
 
 ROOT = Path(blender_addon.__file__).parents[1]
 ROUNDS = 3
@@ -29,7 +29,8 @@ SIGNALS = (
 )
 TIMERS = (change_events.emit_moving, change_events.emit_idle, scheduler.update_now)
 TOY = """
-import os, sys
+import sys
+from os import _exit
 from dataclasses import make_dataclass, replace
 from types import SimpleNamespace
 
@@ -74,7 +75,7 @@ assert ("prop", "hail") in layouts.drawn(conditions, **vars(layouts.Window(scene
 assert "- `hail` ([m], 0–90, `0.0`): Size of hailstones" in settings_page().page()
 print("seen everywhere")
 sys.stdout.flush()
-os._exit(0)
+_exit(0)
 """
 
 
@@ -102,27 +103,11 @@ def extended_menus() -> list[str]:
     return found
 
 
-class View3D:
-    """Stands for Blender's 3D views: counts what is drawn into them."""
-
-    handles: ClassVar[set] = set()
-
-    @classmethod
-    def draw_handler_add(cls, function, *_):
-        handle = object()
-        cls.handles.add(handle)
-        return handle
-
-    @classmethod
-    def draw_handler_remove(cls, handle, _region):
-        cls.handles.remove(handle)
-
-
 @pytest.fixture
 def view3d(monkeypatch):
     """Return a stand-in for the 3D views: Blender does not tell what is drawn into its own."""
-    monkeypatch.setattr(viewport, "VIEW", View3D)
-    return View3D
+    monkeypatch.setattr(viewport, "VIEW", layouts.View3D)
+    return layouts.View3D
 
 
 def test_rounds_leave_nothing_behind(unregistered, view3d):

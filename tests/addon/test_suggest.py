@@ -1,7 +1,5 @@
 """*What Would Fix It?* in Blender: as the command line says it, ghosts, and taking it."""
 
-import json
-
 import bpy
 import pytest
 
@@ -10,7 +8,7 @@ from blender_addon.engine import jobs
 from blender_addon.panels.score_details import draw_offers
 from blender_addon.queries import location_query, where_map
 from tests.addon import scenes
-from tests.addon.command_line import pe_here, run_here
+from tests.addon.command_line import same_in_both
 from tests.addon.layouts import Layout, Window, drawn
 
 SPOT = (0.0, 1.7, 0.0)
@@ -24,15 +22,9 @@ def repairs(car, **options):
 def test_the_window_says_what_pe_says_of_a_blind_place(car, tmp_path):
     offers = repairs(car, point=SPOT)
     assert offers.found and offers.of == pytest.approx(SPOT)
-    path = tmp_path / "car.blend"
-    bpy.ops.wm.save_as_mainfile(filepath=str(path))
     x, y, _ = offers.of
-    asked = ("--at", repr(x), repr(y), "--suggest", "--json")
-    inside = run_here(path, ["explain", *asked])
-    assert run_here(path, ["export", "-o", tmp_path / "study"]).returncode == 0
-    outside = pe_here(["explain", tmp_path / "study" / "study.toml", *asked])
-    assert inside.stdout == outside.stdout and inside.returncode == outside.returncode == 0
-    assert json.loads(inside.stdout)["suggestions"] == [each.to_dict() for each in offers.found]
+    told = same_in_both(tmp_path, "explain", ["--at", repr(x), repr(y), "--suggest"])
+    assert told["suggestions"] == [each.to_dict() for each in offers.found]
 
 
 def test_a_failed_requirement_is_mended_as_the_job_says(car):

@@ -1,13 +1,11 @@
 """The road and the test bodies round the vehicle: drawn, grabbed and counted, never scored."""
 
-import json
-
 import bpy
 
 from blender_addon.panels.score_details import surroundings
 from blender_addon.queries import body_query
 from tests.addon import scenes
-from tests.addon.command_line import pe_here, run_here
+from tests.addon.command_line import same_in_both
 from tests.addon.layouts import Window, drawn
 
 
@@ -32,15 +30,10 @@ def test_a_grabbed_body_is_counted_as_pe_does_and_nothing_else_notices(car, tmp_
     told = drawn(surroundings, **vars(Window(car, child))).texts("label")
     assert {each.text for each in body.seeing} <= set(told)
 
-    path = tmp_path / "car.blend"
     standing = body.standing
-    bpy.ops.wm.save_as_mainfile(filepath=str(path))
-    asked = ("--at", *map(repr, standing.place), "--heading", repr(standing.heading), "--body")
-    inside = run_here(path, ["explain", *asked, "child", "--json"])
-    assert run_here(path, ["export", "-o", tmp_path / "study"]).returncode == 0
-    outside = pe_here(["explain", tmp_path / "study" / "study.toml", *asked, "child", "--json"])
-    assert inside.stdout == outside.stdout and inside.returncode == outside.returncode == 0
-    assert json.loads(inside.stdout)["body"] == body.to_dict()
+    asked = ["--at", *map(repr, standing.place), "--heading", repr(standing.heading)]
+    told = same_in_both(tmp_path, "explain", [*asked, "--body", "child"])
+    assert told["body"] == body.to_dict()
 
     assert bpy.ops.pe.surroundings() == {"FINISHED"}
     assert len(bpy.data.objects) == len(objects) and not body_query.seen(bpy.context.scene)

@@ -6,6 +6,7 @@ import pytest
 
 from blender_addon import document
 from tests.addon import scenes
+from tests.engine import surfaces
 
 BOX_VOLUME = 8.0
 BOX_TRIANGLES = 12
@@ -25,12 +26,12 @@ def test_move_and_scale(parts):
     scenes.add_box(parts, "box", location=(10.0, 0.0, 1.0), scale=(2.0, 1.0, 0.5))
     vehicle = scenes.vehicle(parts)
     assert bounds(vehicle) == [8.0, -1.0, 0.5, 12.0, 1.0, 1.5]
-    assert scenes.volume(vehicle.triangles) == BOX_VOLUME
+    assert surfaces.volume(vehicle.triangles) == BOX_VOLUME
 
 
 def test_negative_scale_keeps_faces_outwards(parts):
     scenes.add_box(parts, "box", scale=(-2.0, 1.0, 1.0))
-    assert scenes.volume(scenes.vehicle(parts).triangles) == 2.0 * BOX_VOLUME
+    assert surfaces.volume(scenes.vehicle(parts).triangles) == 2.0 * BOX_VOLUME
 
 
 def test_parent_moves_child_along(parts):
@@ -48,7 +49,7 @@ def test_modifier_is_applied(parts):
     array.count = 3
     array.relative_offset_displace = (2.0, 0.0, 0.0)
     vehicle = scenes.vehicle(parts)
-    assert scenes.volume(vehicle.triangles) == 3 * BOX_VOLUME
+    assert surfaces.volume(vehicle.triangles) == 3 * BOX_VOLUME
     assert bounds(vehicle) == [-1.0, -1.0, -1.0, 9.0, 1.0, 1.0]
 
 
@@ -68,7 +69,7 @@ def test_collection_instances_are_made_real(parts):
     parts.objects.link(instance_of(wheel, "right", location=(0.0, -5.0, 0.0), scale=(1, -1, 1)))
     vehicle = scenes.vehicle(parts)
     assert vehicle.part_names == ("tyre",)
-    assert scenes.volume(vehicle.triangles) == 2 * BOX_VOLUME
+    assert surfaces.volume(vehicle.triangles) == 2 * BOX_VOLUME
     assert bounds(vehicle) == [0.0, -6.0, -1.0, 2.0, 6.0, 1.0]
 
 

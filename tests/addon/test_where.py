@@ -1,13 +1,11 @@
 """*Where?* in Blender: the same places and figures as on the command line, colours, and a click."""
 
-import json
-
 import bpy
 
 from blender_addon.engine import catalog, jobs, pe
 from blender_addon.queries import where_map
 from tests.addon import scenes
-from tests.addon.command_line import pe_here, run_here
+from tests.addon.command_line import same_in_both
 
 MODEL = "Camera 60 deg"
 
@@ -28,15 +26,8 @@ def test_the_operator_finds_what_the_engine_finds(car):
 
 
 def test_blender_and_pe_say_the_same(car, tmp_path):
-    path = tmp_path / "car.blend"
-    bpy.ops.wm.save_as_mainfile(filepath=str(path))
-    assert run_here(path, ["export", "-o", tmp_path / "study"]).returncode == 0
-    inside = run_here(path, ["where", "--model", MODEL, "--places", "30", "--json"])
-    outside = pe_here(
-        ["where", tmp_path / "study" / "study.toml", "--model", MODEL, "--places", "30", "--json"]
-    )
-    assert inside.stdout == outside.stdout and inside.returncode == outside.returncode == 0
-    assert len(json.loads(inside.stdout)["places"]) == 30
+    told = same_in_both(tmp_path, "where", ["--model", MODEL, "--places", "30"])
+    assert len(told["places"]) == 30
 
 
 def test_a_click_puts_the_sensor_there_and_the_score_is_the_promised_one(car):

@@ -23,23 +23,19 @@ kept["frames"] = [len(item.shape.frames) for item in items.values()]
 kept["made"] = [id(item) for item in items.values()]
 kept["old"] = [scheduler.is_preview(window.scene.name, "scenario", n, i) for n, i in items.items()]
 """
-PLAY = f"""
-from {NAME}.overlay import draw_handler
+PLAY = """
 drawn = kept["drawn"] = []
 def noted():
     drawn.append(window.scene.frame_current)
-    draw_handler.draw()
-draw_handler._handlers.hide()
-draw_handler._handlers.show((noted, "POST_VIEW"), (draw_handler.draw_text, "POST_PIXEL"))
+view = bpy.types.SpaceView3D
+bpy.app.driver_namespace["noted"] = view.draw_handler_add(noted, (), "WINDOW", "POST_VIEW")
 with bpy.context.temp_override(window=window, area=area, region=region):
     bpy.ops.pe.play_scenario()
 """
-STOP = f"""
+STOP = """
 with bpy.context.temp_override(window=window, area=area, region=region):
     bpy.ops.screen.animation_cancel()
-from {NAME}.overlay import draw_handler
-draw_handler._handlers.hide()
-draw_handler.register()
+bpy.types.SpaceView3D.draw_handler_remove(bpy.app.driver_namespace.pop("noted"), "WINDOW")
 """
 FILM = f"""
 from pathlib import Path

@@ -20,7 +20,7 @@ main = next(each for each in area.regions if each.type == "WINDOW")
 kind = {OURS.format("view.plates")}.BIRDS_EYE
 ((left, bottom, right, top),) = {OURS.format("view.viewport")}.plate_boxes(main.as_pointer(), kind)
 kept["box"] = [main.x + left, window.height - main.y - top, right - left, top - bottom]
-kept["taken"] = sorted(key.name for key in {PICTURES}._pictures if key.plate == name)
+kept["taken"] = sorted(key.name for key in {PICTURES}.rendered if key.plate == name)
 """
 THREE = """
 for name, place, turn in (
@@ -51,10 +51,10 @@ for _ in range(14):
     pictures.note_change()
     redraw()
     pictures.render_requested()
-    kept["left"].append(len(pictures._requested))
+    kept["left"].append(len(pictures.requested))
 view.show_cameras = view.show_birds_eye = False
 redraw()
-kept["kept"] = len(pictures._pictures)
+kept["kept"] = len(pictures.rendered)
 """
 
 
@@ -95,7 +95,7 @@ def colors_in(picture, box) -> int:
 
 def test_a_click_on_a_picture_of_the_strip_looks_through_its_camera(window, screenshots):
     window.do(THREE)
-    window.wait_until(f"len({PICTURES}._pictures) == 3", EFFECT_TIMEOUT_S)
+    window.wait_until(f"len({PICTURES}.rendered) == 3", EFFECT_TIMEOUT_S)
     window.settle()
     window.screenshot(screenshots / "window_strip.png")
     told = window.do(WHERE)
@@ -110,7 +110,7 @@ def test_a_click_on_a_picture_of_the_strip_looks_through_its_camera(window, scre
     window.do("window.scene.perception_entropy.view.show_birds_eye = True")
     window.wait_until(GROUND, EFFECT_TIMEOUT_S)
     window.do("pass")  # with the mouse aside, 5.2 draws when it is told to
-    window.wait_until(f"len({PICTURES}._pictures) == 7", EFFECT_TIMEOUT_S)
+    window.wait_until(f"len({PICTURES}.rendered) == 7", EFFECT_TIMEOUT_S)
     window.settle()
     shown = screenshots / "window_birds_eye.png"
     window.photograph(shown)

@@ -59,17 +59,10 @@ def no_key_figures(monkeypatch):
 @pytest.fixture
 def study(tmp_path):
     """A study file of a LiDAR on a box car, whose place and pitch a short search may change."""
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
-    search = pe.Search(
-        {"roof": ("x", "z", "pitch")},
-        limits={},
-        seed=3,
-        samples=2048,
-        schedule=pe.Schedule(candidates=4),
-        method="random",
-    )
+    free = {"roof": ("x", "z", "pitch")}
+    search = shapes.short_search(free, samples=2048, schedule=pe.Schedule(candidates=4))
     path = tmp_path / "car.toml"
-    pt.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search), path)
+    pt.export_study(shapes.car_study(shapes.roof_rig(), search=search), path)
     return path
 
 

@@ -14,13 +14,12 @@ import pytest
 
 from pe_tools.formats.meshes import Mesh, MeshAxes, read_mesh
 from tests.engine.refusals import wrongly_refused
+from tests.engine.shapes import BOX_FACES
 
 # A box with three different sides, so that no two axes can be mistaken for each other; its
 # coordinates are exact in single precision.
 POINTS = np.array([(x, y, z) for x in (-1.0, 4.0) for y in (-1.0, 1.5) for z in (0.25, 2.0)])
-QUADS = np.array(
-    [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-)
+QUADS = np.array(BOX_FACES)
 FACES = np.array([face for a, b, c, d in QUADS.tolist() for face in ((a, b, c), (a, c, d))])
 BOX = POINTS[FACES]
 SQUARE = np.array([[(0, 0, 0), (1, 0, 0), (1, 1, 0)], [(0, 0, 0), (1, 1, 0), (0, 1, 0)]], float)

@@ -3,6 +3,7 @@
 import numpy as np
 
 import pe_core as pe
+from pe_core.search import Parametrization
 from tests.engine import shapes
 
 TOP = 1.4
@@ -53,6 +54,12 @@ def space(
         limits=pe.Limits(**(figures or {})),
     )
     return rig, study.search_space()
+
+
+def coded(*sensors, **options):
+    """The parametrization of a search space on the car."""
+    rig, own = space(*sensors, **options)
+    return Parametrization(rig, own)
 
 
 def roof(standoff=BASE, orientation="upright"):

@@ -9,8 +9,7 @@ import math
 import numpy as np
 
 from pe_tools.verify import oracle
-
-FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+from tests.engine.shapes import BOX_FACES
 
 
 def corners(objects, item):
@@ -23,7 +22,7 @@ def corners(objects, item):
 def box_triangles(objects, item):
     """(12, 3, 3) of one object."""
     points = corners(objects, item)
-    return [points[[f[0], f[k], f[k + 1]]] for f in FACES for k in (1, 2)]
+    return [points[[f[0], f[k], f[k + 1]]] for f in BOX_FACES for k in (1, 2)]
 
 
 def taken(origin, directions, objects, vehicle, traffic):
@@ -89,7 +88,7 @@ def visible_shares(sensor, ray_of, objects, vehicle, want=10_000):
 
     def through(across, down):
         places = [w.ravel() for w in np.meshgrid(across, down)]
-        rays = ray_of(*places)
+        rays = ray_of(places[0], places[1])
         some = np.flatnonzero(~np.isnan(rays[:, 0]))
         return [w[some] for w in places], rays[some] @ turn.T
 

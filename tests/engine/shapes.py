@@ -53,6 +53,11 @@ def lidar_on_roof(model=None, position=(-0.43, 0.0, 1.8), rotation=(0.0, 0.0, 0.
     return pe.Sensor(name, model, pe.Pose.from_degrees(position, rotation))
 
 
+def roof_rig(channels=16, azimuths=180):
+    """A rig of one LiDAR of few beams."""
+    return pe.Rig([lidar_on_roof(small_lidar(channels, azimuths))])
+
+
 def camera(hfov_deg=60.0, position=(1.0, 0.0, 1.5), rotation=(0.0, 0.0, 0.0), name="camera"):
     """A 1920 x 1080 camera looking ahead."""
     model = pe.Camera("camera", 1920, 1080, math.radians(hfov_deg))
@@ -62,3 +67,20 @@ def camera(hfov_deg=60.0, position=(1.0, 0.0, 1.5), rotation=(0.0, 0.0, 0.0), na
 def small_space(interval=0.5):
     """A space of a few ten thousand voxels."""
     return pe.PerceptionSpace((-20, 20), (-10, 10), (0, 5), interval)
+
+
+def tilted_rig():
+    """A LiDAR and a camera that look aside, for files of other programs."""
+    lidar = lidar_on_roof(small_lidar(), rotation=(4.0, -7.0, 100.0))
+    return pe.Rig([lidar, camera(70.0, (1.0, 0.5, 1.2), (5.0, 20.0, -130.0), name="eye")])
+
+
+def car_study(rig, **fields):
+    """A study of sensors on the box car, in the small space."""
+    return pe.Study(rig, box_car(), small_space(), **fields)
+
+
+def short_search(free, **given):
+    """A random search of a few placements on a thousand voxels."""
+    own = {"limits": {}, "seed": 3, "samples": 1024, "method": "random"}
+    return pe.Search(free, **own | {"schedule": pe.Schedule(candidates=2)} | given)

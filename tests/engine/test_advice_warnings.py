@@ -73,7 +73,8 @@ def with_parts(*boxes, vehicle=None):
     return pe.Vehicle(np.concatenate(triangles), parts.astype(np.int32), names)
 
 
-def of_size(x, y, z):
+def of_size(size):
+    x, y, z = size
     return pe.Vehicle(shapes.box((-x / 2, -y / 2, 0), (x / 2, y / 2, z)))
 
 
@@ -160,8 +161,9 @@ def test_warnings_of_sensors_have_the_figures_and_the_part():
     assert list(told(CAR, lidar_at(1.5, 0.0, 0.5))) == [("s", "inside")]
     assert told(None, lidar_at(0, 0, 5.5))["s", "outside"].values == {"x": 0, "y": 0, "z": 5.5}
     assert told(None, lidar_at(0, 0, -0.05))["s", "underground"].values == {"depth": 0.05}
-    for at, gap in (((2.9, 0, 0.6), 0.6), ((0, 0, 2.2), 0.8), ((0, 30, 1), 29.1)):
-        assert told(CAR, lidar_at(*at))["s", "clear"].values["gap"] == pytest.approx(gap, abs=1e-3)
+    for x, y, z, gap in ((2.9, 0, 0.6, 0.6), (0, 0, 2.2, 0.8), (0, 30, 1, 29.1)):
+        found = told(CAR, lidar_at(x, y, z))["s", "clear"].values["gap"]
+        assert found == pytest.approx(gap, abs=1e-3)
     assert told(CAR, preset_at(0.0, 1.41))["s", "housing"].part == "cabin"
     both = told(CAR, preset_at(0.81, 0.92))["s", "housing"]  # in the corner of bonnet and cabin
     assert both.part == "body" and both.text.endswith("cuts into body, cabin")
@@ -270,17 +272,17 @@ def test_sizes_that_are_no_vehicle():
         ((0.35, 0.2, 0.1), 13.0),
         ((0.047, 0.02, 0.015), 100.0),
     ):
-        assert told(of_size(*size))[None, "size"].amount == (factor,), size
+        assert told(of_size(size))[None, "size"].amount == (factor,), size
     floor = np.concatenate([CAR.triangles, shapes.box((-9, -9, -0.1), (9, 9, 0))])
     assert "is a floor part of its mesh? Or, " in told(pe.Vehicle(floor))[None, "size"].text
     assert (None, "size") in told(pe.Vehicle(np.zeros((1, 3, 3))))
     for fine in ((0.9, 0.5, 0.8), (18.75, 2.5, 3.2), (15.1, 9.5, 7.7)):
-        assert (None, "size") not in told(of_size(*fine)), fine
+        assert (None, "size") not in told(of_size(fine)), fine
 
 
 def test_a_part_as_large_as_a_room(sedan):
     """It is named; the vehicle in it is evaluated without it, and nobody is inside the body."""
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
+    rig = shapes.roof_rig()
     for rooms in ([FLOOR], [STUDIO], [FLOOR, BACKDROP]):
         found = advice.warnings(rig, with_parts(*rooms, vehicle=sedan), SPACE, PRIOR)
         ours = [(each.code, each.part) for each in found if each.subject is None]

@@ -96,7 +96,7 @@ def test_warnings_are_in_the_result_and_below_the_summary():
     from pe_tools.cli.terminal import summary
 
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(), (1.5, 0.0, 0.5))])
-    study = pe.Study(rig, shapes.box_car(), shapes.small_space(), samples=1024)
+    study = shapes.car_study(rig, samples=1024)
     job = pt.ScoreJob(study)
     assert list(job)[-1].stage == "done"
     told = job.outcome.warnings
@@ -216,8 +216,8 @@ def test_figures_that_prefer_different_rigs_are_told():
 @pytest.fixture(scope="module")
 def study():
     """A small LiDAR on a box of a car."""
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(32, 360))])
-    return pe.Study(rig, shapes.box_car(), space=shapes.small_space())
+    rig = shapes.roof_rig(32, 360)
+    return shapes.car_study(rig)
 
 
 def in_traffic(near):

@@ -116,7 +116,7 @@ BY_NAME = {
 """Files that import by a name made at run time, which the other tests do not see, and why."""
 
 
-def files(*packages):
+def files(packages):
     """Every file of our own in the packages, by its path from the checkout."""
     return {
         path.relative_to(CHECKOUT).as_posix(): path
@@ -141,7 +141,7 @@ def test_rooms_look_only_into_rooms_below_them(package):
     allowed = ROOMS[package]
     offenders = [
         f"{name}: {full}"
-        for name, path in files(package).items()
+        for name, path in files([package]).items()
         if room_of(path) != "__init__"  # the public face of it all
         for full in imported(path)
         if full.startswith(f"{package}.")
@@ -152,7 +152,7 @@ def test_rooms_look_only_into_rooms_below_them(package):
 
 @pytest.mark.parametrize("package", ROOMS)
 def test_every_room_is_in_the_list_and_arrows_run_one_way(package):
-    rooms = {room_of(path) for path in files(package).values()} - {"__init__"}
+    rooms = {room_of(path) for path in files([package]).values()} - {"__init__"}
     assert rooms == set(ROOMS[package])
     above = list(ROOMS[package])
     for number, room in enumerate(above):
@@ -170,7 +170,7 @@ def test_the_page_of_the_architecture_has_a_row_for_each_room(package):
 def test_the_engine_imports_nothing_of_the_tools():
     offenders = [
         f"{name}: {full}"
-        for name, path in files("pe_core").items()
+        for name, path in files(["pe_core"]).items()
         for full in imported(path)
         if full.startswith("pe_tools")
     ]
@@ -181,7 +181,7 @@ def test_libraries_are_numpy_and_those_of_a_room():
     ours = sys.stdlib_module_names | {"numpy", *ROOMS}
     offenders = [
         f"{name}: {full}"
-        for name, path in files(*ROOMS).items()
+        for name, path in files(ROOMS).items()
         for full in imported(path)
         if (top := full.split(".")[0]) not in ours
         and name.rsplit("/", name.count("/") - 1)[0] not in LIBRARIES.get(top, ())
@@ -192,7 +192,7 @@ def test_libraries_are_numpy_and_those_of_a_room():
 def test_modules_are_imported_by_name_in_few_places():
     callers = {
         name
-        for name, path in files(*ROOMS).items()
+        for name, path in files(ROOMS).items()
         for node in nodes(path)
         if isinstance(node, ast.Name) and node.id in ("import_module", "__import__")
     }
@@ -215,7 +215,7 @@ def top_imports(body, *, hints):
 def import_graph(package, *, hints=False):
     """The modules of a package that each of its modules imports at its top."""
     modules = {}
-    for name, path in files(package).items():
+    for name, path in files([package]).items():
         modules[name.removesuffix(".py").removesuffix("/__init__").replace("/", ".")] = path
     graph = {module: set() for module in modules}
     for module, path in modules.items():
@@ -275,7 +275,7 @@ def test_a_sensor_s_kind_is_asked_of_the_table_alone():
         "pe_tools/verify/golden_",
     )
     offenders = []
-    for name, path in files(*ROOMS).items():
+    for name, path in files(ROOMS).items():
         if name.startswith((*own, *tables)) or name.count("/") == 1:
             continue
         named = {full.rsplit(".")[-1] for full in imported(path)} & set(kinds)
@@ -310,7 +310,7 @@ def is_public(module, name):
 def test_programs_outside_import_public_faces_only():
     offenders = [
         f"{name}: {module} {wanted}"
-        for name, path in files(*FACES_ONLY).items()
+        for name, path in files(FACES_ONLY).items()
         for module, wanted in taken(tree_of(path))
         if not is_public(module, wanted)
     ]

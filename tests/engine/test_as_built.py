@@ -37,7 +37,7 @@ def moved(sensor, by=(0.0, 0.0, 0.0), yaw=0.0, name=None):
 def study():
     zone = requirements.Zone(spots=((5.0, 0.0),))
     cone = requirements.Requirement("ahead", zone, (requirements.BODIES["child"],))
-    base = pe.Study(pe.Rig(sensors()), shapes.box_car(), shapes.small_space(), samples=8192)
+    base = shapes.car_study(pe.Rig(sensors()), samples=8192)
     return replace(base, requirements=(cone,))
 
 

@@ -33,7 +33,7 @@ IMPOSSIBLE = [
 ]
 
 
-def boxes(*rows):
+def boxes(rows):
     """Boxes from rows (class, x, y, z, length, width, height, yaw in degrees)."""
     return pe.Boxes.of([(*row[:7], math.radians(row[7])) for row in rows])
 
@@ -59,7 +59,7 @@ def inside(row, space):
 @pytest.mark.parametrize("row", ROTATED, ids=lambda row: f"{row[7]:g} deg at {row[1]:g}")
 def test_a_rotated_box_holds_the_voxels_whose_centres_are_inside(row):
     expected = inside(row, SPACE)
-    (density,) = pe.Prior.from_boxes(boxes(row)).densities(SPACE)
+    (density,) = pe.Prior.from_boxes(boxes([row])).densities(SPACE)
     p = density.ground[:, :, None] * density.profile
     assert expected.any()
     np.testing.assert_allclose(p, expected / expected.sum(), rtol=1e-12, atol=0)
@@ -67,13 +67,13 @@ def test_a_rotated_box_holds_the_voxels_whose_centres_are_inside(row):
 
 def test_a_class_is_its_ground_times_the_heights_of_all_its_boxes():
     counts = sum(inside(row, SPACE).astype(int) for row in ROTATED)
-    (density,) = pe.Prior.from_boxes(boxes(*ROTATED)).densities(SPACE)
+    (density,) = pe.Prior.from_boxes(boxes(ROTATED)).densities(SPACE)
     np.testing.assert_allclose(density.ground, counts.sum(axis=2) / counts.sum(), rtol=1e-12)
     np.testing.assert_allclose(density.profile, counts.sum(axis=(0, 1)) / counts.sum(), rtol=1e-12)
 
 
 def test_every_class_sums_to_one_before_focus_and_shares_alike():
-    prior = pe.Prior.from_boxes(boxes(*ROTATED, ("cone", 5, 5, 0.5, 0.4, 0.4, 1.0, 10)))
+    prior = pe.Prior.from_boxes(boxes([*ROTATED, ("cone", 5, 5, 0.5, 0.4, 0.4, 1.0, 10)]))
     assert prior.model == "boxes" and prior.class_names == ("car", "cone")
     densities = prior.densities(SPACE)
     assert [d.ground.sum() for d in densities] == pytest.approx([0.5, 0.5])

@@ -160,7 +160,7 @@ def test_a_limit_of_what_is_not_known_is_refused_in_one_line():
     for name in ("mass", "protrusion"):
         rig = pe.Rig([*cans((0, 0, 1.8)), shapes.camera(name="eye")])
         limits = pe.Limits(**{name: 1.0})
-        study = pe.Study(rig, shapes.box_car(), shapes.small_space(), limits=limits)
+        study = shapes.car_study(rig, limits=limits)
         with pytest.raises(pe.InputError) as error:
             study.coding()
         assert error.value.field == name and "eye" in error.value.found
@@ -185,7 +185,7 @@ def choice_study(**more):
     rig = pe.Rig(sensors)
     given = {"search": search, "samples": 1024, "selection": selection}
     given["limits"] = pe.Limits(**more)
-    return pe.Study(rig, shapes.box_car(), shapes.small_space(), **given)
+    return shapes.car_study(rig, **given)
 
 
 @pytest.mark.parametrize("limits", [{}, {"mass": 2.5}, {"power": 10.0, "mass": 2.0}])
@@ -209,7 +209,7 @@ def test_designs_within_limits_of_sums_are_those_of_an_exhaustive_search(limits)
 def test_a_score_tells_what_can_be_built_and_of_whom_it_is_not_known(tmp_path, capsys):
     sensors = [*cans((-0.4, 0, 1.8)), shapes.camera(name="eye")]
     given = {"search": pe.Search(samples=1024), "samples": 1024}
-    study = pe.Study(pe.Rig(sensors), shapes.box_car(), shapes.small_space(), **given)
+    study = shapes.car_study(pe.Rig(sensors), **given)
     pt.export_study(study, tmp_path / "study.toml")
     assert main(["score", str(tmp_path / "study.toml"), "-o", str(tmp_path / "out")]) == 0
     told = capsys.readouterr().out.splitlines()

@@ -102,7 +102,7 @@ SMALL = {
         fx=1.0, fy=1.0, cx=240.0, cy=135.0, fov=None, k1=127.0, k2=-12.0, k3=18.0, k4=-2.7
     ),
 }
-POSE = (2.1, 0.3, 1.1), (3.0, 20.0, 50.0)
+POSE = pe.Pose.from_degrees((2.1, 0.3, 1.1), (3.0, 20.0, 50.0))
 CAR = shapes.box_car()
 SPACE = pe.PerceptionSpace((-5, 6), (-4, 4), (0, 2), 0.25)
 CATALOGUE = ("WoodScape surround view", "PandaSet front", "PandaSet wide")
@@ -164,8 +164,10 @@ def test_a_pinhole_of_an_ideal_camera_is_that_camera():
     lens = pe.Camera("lens", 640, 480, lens=Pinhole(f, f, 320.0, 240.0))
     assert lens.projection.is_straight and lens.focal_px == f
     assert (lens.hfov, lens.vfov) == pytest.approx((ideal.hfov, ideal.vfov), abs=1e-12)
-    rays = [picture_rays(pe.Sensor("s", camera), 100) for camera in (lens, ideal)]
-    np.testing.assert_allclose(*rays, atol=1e-12)
+    through_lens, through_pinhole = (
+        picture_rays(pe.Sensor("s", camera), 100) for camera in (lens, ideal)
+    )
+    np.testing.assert_allclose(through_lens, through_pinhole, atol=1e-12)
 
 
 def test_impossible_lenses_are_refused():
@@ -226,14 +228,16 @@ def test_tables_of_a_lens_are_the_lens(lens):
     rng = np.random.default_rng(5)
     theta = rng.uniform(0.05, min(quick.outer, 1.2), 4000)
     turn = rng.uniform(0, 2 * math.pi, 4000)
-    axes = np.cos(theta), np.sin(theta) * np.cos(turn), np.sin(theta) * np.sin(turn)
-    narrow = [part.astype(np.float32) for part in axes]
-    seen = quick.seen(narrow[0], *narrow, np.float32(1.0))
-    right, down = lens.project(*axes)
+    forward = np.cos(theta)
+    left = np.sin(theta) * np.cos(turn)
+    up = np.sin(theta) * np.sin(turn)
+    x, y, z = (part.astype(np.float32) for part in (forward, left, up))
+    seen = quick.seen(x, x, y, z, np.float32(1.0))
+    right, down = lens.project(forward, left, up)
     away = np.hypot(right - lens.cx, down - lens.cy)
     np.testing.assert_allclose(seen.right, right, atol=4e-4 * away.max())
     np.testing.assert_allclose(seen.down, down, atol=4e-4 * away.max())
-    np.testing.assert_allclose(seen.density, lens.density(*axes), rtol=4e-4)
+    np.testing.assert_allclose(seen.density, lens.density(forward, left, up), rtol=4e-4)
     found = np.hypot(seen.right - lens.cx, seen.down - lens.cy)
     assert abs(np.mean(found / away - 1.0)) < 2e-6
     grid = np.linspace(1e-3, min(quick.outer + BEYOND, lens.edge), 3000)
@@ -304,9 +308,8 @@ def test_a_lens_that_bends_nothing_is_a_pinhole():
     bent = Pinhole(fx=232.0, fy=240.0, cx=250.0, cy=120.0, fov=math.radians(150.0))
     index = np.stack(np.unravel_index(np.arange(SPACE.size), SPACE.shape), axis=1)
     centers = SPACE.center_of(index)
-    pose = pe.Pose.from_degrees(*POSE)
     one, other = (
-        pe.measure(pe.Sensor("eye", camera(lens), pose), centers, SPACE.interval, CAR)
+        pe.measure(pe.Sensor("eye", camera(lens), POSE), centers, SPACE.interval, CAR)
         for lens in (straight, bent)
     )
     ahead = one > 0.0  # the pinhole leaves out what a corner of is behind

@@ -20,7 +20,7 @@ def sensor(name, model="Pandar64", position=(0.0, 0.0, 2.0)):
     return pe.Sensor(name, pe.catalog.load(model), pe.Pose(position))
 
 
-def designs(rig, *choices, mounting=None, price=None, **limits):
+def designs(rig, choices, mounting=None, price=None, **limits):
     selection = pe.Selection(choices, **limits)
     return DesignSpace.of(selection, rig, mounting or pe.Mounting(), pe.Limits(price=price))
 
@@ -57,7 +57,7 @@ def by_hand(price=99, max_sensors=9, lidars=9):
 )
 def test_designs_are_those_of_nested_loops(limits, same):
     """Sensors that nobody chooses count for the numbers and cost nothing."""
-    all_of_them = designs(RIG, *CHOICES, **limits)
+    all_of_them = designs(RIG, CHOICES, **limits)
     found = set()
     for picks in all_of_them:
         models = all_of_them.models(picks)
@@ -72,7 +72,7 @@ def test_sensors_of_a_mount_are_interchangeable_and_one_sensor_has_to_be_there()
     rig = pe.Rig([sensor(n, position=(0.0, y, 2.0)) for n, y in (("a", -1.0), ("b", 1.0))])
     mounting = pe.Mounting({"rack": slots}, dict.fromkeys("ab", "rack"))
     choice = pe.Choice(options(MODELS, (9, 7, 4)), mount="rack", optional=True)
-    found = designs(rig, choice, mounting=mounting)
+    found = designs(rig, [choice], mounting=mounting)
     named = {
         tuple(sorted(m.name for m in found.models(picks).values() if m is not None))
         for picks in found
@@ -87,7 +87,7 @@ def test_a_pair_takes_one_model_and_costs_twice():
     right = sensor("r", position=(1.0, -0.5, 1.0))
     mounting = pe.Mounting(pairs=[("l", "r")])
     choice = pe.Choice(options(MODELS[:1], (9,)), ["l"], optional=True)
-    found = designs(pe.Rig([left, right, sensor("held")]), choice, mounting=mounting)
+    found = designs(pe.Rig([left, right, sensor("held")]), [choice], mounting=mounting)
     assert [found.price(picks) for picks in found] == [18, 0]
     assert set(found.models((0,))) == {"l", "r"}
 
@@ -113,7 +113,7 @@ def test_the_local_search_finds_the_front_of_more_designs_than_it_looks_at(monke
     monkeypatch.setattr(selection, "ALL_UP_TO", 10)
     rig = pe.Rig([sensor(name) for name in "abcd"])
     choices = [pe.Choice(options(MODELS, (9, 7, 4)), [name], optional=True) for name in "abcd"]
-    every = designs(rig, *choices)
+    every = designs(rig, choices)
     gain = {k: dict(zip((0, 1, 2, 3), (3 + k, 5 + k / 2, 6 + k, 0), strict=True)) for k in range(4)}
 
     def entropy(picks):
@@ -147,5 +147,5 @@ def test_limits_that_would_be_checked_for_ever_are_refused(monkeypatch):
     models = [pe.Option(pe.catalog.load(n), p) for n, p in ((MODELS[0], 1), (EYES[0], 2))]
     each = [pe.Choice(models, [name]) for name in names]
     with pytest.raises(pe.InputError, match="fewer choices, or limits that are checked on 500"):
-        designs(rig, *each, price=59, max_of_kind={"lidar": 20})
-    assert designs(rig, *each, price=60, max_of_kind={"lidar": 20}).first(1)
+        designs(rig, each, price=59, max_of_kind={"lidar": 20})
+    assert designs(rig, each, price=60, max_of_kind={"lidar": 20}).first(1)

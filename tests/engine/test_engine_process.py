@@ -160,16 +160,8 @@ def test_a_killed_process_is_asked_again_once_then_it_is_told(engine):
 
 
 def small_search():
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 90))])
-    search = pe.Search(
-        {"roof": ("x", "z")},
-        limits={},
-        seed=3,
-        samples=1024,
-        schedule=pe.Schedule(candidates=2),
-        method="random",
-    )
-    return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search)
+    search = shapes.short_search({"roof": ("x", "z")})
+    return shapes.car_study(shapes.roof_rig(16, 90), search=search)
 
 
 def poses(study):

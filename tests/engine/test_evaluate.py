@@ -28,10 +28,7 @@ RIGS = {
 }
 SMALL_SPACE = shapes.small_space(0.25)
 CAR = shapes.box_car(2)
-STANDARD_ERROR_RIGS = {
-    "lidar": pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))]),
-    "camera": pe.Rig([shapes.camera(60.0)]),
-}
+STANDARD_ERROR_RIGS = {"lidar": shapes.roof_rig(16, 180), "camera": pe.Rig([shapes.camera(60.0)])}
 BLIND = shapes.lidar_on_roof(shapes.small_lidar(2, 4), (0.0, 0.0, 900.0))
 EVERYWHERE = pe.Lidar("all", np.radians(np.linspace(-89.0, 89.0, 90)), 180, 100.0)
 TINY = pe.PerceptionSpace((-0.8, 0.8), (-0.8, 0.8), (0, 1.6), 0.2)

@@ -2,6 +2,7 @@
 
 import json
 import math
+from itertools import starmap
 from pathlib import Path
 
 import numpy as np
@@ -192,7 +193,7 @@ def test_quaternions_of_all_rotations_come_back():
 def test_the_rear_axle_is_guessed_from_wheels_alone():
     parts = [((-2.3, -1, 0.2), (2.4, 1, 1.5)), ((1.2, 0.7, 0), (1.8, 0.9, 0.6))]
     parts.append(((-1.6, 0.7, 0), (-1.0, 0.9, 0.6)))
-    meshes = [shapes.box(*each) for each in parts]
+    meshes = list(starmap(shapes.box, parts))
     numbers = np.repeat(np.arange(3), [len(mesh) for mesh in meshes])
     for names, known in (
         (("body", "wheel_front_left", "wheel_rear_left"), True),

@@ -101,8 +101,9 @@ def test_a_robot_s_origin_is_the_link_on_the_ground_else_its_root(tmp_path):
 
 def test_a_frame_with_an_optical_frame_below_it_is_a_camera(tmp_path):
     path = tmp_path / "rig.launch.xml"
-    frames = ("base_link", "eye"), ("eye", "eye_optical"), ("base_link", "ears")
-    path.write_text("<launch>" + "".join(CALL.format(*f, "") for f in frames) + "</launch>")
+    frames = {"eye": "base_link", "eye_optical": "eye", "ears": "base_link"}
+    calls = "".join(CALL.format(parent, name, "") for name, parent in frames.items())
+    path.write_text(f"<launch>{calls}</launch>")
     assert [(s.name, s.kind) for s in ros.read(path).sensors] == [("eye", "camera"), ("ears", None)]
 
 

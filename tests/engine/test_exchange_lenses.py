@@ -11,7 +11,8 @@ import pe_tools as pt
 from pe_core.sensors.camera import BrownConrady, Camera
 
 AXLE = pe.Reference(-1.31, 0.33)
-SIZE = (1920, 1080)
+WIDTH = 1920
+HEIGHT = 1080
 LAUNCH = (
     '<node exec="static_transform_publisher" args="--frame-id base_link --child-frame-id eye"/>'
 )
@@ -41,7 +42,7 @@ BAD_INFO = [
 
 def camera(name, lens):
     pose = pe.Pose.from_degrees((1.5, 0.1, 1.3), (0.3, 2.5, -0.4))
-    return pe.Sensor(name, Camera(f"own {name}", *SIZE, lens=lens), pose)
+    return pe.Sensor(name, Camera(f"own {name}", WIDTH, HEIGHT, lens=lens), pose)
 
 
 def info_of(folder, model, values):
@@ -111,14 +112,13 @@ def test_driveworks_polynomial_of_pixels_is_turned_round(tmp_path):
 def test_driveworks_pinhole_is_bent_as_its_file_says(tmp_path):
     """A ray at (0.3, 0.4) of depth 1: r2 = 0.25, and 1 - 0.29 r2 + 0.08 r2^2 - 0.001 r2^3."""
     scale = 1.0 - 0.29 * 0.25 + 0.08 * 0.0625 - 0.001 * 0.015625
-    ray = np.array([1.0]), np.array([-0.3]), np.array([-0.4])
     for bent in (
         {"distortion": "-0.29 0.08 -0.001"},
         {"k1": "-0.29", "k2": "0.08", "k3": "-0.001"},
     ):
         path = rig_json(tmp_path, fx="1000", fy="1000", Model="pinhole", **bent)
         (eye,) = pt.import_rig(path, reference=AXLE).rig
-        x, y = eye.model.projection.project(*ray)
+        x, y = eye.model.projection.project(np.array([1.0]), np.array([-0.3]), np.array([-0.4]))
         middle = eye.model.projection.cx, eye.model.projection.cy
         assert x[0] - middle[0] == pytest.approx(300.0 * scale)
         assert y[0] - middle[1] == pytest.approx(400.0 * scale)

@@ -220,8 +220,8 @@ def test_a_scan_comes_back_beam_by_beam(low, high, step, tmp_path):
     text = rig_files(rig, "urdf")[0]["rig.urdf"].decode()
     scan = ElementTree.fromstring(text).find(".//horizontal")
     samples = int(scan.findtext("samples"))
-    ends = [math.degrees(float(scan.findtext(f"{end}_angle"))) for end in ("min", "max")]
-    gazebo = np.linspace(*ends, samples)
+    start, end = (math.degrees(float(scan.findtext(f"{name}_angle"))) for name in ("min", "max"))
+    gazebo = np.linspace(start, end, samples)
     ours = azimuths_of(lidar)
     wrapped = np.sort((gazebo - ours[0] + 1e-6) % 360.0 + ours[0] - 1e-6)
     assert wrapped == pytest.approx(ours, abs=1e-6)

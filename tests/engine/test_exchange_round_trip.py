@@ -14,13 +14,16 @@ from pe_tools.exchange import RIG_FORMATS
 
 AXLE = pe.Reference(-1.31, 0.33)
 WITHIN = 1e-6
-SIZE = (1920, 1080)
-PLACE = (929.8429, 930.0592, 972.1794, 508.0057)
+WIDTH = 1920
+HEIGHT = 1080
+PLACE = {"fx": 929.8429, "fy": 930.0592, "cx": 972.1794, "cy": 508.0057}
 LENSES = {
-    "pinhole": Pinhole(*PLACE),
-    "radial": BrownConrady(*PLACE, None, -0.29, 0.08, k3=-0.001),
-    "brown": BrownConrady(*PLACE, None, -0.165, 0.0099, -0.00075, 5.37e-05, 0.01),
-    "rational": BrownConrady(*PLACE, None, 0.3, 0.02, 1e-4, -2e-4, 1e-3, 0.5, 0.04, 2e-3),
+    "pinhole": Pinhole(**PLACE),
+    "radial": BrownConrady(**PLACE, k1=-0.29, k2=0.08, k3=-0.001),
+    "brown": BrownConrady(**PLACE, k1=-0.165, k2=0.0099, p1=-0.00075, p2=5.37e-05, k3=0.01),
+    "rational": BrownConrady(
+        **PLACE, k1=0.3, k2=0.02, p1=1e-4, p2=-2e-4, k3=1e-3, k4=0.5, k5=0.04, k6=2e-3
+    ),
     "fisheye": KannalaBrandt(
         fx=500.0, fy=501.0, cx=960.5, cy=540.5, fov=None, k1=0.02, k2=-0.003, k3=1e-4, k4=-1e-5
     ),
@@ -75,7 +78,9 @@ OWN_RADAR = catalog.from_table("own", catalog.to_table(catalog.load("Delphi ESR"
 def random_rig(name, rng):
     """Each lens, LiDAR and radar that the format has a kind for, anywhere and turned anyhow. KITTI
     has one LiDAR and up to four cameras that look as one."""
-    models = {f"cam_{key}": Camera(f"own {key}", *SIZE, lens=lens) for key, lens in LENSES.items()}
+    models = {
+        f"cam_{key}": Camera(f"own {key}", WIDTH, HEIGHT, lens=lens) for key, lens in LENSES.items()
+    }
     models |= {"cam_near": NEAR, "lidar_known": catalog.load("Velodyne VLP-16 Puck")}
     if name == "kitti":
         keys = ("lidar_known", "cam_pinhole", "cam_brown", "cam_angles")
@@ -151,7 +156,7 @@ def test_a_rig_comes_back(name, seed, tmp_path):
                 assert figures_of(other) == pytest.approx(figures_of(own), abs=WITHIN)
             assert on_axis(other) == pytest.approx(on_axis(own), abs=WITHIN)
             if name not in ("nuscenes", "kitti"):  # these have no sizes
-                assert (again.width, again.height) == SIZE
+                assert (again.width, again.height) == (WIDTH, HEIGHT)
         elif key == "known" and "model" in holds and ours.kind in ("lidar", *holds & {"table"}):
             assert again.name == model.name
             assert catalog.to_table(again) == catalog.to_table(model)

@@ -21,8 +21,8 @@ PAGE = (Path(pe.__file__).parent.parent / "docs" / "explain.md").read_text("utf-
 
 def saved(folder, name, rig=None, **changes):
     """A small study in a file of its own."""
-    rig = rig or pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
-    study = pe.Study(rig, shapes.box_car(), shapes.small_space())
+    rig = rig or shapes.roof_rig(16, 180)
+    study = shapes.car_study(rig)
     pt.export_study(replace(study, **changes), folder / name)
     return str(folder / name)
 

@@ -20,7 +20,7 @@ def study(evaluations):
     settings = pe.Search(
         free={"roof": ("z", "pitch")}, limits=limits, samples=2048, evaluations=evaluations
     )
-    return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=settings, samples=2048)
+    return shapes.car_study(rig, search=settings, samples=2048)
 
 
 @pytest.fixture(scope="module")

@@ -33,7 +33,7 @@ def study(objectives=("entropy", "height"), points=4, **more):
     limits = {name: {"z": (1.6, 2.6)} for name in free}
     search = pe.Search(free, limits, samples=1024, evaluations=320, goals=goals)
     given = {"search": search, "samples": 1024} | more
-    return pe.Study(pe.Rig(sensors), shapes.box_car(), shapes.small_space(), **given)
+    return shapes.car_study(pe.Rig(sensors), **given)
 
 
 @pytest.fixture(scope="module")

@@ -29,7 +29,7 @@ def study(goals=None, names=("roof",), **search):
     goals = goals or Goals()
     given = {"free": dict.fromkeys(names, ("z", "pitch")), "evaluations": 60} | search
     settings = pe.Search(samples=1024, goals=goals, **given)
-    return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=settings, samples=1024)
+    return shapes.car_study(rig, search=settings, samples=1024)
 
 
 def finished(given, **more):
@@ -64,10 +64,10 @@ def test_limits_are_set_by_key_or_option(tmp_path):
         (["limits.ap_far.kept=true"], {"ap_far": 0.3}),
         ([], {}),
     ):
-        assert typed_study(path, *options).limits == replace(limits, **change)
+        assert typed_study(path, options).limits == replace(limits, **change)
     for option in ("limits.ap_far=2", "limits.margin=1", "limits.reach=far"):
         with pytest.raises(pe.InputError, match=option.partition("=")[0]):
-            typed_study(path, option)
+            typed_study(path, [option])
     path.write_text(path.read_text().replace("blind_ground =", "blind_grund ="))
     with pytest.raises(pe.InputError, match=r"limits.*blind_ground.*blind_grund|blind_grund"):
         pe.load_study(path)
@@ -164,7 +164,7 @@ def journal_of(outcome, count):
     return pe.search.Journal(outcome.evaluated[:count])
 
 
-def typed_study(path, *changes):
+def typed_study(path, changes):
     """The study that `pe optimize` searches with changes by ``--set``."""
     line = ["optimize", str(path), *(word for each in changes for word in ("--set", each))]
     args = parser().parse_args(line)
@@ -177,15 +177,17 @@ def test_options_of_the_command_line_are_the_goals_of_the_study(tmp_path):
     pe.save_study(given, path)
     changed = typed_study(
         path,
-        "limits.entropy=-1.5",
-        "optimize.stop.gain=0.01",
-        'optimize.fixed=["roof"]',
-        'optimize.front.objectives=["entropy", "height"]',
+        [
+            "limits.entropy=-1.5",
+            "optimize.stop.gain=0.01",
+            'optimize.fixed=["roof"]',
+            'optimize.front.objectives=["entropy", "height"]',
+        ],
     )
     goals = changed.search.goals
     assert changed.limits == pe.Limits(entropy=-1.5)
     assert (goals.stop.gain, goals.stop.seconds) == (0.01, None)
     assert goals.fixed == ("roof",) and goals.front.objectives == ("entropy", "height")
-    assert typed_study(path).search.goals == given.search.goals
+    assert typed_study(path, []).search.goals == given.search.goals
     args = parser().parse_args(["optimize", str(path), "--start", str(path)])
     assert [start.name for start in args.source.study(args).search.goals.starts] == ["other"]

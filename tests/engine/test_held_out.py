@@ -33,9 +33,7 @@ def study(**search):
     )
     free = dict.fromkeys(("left", "right"), ("z", "roll", "pitch"))
     given = {"free": free, "samples": SAMPLES, "evaluations": 250} | search
-    return pe.Study(
-        rig, shapes.box_car(), shapes.small_space(), samples=SAMPLES, search=pe.Search(**given)
-    )
+    return shapes.car_study(rig, samples=SAMPLES, search=pe.Search(**given))
 
 
 @pytest.fixture(scope="module")

@@ -24,7 +24,7 @@ BAD = [
 ]
 
 
-def one_triangle(*corners):
+def one_triangle(corners):
     """A vehicle of one triangle."""
     return pe.Vehicle(np.array([corners], dtype=float), part_names=("skin",))
 
@@ -52,7 +52,7 @@ def test_a_housing_on_the_skin_stands_on_it():
 def test_a_cylinder_is_round_and_a_box_is_not():
     """A skin across the corner at 45 degrees: 0.12 m from the axis."""
     far = 0.12 * math.sqrt(2.0)
-    across = one_triangle((far, 0.0, -5.0), (0.0, far, -5.0), (far / 2, far / 2, 5.0))
+    across = one_triangle([(far, 0.0, -5.0), (0.0, far, -5.0), (far / 2, far / 2, 5.0)])
     square = Housing("box", (0.2, 0.2, 0.3), (0.0, 0.0, 0.1), "a test")
     assert is_cut(square, across)
     assert not is_cut(CAN, across)
@@ -60,8 +60,8 @@ def test_a_cylinder_is_round_and_a_box_is_not():
 
 def test_the_optical_centre_is_the_sensor_s_place():
     """CRATE looks ahead from the middle of its front: behind it is its body, ahead nothing."""
-    ahead = one_triangle((0.01, -1, -1), (0.01, 1, -1), (0.01, 0, 1))
-    behind = one_triangle((-0.19, -1, -1), (-0.19, 1, -1), (-0.19, 0, 1))
+    ahead = one_triangle([(0.01, -1, -1), (0.01, 1, -1), (0.01, 0, 1)])
+    behind = one_triangle([(-0.19, -1, -1), (-0.19, 1, -1), (-0.19, 0, 1)])
     assert not is_cut(CRATE, ahead)
     assert is_cut(CRATE, behind)
     turned = pe.Pose.from_degrees((0.0, 0.0, 0.0), (0.0, 0.0, 180.0))
@@ -87,7 +87,7 @@ def test_a_triangle_meets_it_when_a_point_of_the_triangle_is_inside(housing):
         points = (weights @ corners - np.array(pose.position)) @ pose.ground_from_sensor
         depth = depths(housing, points - housing.center)
         spacing = np.ptp(corners, axis=0).max() * 2.0 / steps
-        found = is_cut(housing, one_triangle(*corners), pose)
+        found = is_cut(housing, one_triangle(corners), pose)
         if depth.max() > 1e-6:
             assert found, number
         elif depth.max() < -spacing:

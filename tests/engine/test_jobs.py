@@ -23,7 +23,7 @@ def study(candidates=6, position=(-0.43, 0.0, 1.8)):
         schedule=pe.Schedule(candidates=candidates),
         method="random",
     )
-    return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search)
+    return shapes.car_study(rig, search=search)
 
 
 def finished(job):

@@ -197,8 +197,10 @@ def counts_of(*sensors, space=SMALL):
     ],
 )
 def test_several_lidars_add_up_and_hold_at_the_maximum(positions):
-    places = [(p, (0.0, 5.0 * k, 10.0)) for k, p in enumerate(positions)]
-    sensors = [shapes.lidar_on_roof(None, *place) for place in places]
+    sensors = [
+        shapes.lidar_on_roof(position=position, rotation=(0.0, 5.0 * number, 10.0))
+        for number, position in enumerate(positions)
+    ]
     alone = [counts_of(s).astype(int) for s in sensors]
     assert counts_of(*sensors).tolist() == np.minimum(sum(alone), MAX_COUNT).tolist()
     assert max(counts.max() for counts in alone) == MAX_COUNT

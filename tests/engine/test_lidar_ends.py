@@ -14,7 +14,7 @@ from tests.engine import shapes
 
 CAR = shapes.box_car(3)
 SPACE = shapes.small_space()
-POSES = {
+PLACES = {
     "roof": ((-0.4, 0.1, 1.7), (0.0, 0.0, 0.0)),
     "roof, turned": ((-0.4, 0.1, 1.7), (0.0, 0.0, 33.3)),
     "tilted": ((-0.43, 0.0, 1.8), (7.0, -11.0, 20.0)),
@@ -25,6 +25,7 @@ POSES = {
     "upside down": ((0.1, -2.0, 1.0), (180.0, 3.0, 0.0)),
     "afar": ((-15.0, 6.0, 3.0), (0.0, 8.0, -20.0)),
 }
+POSES = {name: pe.Pose.from_degrees(at, turn) for name, (at, turn) in PLACES.items()}
 
 
 def soup(seed):
@@ -37,7 +38,7 @@ def soup(seed):
 
 def lidar(pose, model=None):
     model = model or shapes.small_lidar(24, 360)
-    return pe.Sensor("lidar", model, pe.Pose.from_degrees(*pose))
+    return pe.Sensor("lidar", model, pose)
 
 
 def lazy(sensor, vehicle):

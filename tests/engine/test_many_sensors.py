@@ -13,8 +13,9 @@ SAMPLES = 2048
 CAMERA = pe.Camera("small", 320, 240, hfov=np.radians(60.0))
 
 
-def ring(count, lidar_group="lidar", camera_group=None):
+def ring(count, groups=("lidar", None)):
     """LiDARs and cameras round the roof, one of each a bearing."""
+    lidar_group, camera_group = groups
     sensors = []
     for k in range(count):
         angle = 2.0 * np.pi * k / count
@@ -46,7 +47,7 @@ def evaluator(**model):
 )
 def test_what_a_sensor_adds_is_the_rig_s_entropy_without_it_less_the_rig_s(groups, model):
     ours = evaluator(**model)
-    rig = ring(3, *groups)
+    rig = ring(3, groups)
     score = ours.score(rig)
     for sensor in rig:
         rest = pe.Rig([other for other in rig if other.name != sensor.name])

@@ -1,6 +1,7 @@
 """Measurements of single voxels and beams worked by hand, and what sensors take and refuse."""
 
 import math
+from itertools import starmap
 
 import numpy as np
 import pytest
@@ -154,7 +155,7 @@ def test_beams_ask_which_part_stops_them():
         "back": ((-5.1, -1, -1), (-5, 1, 1)),
         "more": ((-2, -6.1, -1), (2, -6, 1)),
     }
-    triangles = [shapes.box(*ends) for ends in walls.values()]
+    triangles = list(starmap(shapes.box, walls.values()))
     vehicle = pe.Vehicle(np.concatenate(triangles), np.repeat(range(4), 12), tuple(walls))
     field = pe.beam_field(at(lidar((0.0, 0.1), max_range=7.0)), vehicle)
     assert field.occluded_by.tolist() == [0, -1, 2, 3] * 2

@@ -7,6 +7,7 @@ import pe_core as pe
 from pe_core.scene.mesh import AXIS_NAMES, BodyShape
 from pe_core.scene.vehicle_description import up_of
 from tests.engine.mesh_files import glb_file, gltf, obj_bytes, read, stl_binary
+from tests.engine.shapes import BOX_FACES
 
 # A car in the ground frame: a body, a cabin nearer to its rear, a nose. No side is like another.
 BOXES = {
@@ -22,7 +23,6 @@ TURNS = {  # of (forward, left, up): what a program's axes x, y, z are
     "Z forward, Y up": (lambda x, y, z: (y, z, x)),
     "-Y forward, Z up": (lambda x, y, z: (y, -x, z)),
 }
-QUADS = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 CORNER = np.vstack([np.zeros(3), np.eye(3)])[[(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]]
 """The triangles of a cube's corner: none of its halves is like the other."""
 PROFILES = {
@@ -44,7 +44,7 @@ def corners(box):
 def car(turn, names=tuple(BOXES)):
     """Points (N, 3) of the boxes in a program's axes, and lists of faces by name."""
     points = np.concatenate([corners(BOXES[name]) for name in names])
-    faces = {name: np.array(QUADS) + 8 * k for k, name in enumerate(names)}
+    faces = {name: np.array(BOX_FACES) + 8 * k for k, name in enumerate(names)}
     return np.stack(TURNS[turn](*points.T), axis=1), faces
 
 
@@ -177,7 +177,7 @@ def outline_car(heights, width):
         for k, height in enumerate(heights)
     ]
     points = np.concatenate(boxes)
-    quads = np.concatenate([np.array(QUADS) + 8 * k for k in range(len(boxes))])
+    quads = np.concatenate([np.array(BOX_FACES) + 8 * k for k in range(len(boxes))])
     return obj_bytes(points, quads)
 
 

@@ -29,7 +29,7 @@ def fingerprint(steps):
 
 def on_the_box_car():
     """Rig, search space and evaluator of one LiDAR on a box."""
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
+    rig = shapes.roof_rig(16, 180)
     car = shapes.box_car()
     evaluator = pe.Evaluator(SPACE, pe.Prior.road(), car, samples=4096)
     return evaluator, rig, pe.SearchSpace.on_vehicle(rig, car)

@@ -5,7 +5,6 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.search import Parametrization
 from pe_core.study.study_file import study_from_dict
 from tests.engine import mounting, shapes
 from tests.engine.mounting import BASE, CENTER, TOP
@@ -67,8 +66,7 @@ def data(mount):
 
 
 def test_a_sensor_stays_on_the_area_though_the_part_goes_on():
-    rig, space = mounting.space(mounting.can(START), mount={"roof": area_mount()})
-    coding = Parametrization(rig, space)
+    coding = mounting.coded(mounting.can(START), mount={"roof": area_mount()})
     for x in np.linspace(-1.5, 0.8, 7):
         pose = coding.candidate((x, 0.1, TOP, 0.0)).rig["roof"].pose
         assert pose.position[2] == pytest.approx(START[2], abs=1e-5)

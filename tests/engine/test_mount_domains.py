@@ -9,7 +9,7 @@ import pe_core as pe
 from pe_core.search import Parametrization
 from pe_core.search.domains import snap_to_mount, standoff_point
 from tests.engine import mounting, shapes
-from tests.engine.mounting import BASE, CENTER, ON_ROOF, RADIUS, TOP, can, roof
+from tests.engine.mounting import BASE, CENTER, ON_ROOF, RADIUS, TOP, can, coded, roof
 
 RNG_SEED = 3
 LEVEL = ("x", "y", "z")
@@ -25,10 +25,6 @@ SLAB = (
     shapes.box((-1.2, -0.7, 1.3), (0.8, 0.7, 1.4)),
 )
 """A body, and a roof 0.1 m thick that floats 0.1 m above it."""
-
-
-def coded(*sensors, **options):
-    return Parametrization(*mounting.space(*sensors, **options))
 
 
 def drawn(coding, count=200):
@@ -225,9 +221,9 @@ def test_a_slope_says_which_faces_an_upright_sensor_may_have():
     for slope in (60.0, 89.0):
         mount = pe.SurfaceMount(["front"], 0.04, max_slope=np.radians(slope))
         with pytest.raises(pe.InputError, match=f"max_slope: .* {slope:g} deg"):
-            Parametrization(*mounting.space(start, mount={"front": mount}))
+            coded(start, mount={"front": mount})
     mount = pe.SurfaceMount(["front"], 0.04, max_slope=np.radians(90.0))
-    coding = Parametrization(*mounting.space(start, mount={"front": mount}))
+    coding = coded(start, mount={"front": mount})
     pose = coding.candidate((2.3, 0.3, 0.5, 0.0)).rig["front"].pose
     assert pose.position == pytest.approx((2.34, 0.3, 0.5)) and pose.rpy == (0.0, 0.0, 0.0)
     for turned in ("normal", "facing"):  # such a sensor turns with the face

@@ -7,7 +7,6 @@ import pytest
 
 import pe_core as pe
 import pe_tools as pt
-from pe_core.search import Parametrization
 from pe_core.study.study_file import study_from_dict
 from tests.engine import mounting
 from tests.engine.mounting import CAN, ON_ROOF, TOP
@@ -34,17 +33,17 @@ def sensor(name="roof", position=ON_ROOF, **more):
     return {"name": name, "model": CAN, "position": list(position), **more}
 
 
-def read(folder, *sensors, **optimize):
+def read(folder, sensors, **optimize):
     limits = optimize.pop("limits", {})
-    data = {"vehicle": {"mesh": "car.npz"}, "sensor": list(sensors), "optimize": optimize}
+    data = {"vehicle": {"mesh": "car.npz"}, "sensor": sensors, "optimize": optimize}
     data["limits"] = limits
     return study_from_dict(data, "study.toml", folder)
 
 
-def line(folder, *sensors, **optimize):
+def line(folder, sensors, **optimize):
     """The one line that a study is refused with."""
     with pytest.raises(pe.InputError) as error:
-        read(folder, *sensors, **optimize)
+        read(folder, sensors, **optimize)
     told = str(error.value)
     assert "\n" not in told and told.startswith("study.toml: ")
     return told.removeprefix("study.toml: ")
@@ -115,7 +114,7 @@ BAD = [
 
 
 def test_what_is_wrong_is_refused(folder):
-    refused = wrongly_refused(lambda v: read(folder, *v[0], **v[1]), BAD, "study.toml")
+    refused = wrongly_refused(lambda v: read(folder, v[0], **v[1]), BAD, "study.toml")
     assert refused == []
 
 
@@ -130,7 +129,7 @@ def test_a_part_without_faces_is_no_surface():
     vehicle = pe.Vehicle(car.triangles, car.parts, (*car.part_names, "gone"))
     mount = {"roof": pe.SurfaceMount(["gone"])}
     with pytest.raises(pe.InputError, match=r"parts: .* none in gone"):
-        Parametrization(*mounting.space(mounting.can(), mount=mount, vehicle=vehicle))
+        mounting.coded(mounting.can(), mount=mount, vehicle=vehicle)
 
 
 def test_a_vehicle_with_no_symmetry_plane_has_no_pairs():
@@ -146,6 +145,6 @@ def test_a_vehicle_with_no_symmetry_plane_has_no_pairs():
 def test_models_of_one_s_own_are_alike_by_their_figures(folder):
     model = {"kind": "camera", "width": 640, "height": 480, "hfov_deg": 60}
     pair = [LEFT | {"model": model}, RIGHT | {"model": dict(model)}]
-    assert read(folder, *pair, **PAIR).search.mounting.pairs
+    assert read(folder, pair, **PAIR).search.mounting.pairs
     pair[1]["model"] |= {"hfov_deg": 61}
-    assert "expected sensors of one model" in line(folder, *pair, **PAIR)
+    assert "expected sensors of one model" in line(folder, pair, **PAIR)

@@ -9,7 +9,7 @@ import pe_core as pe
 from pe_core.geometry.overlap import hull_box, overlaps
 from pe_core.scene.rig import Housing, hull_of
 from pe_core.scene.vehicle import is_enclosed, is_open
-from pe_core.search import Parametrization, feasible_start
+from pe_core.search import feasible_start
 from tests.engine import mounting, shapes
 from tests.engine.mounting import BASE, CENTER, HEIGHT, ON_ROOF, RADIUS, TOP, can, roof
 
@@ -19,7 +19,7 @@ FLYING = 2.5
 
 def broken(*sensors, **options):
     """The rules that sensors break where they are."""
-    coding = Parametrization(*mounting.space(*sensors, **options))
+    coding = mounting.coded(*sensors, **options)
     return sorted(coding.broken(coding.start.rig))
 
 
@@ -47,9 +47,9 @@ def test_greatest_width_is_of_the_housing_s_side_on_either_side():
 
 
 def test_least_distance_is_between_any_two_sensors():
-    sensors = [can((x, 0, FLYING), f"s{x}") for x in (0, 3, 4)]
-    assert limited(*sensors, distance=1.0) == []
-    assert limited(*sensors, distance=1.001) == ["limits.distance of 's3' and 's4'"]
+    first, middle, last = (can((x, 0, FLYING), f"s{x}") for x in (0, 3, 4))
+    assert limited(first, middle, last, distance=1.0) == []
+    assert limited(first, middle, last, distance=1.001) == ["limits.distance of 's3' and 's4'"]
 
 
 def test_a_no_go_box_takes_the_whole_housing_and_an_axis_that_is_not_said_has_no_ends():
@@ -92,9 +92,10 @@ def test_on_a_surface_the_housing_is_kept_clear_without_being_asked_for():
 
 def test_housings_keep_out_of_each_other_where_that_is_asked_for():
     for gap, told in ((1.03, []), (0.97, ["clear housings of 'a' and 'b'"])):
-        two = can((0, 0, FLYING), "a"), can((2 * gap * RADIUS, 0, FLYING), "b")
-        assert limited(*two) == []
-        assert limited(*two, clear_housings=True) == told
+        one = can((0, 0, FLYING), "a")
+        other = can((2 * gap * RADIUS, 0, FLYING), "b")
+        assert limited(one, other) == []
+        assert limited(one, other, clear_housings=True) == told
 
 
 def test_a_surface_that_is_hollow_keeps_its_stand_off_all_round():
@@ -104,9 +105,7 @@ def test_a_surface_that_is_hollow_keeps_its_stand_off_all_round():
     vehicle = pe.Vehicle(np.concatenate([floor, wall]))
     eye = shapes.camera(position=(0.0, 0.0, 0.4), name="eye")
     mount = {"eye": pe.SurfaceMount(["vehicle"], 0.3)}
-    coding = Parametrization(
-        *mounting.space(eye, mount=mount, free=("x", "y", "z"), vehicle=vehicle)
-    )
+    coding = mounting.coded(eye, mount=mount, free=("x", "y", "z"), vehicle=vehicle)
     near, far = (coding.candidate([x, 0.0, 0.1]).rig for x in (0.8, 0.5))
     assert coding.broken(near) == {"standoff of 'eye'"}
     assert coding.broken(far) == set()
@@ -126,9 +125,7 @@ def test_no_two_sensors_share_a_slot():
 
 
 def test_bounds_of_a_sensor_on_a_surface_hold_where_the_surface_leads():
-    coding = Parametrization(
-        *mounting.space(can(), mount={"roof": roof()}, limits={"roof": {"x": (-0.5, 0.0)}})
-    )
+    coding = mounting.coded(can(), mount={"roof": roof()}, limits={"roof": {"x": (-0.5, 0.0)}})
     for x in (-0.6, -0.4, -0.1, 0.1):
         broken = set() if -0.5 < x < 0.0 else {"bounds of x of 'roof'"}
         assert coding.broken(coding.candidate([x, 0.0, TOP, 0.0]).rig) == broken
@@ -192,7 +189,7 @@ def test_what_is_open_at_first_sight_is_not_enclosed(place, open_):
 
 def test_a_start_that_breaks_a_rule_gives_way_to_a_placement_near_it():
     limits = pe.Constraints(no_go=[pe.NoGo("hatch", x=(-0.6, -0.2))])
-    coding = Parametrization(*mounting.space(can(), mount={"roof": roof()}, constraints=limits))
+    coding = mounting.coded(can(), mount={"roof": roof()}, constraints=limits)
     assert not coding.allowed(coding.start.rig)
     found = feasible_start(coding)
     assert coding.allowed(found.rig)
@@ -212,7 +209,7 @@ def test_rules_that_exclude_each_other_are_named_and_no_others(few_tries):
     limits = {"height": TOP + BASE + HEIGHT - 0.01, "width": 3.0, "distance": 0.1}
     options = {"mount": {"roof": roof()}, "figures": limits, "free": ()}
     with pytest.raises(pe.InputError) as error:
-        feasible_start(Parametrization(*mounting.space(can(), other, **options)))
+        feasible_start(mounting.coded(can(), other, **options))
     assert str(error.value) == (
         "optimize: limits.height of 'roof' leaves no feasible placement: expected a placement that "
         "breaks no rule, found none in 201 tried"

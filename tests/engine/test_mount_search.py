@@ -84,7 +84,7 @@ def test_slots_are_all_tried_and_the_best_is_found():
 
 def study(**limits):
     """A small LiDAR in the air over the box car; up is free."""
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
+    rig = shapes.roof_rig(16, 180)
     search = pe.Search(
         {"roof": ("z",)}, samples=1024, schedule=pe.Schedule(candidates=3), method="random"
     )

@@ -28,7 +28,7 @@ VEHICLES_M = {
 """Length, width and height."""
 
 
-def new(mesh, study, *more):
+def new(mesh, study, more=()):
     return main(["new", str(mesh), "-o", str(study), *more])
 
 
@@ -146,7 +146,7 @@ def test_what_cannot_be_is_one_line_and_leaves_no_file(name, more, words, tmp_pa
     (tmp_path / "box.obj").write_bytes(obj_bytes())
     (tmp_path / "dot.obj").write_bytes(obj_bytes(np.ones((8, 3))))
     before = {path.name for path in tmp_path.iterdir()}
-    assert new(tmp_path / name, tmp_path / "study.toml", *more) == 1
+    assert new(tmp_path / name, tmp_path / "study.toml", more) == 1
     (line,) = capsys.readouterr().err.splitlines()[-1:]
     assert line.startswith("pe: ") and words in line
     assert {path.name for path in tmp_path.iterdir()} == before

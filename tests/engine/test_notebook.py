@@ -1,5 +1,7 @@
 """What notebooks use: priors and vehicles of their own, functions as objectives, short values."""
 
+from operator import methodcaller
+
 import numpy as np
 import pytest
 import trimesh
@@ -10,6 +12,8 @@ from pe_core.base.notebook import Tabular
 from tests.engine.processes import finished
 from tests.engine.shapes import box_car
 
+html_of = methodcaller("_repr_html_")
+"""A value as a notebook asks for it."""
 SPACE = pe.PerceptionSpace((-10, 10), (-6, 6), (0, 2), 0.5)
 LIDAR = pe.catalog.load("Velodyne VLP-16 Puck")
 
@@ -159,7 +163,7 @@ def test_tables_are_html_and_data_frames(values):
         "Outcome",
     }
     for value in tabular:
-        html = value._repr_html_()
+        html = html_of(value)
         frame = value.to_pandas()
         assert html.count("<tr>") == len(frame) + 1 and html.count("<table>") == 1
         assert len(html) < 20_000
@@ -171,7 +175,7 @@ def test_tables_are_html_and_data_frames(values):
     assert frame.loc[("sensor", "roof"), "occluded"] == lost.occluded / lost.beams
     named = study().rig.with_poses([pe.Pose((1, 2, 3))]).to_pandas()
     assert named.loc[0, ["x [m]", "y [m]", "z [m]"]].tolist() == [1, 2, 3]
-    assert "&lt;b&gt;" in pe.Rig([pe.Sensor("<b>", LIDAR)])._repr_html_()
+    assert "&lt;b&gt;" in html_of(pe.Rig([pe.Sensor("<b>", LIDAR)]))
 
 
 def test_plots_draw_on_given_axes_and_refuse_what_is_none():

@@ -1,6 +1,5 @@
 """Results are written over no file that we did not write, and the set of a run is one."""
 
-import numpy as np
 import pytest
 
 import pe_core as pe
@@ -18,12 +17,11 @@ SHORT = ("--method", "random", "--set", "optimize.candidates=2", "--set", "optim
 def a_study(boxes=True, x=-0.43):
     rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180), (x, 0.0, 1.8))])
     prior = pe.Prior.from_boxes(shapes_boxes()) if boxes else pe.Prior.road()
-    return pe.Study(rig, shapes.box_car(), shapes.small_space(), prior)
+    return shapes.car_study(rig, prior=prior)
 
 
 def shapes_boxes():
-    columns = [np.array([v]) for v in (20.0, 3.0, 0.8, 4.0, 2.0, 1.6, 0.5)]
-    return pe.Boxes(np.array(["car"]), *columns)
+    return pe.Boxes.of([("car", 20.0, 3.0, 0.8, 4.0, 2.0, 1.6, 0.5)])
 
 
 @pytest.fixture

@@ -55,9 +55,9 @@ FILES = "car.toml", "car.npz", "rig.csv", "scenario.toml", "info.param.yaml"
 def folder(tmp_path, monkeypatch, capsys):
     """Return a folder with a file of each kind that verbs read; it is the current one."""
     monkeypatch.chdir(tmp_path)
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
+    rig = shapes.roof_rig(16, 180)
     search = pe.Search({"roof": ("x",)}, {}, 3, 2048)
-    study = pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search, samples=1024)
+    study = shapes.car_study(rig, search=search, samples=1024)
     pt.export_study(study, "car.toml")
     assert main(["export", "car.toml", "--to", "csv", "-o", "rig.csv"]) == 0
     Path("scenario.toml").write_text(SCENARIO)

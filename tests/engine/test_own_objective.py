@@ -33,11 +33,9 @@ class Bare:
 
 
 def study(**search):
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180), (-0.43, 0.0, 1.8))])
     options = {"samples": 2048, "seed": 4, "method": "random", "evaluations": 40}
-    free = {"roof": ("x", "z")}
-    search = pe.Search(free=free, **{**options, **search})
-    return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search)
+    own = pe.Search({"roof": ("x", "z")}, **options | search)
+    return shapes.car_study(shapes.roof_rig(), search=own)
 
 
 def searched(objective, **search):

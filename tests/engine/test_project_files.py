@@ -169,8 +169,8 @@ def test_the_table_of_a_fresh_machine_tells_tests_and_skips():
         "FAILED tests/engine/test_x.py::test_y - assert 1 == 2\n"
         "=== 1 failed, 293 passed, 6 skipped in 100.10s (0:01:40) ===\n"
     )
-    demo = fresh_machine.Step("make demo", 60.0, 500, "", False)
-    tests = fresh_machine.Step("make test", 100.0, 20, printed, True)
+    demo = fresh_machine.Step("make demo", 60.0, 500, printed="", failed=False)
+    tests = fresh_machine.Step("make test", 100.0, 20, printed=printed, failed=True)
     told = fresh_machine.report({"bookworm": [demo], "trixie": [demo, tests]})
     assert "| `make test` |" in told and "failed**" in told
     rows = [line[2:] for line in told.splitlines() if line.startswith("- ")]

@@ -102,8 +102,8 @@ def other_nudges(turned):
     """
     before = [nudge.copy() for nudge in NUDGES]
     try:
-        LIDAR_NUDGE[:] = turned(*LIDAR_NUDGE)
-        CAMERA_NUDGE[:] = np.abs(turned(*CAMERA_NUDGE))
+        LIDAR_NUDGE[:] = turned(LIDAR_NUDGE)
+        CAMERA_NUDGE[:] = np.abs(turned(CAMERA_NUDGE))
         yield
     finally:
         for nudge, kept in zip(NUDGES, before, strict=True):
@@ -118,10 +118,10 @@ def test_round_places_mirrored_and_turned(number):
     """
     scene = round_scene(number)
     found = on_grid(scene)
-    with other_nudges(lambda x, y, z: (x, -y, z)):
+    with other_nudges(lambda nudge: nudge * [1, -1, 1]):
         mirrored = on_grid(scene.mirrored(nudge_too=True))
     assert_alike([m[:, ::-1] for m in mirrored], found, SINGLE)
-    with other_nudges(lambda x, y, z: (-y, x, z)):
+    with other_nudges(lambda nudge: nudge[[1, 0, 2]] * [-1, 1, 1]):
         turned = on_grid(scene.quarter_turned())
     assert_alike([m[::-1].transpose(1, 0, 2) for m in turned], found, SINGLE)
 

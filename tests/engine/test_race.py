@@ -134,7 +134,7 @@ def test_processes_race_to_the_same_values(evaluator):
     rigs = list(near(rig, count=12))
     here = evaluate_all(objective, rigs, leader.value, leader=leader)
     with Processes(2) as processes:
-        there = evaluate_all(objective, rigs, leader.value, processes, leader)
+        there = evaluate_all(objective, rigs, leader.value, processes, leader=leader)
     assert here == there
     assert NO_VALUE in here
 

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -101,10 +102,12 @@ def test_points_of_the_region_lose_at_most_what_is_allowed(study, found):
 
 def test_a_cover_has_places_that_are_free_where_bounds_forbid_most(study):
     """Of a robotaxi's body 23 of 24 places were forbidden by the LiDAR's bounds."""
-    given = study.rig, ROOF, study.vehicle, study.search.mounting
-    all_over = search.OwnPlaces(*given, limits=study.limits).covered(24)
+    places = partial(
+        search.OwnPlaces, study.rig, ROOF, study.vehicle, study.search.mounting, limits=study.limits
+    )
+    all_over = places().covered(24)
     bounds = {"x": (0.2, 1.0), "y": (-0.4, 0.4)}
-    bounded = search.OwnPlaces(*given, limits=study.limits, bounds=bounds).covered(24)
+    bounded = places(bounds=bounds).covered(24)
     free = [each for each in bounded if not each.place.reason]
     assert len(all_over) <= 24 and 12 <= len(free) <= 24 < len(bounded)
     for each in free:

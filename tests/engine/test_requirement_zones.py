@@ -1,6 +1,7 @@
 """Planes of a vehicle, samples of zones and their margins, held to figures by hand."""
 
 import math
+from itertools import starmap
 
 import numpy as np
 import pytest
@@ -48,8 +49,8 @@ def nameless(*, welded=False, tyres=True):
     pieces = [shapes.box(low, high)]
     for side in (1.0, -1.0):
         start = np.array([0.6, side * (0.88 if welded else 0.91), 1.0])
-        ends = start, start + np.array([0.2, side * 0.2, 0.15])
-        mirror = shapes.box(np.minimum(*ends), np.maximum(*ends))
+        end = start + np.array([0.2, side * 0.2, 0.15])
+        mirror = shapes.box(np.minimum(start, end), np.maximum(start, end))
         pieces.append(mirror)
         if welded:  # a triangle from a corner of the body to one of the mirror
             near = pieces[0].reshape(-1, 3)[np.argmax(pieces[0].reshape(-1, 3) @ [1, side, 1])]
@@ -89,7 +90,7 @@ def test_features_by_shape_are_told_as_missing_where_they_are_not_clear():
 
 def with_doors(doors, axles=True):
     """A van with more boxes by name, and where its axles are."""
-    boxes = [van().triangles, *(shapes.box(*corners) for corners in doors.values())]
+    boxes = [van().triangles, *starmap(shapes.box, doors.values())]
     parts = np.repeat(np.arange(len(boxes)), [len(b) for b in boxes]).astype(np.int32)
     vehicle = pe.Vehicle(np.concatenate(boxes), parts, ("body", *doors), clearance=0.0)
     return vehicle, pe.Reference(-1.4, 0.3, 2.8) if axles else None

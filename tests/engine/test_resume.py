@@ -50,13 +50,9 @@ main()
 
 
 def a_study(method="random"):
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 90))])
-    schedule = pe.Schedule(candidates=CANDIDATES)
-    more = {"method": method, "evaluations": 90}
-    search = pe.Search(
-        {"roof": ("x", "z", "pitch")}, limits={}, seed=3, samples=1024, schedule=schedule, **more
-    )
-    return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search, samples=1024)
+    more = {"method": method, "evaluations": 90, "schedule": pe.Schedule(candidates=CANDIDATES)}
+    search = shapes.short_search({"roof": ("x", "z", "pitch")}, **more)
+    return shapes.car_study(shapes.roof_rig(16, 90), search=search, samples=1024)
 
 
 @pytest.fixture
@@ -120,7 +116,7 @@ def test_a_journal_of_other_placements_is_refused():
         list(search(other, [Recorder(distance_to({"x": 0.1}))], journal=again))
 
 
-def broken_off(signum, moment, *arguments):
+def broken_off(signum, moment, arguments):
     """Run a search that a signal ends; return the number of placements it had told of."""
     code = ENDING_ITSELF.format(signal=signum.name, moment=moment)
     command = [sys.executable, "-c", code, *map(str, arguments)]
@@ -133,7 +129,7 @@ def test_a_kill_at_any_moment_loses_at_most_a_round(path, tmp_path, out):
     assert main(["optimize", "--no-review", str(path), "-o", str(tmp_path / "whole")]) == 0
     begin = (path, "-o", out)
     for moment in (("told", 20), ("replaced", 2), ("told", 71)):
-        told = broken_off(signal.SIGKILL, moment, "optimize", "--no-review", *begin)
+        told = broken_off(signal.SIGKILL, moment, ["optimize", "--no-review", *begin])
         kept = len(read_search(out).evaluated)
         assert kept >= told - CANDIDATES - 1, "a round, and the candidate that had been evaluated"
         begin = ("--resume", out)

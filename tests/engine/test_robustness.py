@@ -28,7 +28,7 @@ def study(tolerance=OFF, samples=1024, failures=False):
         method="random",
         tolerance=tolerance,
     )
-    return pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search, samples=1024)
+    return shapes.car_study(rig, search=search, samples=1024)
 
 
 @pytest.fixture(scope="module")

@@ -98,12 +98,12 @@ def script_elsewhere(tmp_path_factory):
     return write
 
 
-def run_in(folder, *command):
+def run_in(folder, command):
     """Run a command in a folder; return its status and what it said."""
     env = {name: text for name, text in os.environ.items() if name != "PYTHONSAFEPATH"}
     env["PYTHONDONTWRITEBYTECODE"] = "1"
     options = {"capture_output": True, "text": True, "timeout": HANG_S, "env": env}
-    done = subprocess.run([*map(str, command)], cwd=folder, **options)
+    done = subprocess.run(list(map(str, command)), cwd=folder, **options)
     return done.returncode, done.stdout + done.stderr
 
 
@@ -121,8 +121,8 @@ def test_every_verb_has_a_trap():
 @pytest.mark.parametrize(("begin", "verb"), CALLS)
 def test_no_verb_runs_a_file_of_the_current_folder(begin, verb, trapped):
     if verb == "import":
-        assert run_in(trapped, PE, "export", "car.toml", "-o", "rig.csv")[0] == 0
-    status, said = run_in(trapped, *BEGINNINGS[begin], verb, *VERBS[verb])
+        assert run_in(trapped, [PE, "export", "car.toml", "-o", "rig.csv"])[0] == 0
+    status, said = run_in(trapped, [*BEGINNINGS[begin], verb, *VERBS[verb]])
     assert status in (0, 3), said
     assert sprung(trapped) == []
 
@@ -131,24 +131,24 @@ def test_no_verb_runs_a_file_of_the_current_folder(begin, verb, trapped):
 def test_no_process_runs_a_file_of_the_current_folder(script, trapped, script_elsewhere):
     """Also where the program that starts it was begun in another way; the tracker of semaphores
     starts with the workers."""
-    status, said = run_in(trapped, sys.executable, script_elsewhere(script))
+    status, said = run_in(trapped, [sys.executable, script_elsewhere(script)])
     assert status == 0, said
     assert sprung(trapped) == []
-    run_in(trapped, sys.executable, "-c", "import pickle")
+    run_in(trapped, [sys.executable, "-c", "import pickle"])
     assert sprung(trapped), "the traps work"
 
 
 def test_the_variable_is_as_before_after_a_start(trapped, script_elsewhere):
     """A process that the host starts later is not changed by ours."""
     script = STARTS_WORKERS + "assert 'PYTHONSAFEPATH' not in os.environ\n"
-    status, said = run_in(trapped, sys.executable, script_elsewhere(script))
+    status, said = run_in(trapped, [sys.executable, script_elsewhere(script)])
     assert status == 0, said
 
 
 def test_a_module_that_a_user_names_is_taken_from_there_and_no_other(trapped):
     (trapped / "mine_of_this_test.py").write_text(EXECUTOR)
     named = ["--executor", "mine_of_this_test:pool", "-o", "found"]
-    status, said = run_in(trapped, PE, "optimize", "car.toml", *FEW, *SEARCH, *named)
+    status, said = run_in(trapped, [PE, "optimize", "car.toml", *FEW, *SEARCH, *named])
     assert status == 0, said
     assert sprung(trapped) == []
     assert (trapped / "found" / "result.json").exists()

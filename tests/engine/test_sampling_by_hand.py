@@ -167,7 +167,7 @@ def test_a_voxel_of_two_classes_is_each_s_by_its_share():
 @pytest.mark.parametrize("samples", [0, 2048], ids=["grid", "sampled"])
 def test_a_class_without_any_mass_is_left_out(samples):
     prior = pe.Prior.road([pe.Focus(0.0, classes=("truck", "cone"))])
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
+    rig = shapes.roof_rig()
     score = pe.Evaluator(shapes.small_space(), prior, samples=samples).score(rig)
     assert list(score.per_class) == ["car", "pedestrian", "cyclist"]
     assert sum(part.share for part in score.per_class.values()) == pytest.approx(1.0)
@@ -177,7 +177,7 @@ def test_a_class_without_any_mass_is_left_out(samples):
 def test_a_zone_without_any_mass_is_left_out(samples):
     """A space ahead on the left, nearer than 40 m."""
     space = pe.PerceptionSpace((12.0, 20.0), (2.0, 8.0), (0.0, 2.0), 1.0)
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
+    rig = shapes.roof_rig()
     score = pe.Evaluator(space, pe.Prior.road(), samples=samples).score(rig)
     assert list(score.per_zone) == ["front", "left", "mid"]
     assert all(part.share == 1.0 for part in score.per_zone.values())

@@ -9,15 +9,10 @@ import pytest
 import pe_core as pe
 from pe_tools.outputs import scene_files
 
-from .shapes import box_car, camera, lidar_on_roof, small_lidar
+from .shapes import box_car, tilted_rig
 
 OURS_FROM_GLTF = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
-RIG = pe.Rig(
-    [
-        lidar_on_roof(small_lidar(), rotation=(4.0, -7.0, 100.0)),
-        camera(70.0, position=(1.0, 0.5, 1.2), rotation=(5.0, 20.0, -130.0), name="eye"),
-    ]
-)
+RIG = tilted_rig()
 
 
 def document_of(data):

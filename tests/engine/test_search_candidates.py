@@ -19,19 +19,19 @@ ROUNDED_DEG = 0.5e-4
 """What rounding a placement to 0.01 mm and 0.0001 degrees may add."""
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 WIDE = dict.fromkeys("xyz", (-50.0, 50.0)) | dict.fromkeys(("roll", "pitch", "yaw"), (-9.0, 9.0))
-START = (0.3, -0.2, 1.9), (2.0, -3.0, 40.0)
+START = pe.Pose.from_degrees((0.3, -0.2, 1.9), (2.0, -3.0, 40.0))
 
 
-def rig_of(*names):
+def rig_of(names):
     model = shapes.small_lidar(2, 4)
-    return pe.Rig([pe.Sensor(name, model, pe.Pose.from_degrees(*START)) for name in names])
+    return pe.Rig([pe.Sensor(name, model, START) for name in names])
 
 
 def searched(landscape, bounds, rig=None, seed=0, **schedule):
     """The recorder and the steps of a whole search."""
     recorder = Recorder(landscape)
     schedule = pe.Schedule(**({"candidates": 40} | schedule))
-    rig = rig or rig_of(*bounds)
+    rig = rig or rig_of(bounds)
     steps = list(
         pe.optimize(recorder, rig, pe.SearchSpace(bounds), seed, schedule=schedule, method="random")
     )
@@ -69,15 +69,15 @@ def test_a_round_s_centre_stays_while_better_placements_are_found_in_it():
 def test_candidates_are_the_documented_stream_of_uniform_numbers():
     """One number in [-1, 1) a free axis, sensors in the rig's order, axes in the order of AXES."""
     bounds = {"b": {"yaw": (-9.0, 9.0), "z": (0.0, 9.0)}, "a": {"pitch": (-9.0, 9.0)}}
-    rig = rig_of("a", "fixed", "b")
+    rig = rig_of(["a", "fixed", "b"])
     recorder, steps = searched(flat, bounds, rig, seed=5, candidates=20)
     rng = np.random.default_rng(5)
-    position, (roll, pitch, yaw) = START
+    roll, pitch, yaw = START.rotation_deg
     for number, (metres, degrees) in enumerate(zip(METRES, DEGREES, strict=True)):
         for k in range(1 + 20 * number, 21 + 20 * number):
             first, second, third = (rng.uniform(-1.0, 1.0) for _ in range(3))
             own = recorder.rigs[k]
-            assert own["a"].pose.position == position
+            assert own["a"].pose.position == START.position
             assert own["a"].pose.rotation_deg == pytest.approx(
                 (roll, pitch + degrees * first, yaw), abs=ROUNDED_DEG * 1.001
             )
@@ -117,7 +117,7 @@ def test_a_candidate_has_to_be_below_the_best_so_far():
 def test_where_a_sensor_may_go_when_nobody_says():
     """With a vehicle its outline, from 0.2 m above ground to 0.75 m above its top; without one
     1 m from the start; angles all round, pitch from straight up to straight down."""
-    rig = rig_of("a")
+    rig = rig_of(["a"])
     pi = math.pi
     on_car = pe.SearchSpace.on_vehicle(rig, shapes.box_car(), AXES).bounds["a"]
     turns = {"roll": (-pi, pi), "pitch": (-pi / 2, pi / 2), "yaw": (-pi, pi)}
@@ -131,15 +131,15 @@ def test_where_a_sensor_may_go_when_nobody_says():
 
 @pytest.mark.parametrize(
     ("axis", "start", "rounding"),
-    [("x", START[0][0], 0.5e-5), ("pitch", math.radians(START[1][1]), math.radians(0.5e-4))],
+    [("x", START.position[0], 0.5e-5), ("pitch", START.rpy[1], math.radians(0.5e-4))],
 )
 def test_a_start_may_lie_beyond_its_bounds_by_what_rounding_does(axis, start, rounding):
     """0.5 of 0.01 mm and of 0.0001 degrees: a search leaves placements there."""
     for low, high in ((start + 0.98 * rounding, 5.0), (-5.0, start - 0.98 * rounding)):
-        pe.SearchSpace({"a": {axis: (low, high)}}).checked(rig_of("a"))
+        pe.SearchSpace({"a": {axis: (low, high)}}).checked(rig_of(["a"]))
     for low, high in ((start + 1.02 * rounding, 5.0), (-5.0, start - 1.02 * rounding)):
         with pytest.raises(pe.InputError, match=f"bounds of {axis}: expected bounds around"):
-            pe.SearchSpace({"a": {axis: (low, high)}}).checked(rig_of("a"))
+            pe.SearchSpace({"a": {axis: (low, high)}}).checked(rig_of(["a"]))
 
 
 @pytest.mark.parametrize(
@@ -157,12 +157,12 @@ def test_a_start_may_lie_beyond_its_bounds_by_what_rounding_does(axis, start, ro
 )
 def test_bounds_that_leave_out_the_start_are_one_line(axis, bounds, message):
     with pytest.raises(pe.InputError, match=message):
-        pe.SearchSpace({"a": {axis: bounds}}).checked(rig_of("a"))
+        pe.SearchSpace({"a": {axis: bounds}}).checked(rig_of(["a"]))
 
 
 def test_a_sensor_that_is_not_in_the_rig_is_one_line():
     with pytest.raises(pe.InputError, match=r"search space: sensor: .* found 'mast'"):
-        pe.SearchSpace({"mast": {}}).checked(rig_of("a"))
+        pe.SearchSpace({"mast": {}}).checked(rig_of(["a"]))
 
 
 def on_the_car(seed=0, position=(-0.43, 0.0, 1.8), **options):

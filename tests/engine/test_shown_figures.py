@@ -36,13 +36,8 @@ def study():
         pe.Sensor(name, model, pose)
         for name, model, pose in zip(("roof", "front"), models, poses, strict=True)
     ]
-    return pe.Study(
-        pe.Rig(sensors),
-        shapes.box_car(),
-        shapes.small_space(),
-        samples=1024,
-        requirements=(CHILD,),
-        frames=Frames(frames=2),
+    return shapes.car_study(
+        pe.Rig(sensors), samples=1024, requirements=(CHILD,), frames=Frames(frames=2)
     )
 
 
@@ -132,26 +127,26 @@ def file(study, tmp_path):
     return tmp_path / "study.toml"
 
 
-def printed(capsys, *arguments):
+def printed(capsys, arguments):
     assert main([str(each) for each in arguments]) == 0
     return capsys.readouterr().out
 
 
 def test_the_command_line_shows_what_is_asked(file, whole, capsys):
     names = ["blind_sector", "overlap"]
-    data = json.loads(printed(capsys, "score", file, "--figures", ",".join(names), "--json"))
+    data = json.loads(printed(capsys, ["score", file, "--figures", ",".join(names), "--json"]))
     values = whole.figures_after.values
     assert data["figures"]["after"]["values"] == {name: values[name] for name in names}
     assert [row["figure"] for row in data["dashboard"]] == ["blind_sector"]
     assert "requirements" not in data or not data["requirements"]
-    text = printed(capsys, "score", file, "--figures", ",".join(names))
+    text = printed(capsys, ["score", file, "--figures", ",".join(names)])
     said = {key for key in SHOWN if FIGURES[key].name in text and key != "entropy"}
     assert said - {"distance", "width", "height", "mass", "power", "price", "reach"} == set(names)
 
 
 def test_the_option_is_the_key(file, capsys):
-    asked = printed(capsys, "score", file, "--figures", "reach, height", "--json")
-    key = printed(capsys, "score", file, "--set", 'figures=["reach", "height"]', "--json")
+    asked = printed(capsys, ["score", file, "--figures", "reach, height", "--json"])
+    key = printed(capsys, ["score", file, "--set", 'figures=["reach", "height"]', "--json"])
     results = [json.loads(text) for text in (asked, key)]
     for result in results:
         result.pop("run")
@@ -162,7 +157,7 @@ def test_a_comparison_has_what_any_study_asks(file, tmp_path, capsys, study):
     other = tmp_path / "other.toml"
     pt.export_study(replace(study, figures=("blind_sector",)), other)
     pt.export_study(replace(study, figures=("reach",)), file, replace_study=True)
-    data = json.loads(printed(capsys, "compare", file, other, "--json"))
+    data = json.loads(printed(capsys, ["compare", file, other, "--json"]))
     rows = {row["measure"]: row["values"] for row in data["rows"] if row["group"] != "zone"}
     assert {"blind_sector", "reach"} <= rows.keys()
     assert not rows.keys() & {"blind_ground", *AP_RINGS}
@@ -174,7 +169,7 @@ def test_a_sweep_computes_what_its_table_shows(file, tmp_path, capsys):
     tried = "sensor.front.position.0=0.4,0.5,0.6"
     asked = "blind_ground,height"
     text = printed(
-        capsys, "sweep", file, "--set", tried, "--figures", asked, "-o", folder, "--workers", "1"
+        capsys, ["sweep", file, "--set", tried, "--figures", asked, "-o", folder, "--workers", 1]
     )
     rows = json.loads((folder / "sweep.json").read_text("utf-8"))["runs"]
     assert len(rows) == 3
@@ -191,11 +186,10 @@ def test_runs_of_a_sweep_are_as_scores_of_their_own(file, tmp_path, capsys):
     folder = tmp_path / "sweep"
     places = ("0.4", "0.5", "0.6")
     key = "sensor.front.position.0"
-    printed(
-        capsys, "sweep", file, "--set", f"{key}={','.join(places)}", "-o", folder, "--workers", "1"
-    )
+    tried = f"{key}={','.join(places)}"
+    printed(capsys, ["sweep", file, "--set", tried, "-o", folder, "--workers", 1])
     for place in places:
-        alone = json.loads(printed(capsys, "score", file, "--set", f"{key}={place}", "--json"))
+        alone = json.loads(printed(capsys, ["score", file, "--set", f"{key}={place}", "--json"]))
         run = json.loads((folder / f"study,{key}={place}" / "result.json").read_text("utf-8"))
         for part in ("after", "figures", "dashboard", "requirements", "warnings"):
             assert run[part] == alone[part]

@@ -290,7 +290,7 @@ def test_near_the_circle_a_search_of_its_ring_finds_what_a_search_of_all_finds(a
     cells = sector_cells()
     ring = SECTOR_RADIUS_M - SECTOR_RING_M, SECTOR_RADIUS_M + SECTOR_RING_M
     everywhere = BlindSearch.of(cells, 0.5, BOX, {}).blind(rig)
-    near = BlindSearch.of(cells, 0.5, BOX, {}, ring).blind(rig)
+    near = BlindSearch.of(cells, 0.5, BOX, {}, ring=ring).blind(rig)
     on_circle = np.abs(np.hypot(cells.x[:, None], cells.y) - SECTOR_RADIUS_M) < 2.0 * STEP_M
     assert 0 < everywhere[on_circle].sum() < on_circle.sum()
     assert np.array_equal(near[on_circle], everywhere[on_circle])

@@ -99,7 +99,7 @@ def test_expected_ap_is_the_prior_s_mean():
     """Against every voxel of a space, measured by the definition."""
     space = shapes.small_space()
     prior = pe.Prior.road()
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar())])
+    rig = shapes.roof_rig()
     index = np.indices(space.shape).reshape(3, -1).T
     m = kinds.measure(rig["roof"], space.center_of(index), space.interval)
     ap = average_precision(m, kinds.PerceptionModel().lidar).reshape(space.shape)

@@ -16,7 +16,7 @@ from .surfaces import is_watertight
 
 RANGE = 20.0
 STEP = math.radians(2.0)
-POSE = ((0.3, -0.2, 1.9), (3.0, 10.0, 50.0))
+POSE = pe.Pose.from_degrees((0.3, -0.2, 1.9), (3.0, 10.0, 50.0))
 FISHEYE = pe.Camera("fisheye", 1280, 960, lens=pe.KannalaBrandt(320, 320, 640, 480, fov=3.4))
 DOME = pe.Lidar("dome", np.radians(np.linspace(0, 90, 16)), 180, 30.0)
 SECTOR = small_lidar(horizontal_fov=(-1.0, 1.0))
@@ -32,7 +32,7 @@ MODELS |= {
 
 
 def view_of(name, vehicle=None, step=STEP):
-    sensor = pe.Sensor(name, MODELS[name], pe.Pose.from_degrees(*POSE))
+    sensor = pe.Sensor(name, MODELS[name], POSE)
     return mounted_view(sensor, vehicle, RANGE, step)
 
 

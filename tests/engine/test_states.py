@@ -195,8 +195,8 @@ def test_what_stands_on_the_ground_does_not_move_with_the_vehicle(state):
     moved = study.under(study.conditions.one(state.name))
     bounds = [np.array(each.vehicle.bounds) for each in (study, moved)]
     assert np.abs(bounds[0] - bounds[1]).max() > 0.01
-    zones = [each.checker().zones[0].corners for each in (study, moved)]
-    assert np.array_equal(*zones)
+    zone, zone_moved = (each.checker().zones[0].corners for each in (study, moved))
+    assert np.array_equal(zone, zone_moved)
     assert body_rectangle(moved.vehicle) == body_rectangle(study.vehicle)
     scenario = next(iter(pe.motion.scenarios().values()))
     assert np.array_equal(

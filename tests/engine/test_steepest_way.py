@@ -98,7 +98,7 @@ def test_the_best_place_is_chosen_within_20_cm_and_judged():
 
 
 def test_a_sensor_moves_along_its_free_axes_within_its_bounds():
-    study = pe.Study(pe.Rig([shapes.lidar_on_roof()]), shapes.box_car(), shapes.small_space())
+    study = shapes.car_study(pe.Rig([shapes.lidar_on_roof()]))
     own = replace(study.search, free={"roof": ("z",)}, limits={"roof": {"z": (1.5, 1.83)}})
     places = advice.places_of(replace(study, search=own), "roof")
     assert places.tangents().tolist() == [[0.0, 0.0, 1.0]]

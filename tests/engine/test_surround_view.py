@@ -16,18 +16,18 @@ WIDE = pe.Camera("wide", 500, 300, lens=FISHEYE)
 NARROW = pe.Camera("narrow", 1920, 1080, hfov=np.radians(40.0))
 
 
-def camera(name, model, place, *turn_deg):
-    return pe.Sensor(name, model, pe.Pose(place, tuple(np.radians((0.0, *turn_deg)))))
+def camera(name, model, place, turn_deg):
+    return pe.Sensor(name, model, pe.Pose.from_degrees(place, turn_deg))
 
 
 RIG = pe.Rig(
     [
-        camera("front", WIDE, (2.1, 0.0, 0.7), 25.0, 0.0),
-        camera("tele", NARROW, (2.0, 0.0, 1.5), 20.0, 0.0),
+        camera("front", WIDE, (2.1, 0.0, 0.7), (0.0, 25.0, 0.0)),
+        camera("tele", NARROW, (2.0, 0.0, 1.5), (0.0, 20.0, 0.0)),
         pe.Sensor(
             "roof", pe.Lidar("ring", np.radians([-15.0, 0.0]), 720, 60.0), pe.Pose((0, 0, 1.5))
         ),
-        camera("left", WIDE, (0.5, 0.9, 1.0), 45.0, 90.0),
+        camera("left", WIDE, (0.5, 0.9, 1.0), (0.0, 45.0, 90.0)),
     ]
 )
 CAMERAS = pe.Rig([each for each in RIG if each.kind == "camera"])

@@ -20,7 +20,7 @@ from pe_tools.jobs import read_search
 from pe_tools.sweep import RunTask, read_tried, run_all, sweep_runs
 from pe_tools.sweep.parameter_grid import MAX_NAME_LENGTH, folder_names
 from tests.engine import shapes
-from tests.engine.processes import Command
+from tests.engine.processes import Command, finished
 from tests.limits import HANG_S
 
 pytestmark = pytest.mark.usefixtures("few_errors")
@@ -45,13 +45,9 @@ HELD = {1}
 
 @pytest.fixture
 def study(tmp_path):
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 90))])
-    schedule = pe.Schedule(candidates=2)
-    search = pe.Search(
-        {"roof": ("x", "z")}, limits={}, seed=3, samples=1024, schedule=schedule, method="random"
-    )
+    search = shapes.short_search({"roof": ("x", "z")})
     path = tmp_path / "car.toml"
-    pt.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space(), search=search), path)
+    pt.export_study(shapes.car_study(shapes.roof_rig(16, 90), search=search), path)
     return path
 
 
@@ -211,9 +207,8 @@ def test_a_sweep_leaves_each_run_and_a_table(study, out, capsys):
         lidar = changed.rig["roof"]
         height = float(row["sensor.roof.position.2"])
         placed = replace(lidar, pose=replace(lidar.pose, position=(-0.43, 0.0, height)))
-        job = pt.OptimizeJob(changed.with_rig(pe.Rig([placed])))
-        list(job)
-        assert job.outcome.after.entropy == result["entropy"]
+        searched = finished(pt.OptimizeJob(changed.with_rig(pe.Rig([placed]))))
+        assert searched.after.entropy == result["entropy"]
 
 
 def test_a_sweep_goes_on_and_does_nothing_twice(study, out, capsys):
@@ -287,13 +282,6 @@ def noted(monkeypatch):
     return noted
 
 
-def searched(study):
-    """The result of a search that nothing broke off."""
-    job = pt.OptimizeJob(study)
-    list(job)
-    return job.outcome
-
-
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 @pytest.mark.parametrize("ending", [signal.SIGTERM, signal.SIGKILL])
 @pytest.mark.usefixtures("heeded_signals")
@@ -321,7 +309,7 @@ def test_a_sweep_that_is_ended_keeps_what_is_under_way(study, out, ending, capsy
     assert "pe: 0 of 2 runs are done already; searches that go on: 1" in err
     evaluated = len(noted)
     noted.clear()
-    whole = [searched(replace_seed(pe.load_study(study), seed)) for seed in (3, 4)]
+    whole = [finished(pt.OptimizeJob(replace_seed(pe.load_study(study), seed))) for seed in (3, 4)]
     assert [float(row["entropy"]) for row in table(out)] == [each.after.entropy for each in whole]
     assert evaluated == len(noted) - kept
 

@@ -41,9 +41,9 @@ Evaluator.score = score
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
-    rig = pe.Rig([shapes.lidar_on_roof(shapes.small_lidar(16, 180))])
+    rig = shapes.roof_rig(16, 180)
     path = tmp_path_factory.mktemp("sweep") / "car.toml"
-    pt.export_study(pe.Study(rig, shapes.box_car(), shapes.small_space()), path)
+    pt.export_study(shapes.car_study(rig), path)
     return path
 
 
@@ -51,30 +51,13 @@ class Cluster:
     """A scheduler and two workers, processes of their own."""
 
     def __init__(self, folder):
-        where = ("--scheduler-file", folder / "scheduler.json")
-        self.scheduler = started(
-            "scheduler", *where, "--no-dashboard", "--host", "127.0.0.1", "--port", 0
-        )
+        self.scheduler = started("scheduler", folder, "--no-dashboard --host 127.0.0.1 --port 0")
         self.folder = folder
         script = folder / "waiting.py"
         script.write_text(WAITING.format(folder=str(folder)))
-        self.workers = [
-            started(
-                "worker",
-                *where,
-                "--no-dashboard",
-                "--host",
-                "127.0.0.1",
-                "--nthreads",
-                1,
-                "--no-nanny",
-                "--death-timeout",
-                HANG_S,
-                "--preload",
-                script,
-            )
-            for _ in range(2)
-        ]
+        options = "--no-dashboard --host 127.0.0.1 --nthreads 1 --no-nanny"
+        options += f" --death-timeout {HANG_S} --preload {script}"
+        self.workers = [started("worker", folder, options) for _ in range(2)]
         self.address = self._address(folder / "scheduler.json")
 
     def _address(self, file):
@@ -101,8 +84,10 @@ def wait_until(is_so):
         time.sleep(0.02)
 
 
-def started(role, *arguments):
-    command = [sys.executable, "-m", f"distributed.cli.dask_{role}", *map(str, arguments)]
+def started(role, folder, arguments):
+    """A process of a role, by words for the command line."""
+    command = [sys.executable, "-m", f"distributed.cli.dask_{role}", *arguments.split()]
+    command += ["--scheduler-file", str(folder / "scheduler.json")]
     env = {**os.environ, "PYTHONPATH": str(ROOT)}
     return subprocess.Popen(command, cwd=ROOT, env=env, stderr=subprocess.DEVNULL)
 
@@ -157,11 +142,11 @@ def at_first_result(monkeypatch, do):
     came = []
     row_of = sweep_table.row_of
 
-    def watched(run, *found):
+    def watched(run, result, *status):
         if not came:
             do()
         came.append(run.name)
-        return row_of(run, *found)
+        return row_of(run, result, *status)
 
     monkeypatch.setattr(sweep_table, "row_of", watched)
     return came

@@ -11,15 +11,10 @@ import pe_core as pe
 from pe_tools.exchange import rig_files
 from pe_tools.outputs import scene_files
 
-from .shapes import box_car, camera, lidar_on_roof, small_lidar
+from .shapes import box_car, tilted_rig
 
 AXLE = pe.Reference(-1.3, 0.32)
-RIG = pe.Rig(
-    [
-        lidar_on_roof(small_lidar(), rotation=(4.0, -7.0, 100.0)),
-        camera(70.0, position=(1.0, 0.5, 1.2), rotation=(5.0, 20.0, -130.0), name="eye"),
-    ]
-)
+RIG = tilted_rig()
 EYE = RIG["eye"]
 STUDY = pe.Study(RIG, box_car(), reference=AXLE)
 SEEN = np.array([10.0, 2.0, -1.0])

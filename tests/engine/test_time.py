@@ -64,11 +64,12 @@ def test_information_approaches_the_fixed_point_of_t1_and_t2():
 
 def by_definition(frames, rates, added, floor):
     """Return 1 / sigma^2 of numbers, with exact times: each sensor's frames backwards from 0."""
-    step = 1.0 / math.lcm(*rates)
+    ticks_per_s = math.lcm(*rates)
+    step = 1.0 / ticks_per_s
     ticks = {}
-    first = -(frames.frames - 1) * math.lcm(*rates) // min(rates)
+    first = -(frames.frames - 1) * ticks_per_s // min(rates)
     for k, rate in enumerate(rates):
-        for tick in range(0, first - 1, -(math.lcm(*rates) // rate)):
+        for tick in range(0, first - 1, -(ticks_per_s // rate)):
             ticks.setdefault(tick, []).append(k)
     precision = floor
     last = None

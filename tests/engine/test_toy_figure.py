@@ -23,7 +23,7 @@ ROW = """    Figure(
     ),
 """
 PITCH_DEG = 4.0
-FRONT = 'optimize.front.objectives=["droop", "entropy"]'
+FRONT = 'optimize.front.objectives=["droop","entropy"]'
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +38,7 @@ def toys(tmp_path_factory):
     rig = pe.Rig([pe.Sensor("roof", shapes.small_lidar(4, 90), pose)])
     search = pe.Search({"roof": ("z", "pitch")}, samples=1024, evaluations=20)
     given = {"search": search, "samples": 1024}
-    study = pe.Study(rig, shapes.box_car(), shapes.small_space(), **given)
+    study = shapes.car_study(rig, **given)
     pt.export_study(study, folder / "study.toml")
     text = (folder / "study.toml").read_text("utf-8")
     limit = "[limits]\ndroop = { value = 3, kept = false }\n\n[optimize]\n"
@@ -46,31 +46,30 @@ def toys(tmp_path_factory):
     return folder
 
 
-def run(folder, *arguments):
+def run(folder, arguments):
     """Run `pe` of the copy; return what it prints."""
-    command = [sys.executable, "-m", "pe_tools", *arguments]
+    command = [sys.executable, "-m", "pe_tools", *arguments.split()]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
     return done.stdout
 
 
 def test_a_score_has_it_with_its_limit(toys):
-    data = json.loads(run(toys, "score", "study.toml", "--json"))
+    data = json.loads(run(toys, "score study.toml --json"))
     assert data["figures"]["after"]["values"]["droop"] == pytest.approx(PITCH_DEG)
     (row,) = (row for row in data["dashboard"] if row["figure"] == "droop")
     assert (row["wanted"], row["met"], row["kept"]) == (3.0, False, False)
 
 
 def test_it_is_compared(toys):
-    table = run(toys, "compare", "study.toml", "study.toml")
+    table = run(toys, "compare study.toml study.toml")
     assert "Droop [deg], lower is better" in table
 
 
 def test_a_search_keeps_it_and_a_front_has_it(toys):
-    kept = ("--set", "limits.droop=4", "--workers", "1", "--json")
-    data = json.loads(run(toys, "optimize", "study.toml", *kept))
+    kept = run(toys, "optimize study.toml --set limits.droop=4 --workers 1 --json")
+    data = json.loads(kept)
     assert data["figures"]["after"]["values"]["droop"] <= PITCH_DEG + 1e-6
-    out = ("--workers", "1", "-o", "out")
-    run(toys, "optimize", "study.toml", "--set", FRONT, *out)
+    run(toys, f"optimize study.toml --set {FRONT} --workers 1 -o out")
     front = json.loads((toys / "out" / "front.json").read_text("utf-8"))
     assert all("droop" in design["figures"] for design in front["designs"])
     assert "Droop" in (toys / "out" / "front.html").read_text("utf-8")

@@ -235,7 +235,7 @@ def test_a_sensor_takes_edges_of_axes_alone():
 # --- the command ----------------------------------------------------------------------------------
 
 
-def answer(capsys, *words):
+def answer(capsys, words):
     status = main([*map(str, words), "--json"])
     return status, json.loads(capsys.readouterr().out)
 
@@ -244,12 +244,12 @@ def test_explain_tells_a_sensor_from_edges_and_lists_them(capsys):
     own = pe.load_study(SEDAN)
     x, y, z = own.rig["roof_lidar"].pose.position
     at = own.vehicle_edges.at("windshield top", "x", (x, y, z))
-    words = "explain", SEDAN, "--sensor", "roof_lidar", "--from"
-    status, told = answer(capsys, *words, "windshield top", "center line", "ground")
+    words = ["explain", SEDAN, "--sensor", "roof_lidar", "--from"]
+    status, told = answer(capsys, [*words, "windshield top", "center line", "ground"])
     assert status == 0
     lengths = [float(text.split()[0]) for text in told["distances"]]
     assert lengths[0] == pytest.approx(at - x) and lengths[-2:] == pytest.approx([abs(y), z])
-    status, told = answer(capsys, *words)
+    status, told = answer(capsys, words)
     assert status == 0 and told["edges"] == {a: list(own.vehicle_edges.names(a)) for a in "xyz"}
 
 
@@ -275,13 +275,13 @@ def test_a_position_is_typed_by_distances_in_set_and_told_in_the_score(tmp_path,
     capsys.readouterr()
     own = pe.load_study(path)
     assert own.rig["roof"].pose.position == (0.1, 0.03, 1.7)
-    status, told = answer(capsys, "score", path)
+    status, told = answer(capsys, ["score", path])
     assert status == 0
     placed = told["placements"]["after"]
     texts = ["0.7 m behind cabin front", "0.03 m left of center line"]
     assert placed["roof"]["distances"] == texts
     assert "distances" not in placed["tail"]
-    same = answer(capsys, "score", path, "--set", "sensor.roof.position=[0.1,0.03,1.7]")[1]
+    same = answer(capsys, ["score", path, "--set", "sensor.roof.position=[0.1,0.03,1.7]"])[1]
     assert same["after"] == told["after"]
     assert same["study_sha256"] == told["study_sha256"]
     assert main(["score", str(path)]) == 0

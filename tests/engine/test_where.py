@@ -22,7 +22,7 @@ LIDAR = pe.Sensor("LiDAR", shapes.small_lidar(8, 90))
 @pytest.fixture
 def study():
     rig = pe.Rig([shapes.camera(position=(2.2, 0.0, 1.2), name="front")])
-    return pe.Study(rig, shapes.box_car(), shapes.small_space())
+    return shapes.car_study(rig)
 
 
 def mapped(study, sensor=LIDAR, **options):

@@ -16,7 +16,9 @@ from pe_tools.page.pictures.vehicle_picture import vehicle_picture
 from tests.engine.test_masks import decoded
 from tests.review.conftest import box
 
-SIZE = (96, 54)
+WIDTH = 96
+HEIGHT = 54
+SIZE = (WIDTH, HEIGHT)
 
 
 @pytest.fixture(scope="module")
@@ -46,8 +48,9 @@ def test_a_view_projects_where_it_looks():
 
 
 def test_a_still_shows_the_vehicle_and_is_the_same_each_time(car):
-    png = vehicle_picture(*car, SIZE)
-    assert png == vehicle_picture(*car, SIZE)
+    vehicle, rig = car
+    png = vehicle_picture(vehicle, rig, SIZE)
+    assert png == vehicle_picture(vehicle, rig, SIZE)
     pixels = decoded(png).astype(int)
     assert pixels.shape == (54, 96, 3)
     assert abs(pixels[0, 0] - pixels[0, -1]).max() <= 1  # paper in the corners

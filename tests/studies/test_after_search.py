@@ -96,7 +96,7 @@ def test_a_short_search_is_kept_and_its_runs_are_gone_on_with_by_resume_alone(
     assert again == found
     files = RunFiles(tmp_path / AFTER_SEARCH, plan, seed_by_seed(plan, found))
     files.write(files.all[0], {"ap": 0.5})
-    run = study("detectors", "--after-search", "--quick", "--output", tmp_path)
+    run = study("detectors", "--after-search", "--quick", f"--output={tmp_path}")
     assert run.returncode == 1 and "1 of 3 runs; pass --resume" in run.stderr
     kept = json.loads((tmp_path / AFTER_SEARCH / PLACEMENTS).read_text("utf-8"))["searches"]
     by_ap = kept["shuttle, expected_ap"]

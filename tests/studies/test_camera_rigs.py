@@ -2,6 +2,7 @@
 
 import json
 import math
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -249,14 +250,14 @@ def test_bca_limits_of_a_symmetric_statistic_are_percentiles():
 @pytest.mark.thorough
 def test_the_command_scores_judges_and_goes_on(tmp_path, rig_file):
     path = rig_file()
-    options = ("--quick", "--workers", 1, "--work", tmp_path / "work", "-o", tmp_path / "page")
-    run = study("cameras", path, *options)
+    begin = partial(study, "cameras", path, "--quick", f"--work={tmp_path / 'work'}")
+    run = begin("--workers=1", "-o", tmp_path / "page")
     assert run.returncode == 0, run.stderr
     data = json.loads((tmp_path / "page" / "results.json").read_text("utf-8"))
     assert len(data["scores"]) == len(RIGS) and set(data["verdicts"]) == set(scores.SCORES)
     text = (tmp_path / "page" / "README.md").read_text("utf-8")
     assert "0.305" not in json.dumps(data)  # no row of the file is kept
-    again = study("cameras", path, *options)
+    again = begin("--workers=1", "-o", tmp_path / "page")
     assert again.returncode == 0 and "going on from" in again.stderr
     alone = study("cameras", "--page-only", "-o", tmp_path / "page")
     assert alone.returncode == 0 and (tmp_path / "page" / "README.md").read_text("utf-8") == text

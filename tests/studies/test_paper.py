@@ -57,7 +57,7 @@ def test_the_run_is_complete_and_a_second_one_computes_nothing(quick, no_plots):
     values = {name: entry["value"] for name, entry in quick.data["results"].items()}
     assert plan(QUICK, values) == [] and quick.data["made"]["commit"]
     before = (quick.folder / "results.json").read_bytes()
-    run = study("paper", "--quick", "--json", "--output", quick.folder)
+    run = study("paper", "--quick", "--json", f"--output={quick.folder}")
     assert run.returncode == 0 and json.loads(run.stdout) == quick.data
     assert "going on from" in run.stderr and "[" not in run.stderr
     assert (quick.folder / "results.json").read_bytes() == before
@@ -104,7 +104,7 @@ def test_claims_turned_over_turn_their_verdicts_but_where_chance_may_have_decide
 
 def test_the_page_is_the_committed_one(tmp_path, no_plots):
     (tmp_path / "results.json").write_bytes((DOCS / "results.json").read_bytes())
-    run = study("paper", "--page-only", "--json", "--output", tmp_path)
+    run = study("paper", "--page-only", "--json", f"--output={tmp_path}")
     assert run.returncode == 0 and json.loads(run.stdout) == COMMITTED and not run.stderr
     assert (tmp_path / "README.md").read_bytes() == (DOCS / "README.md").read_bytes()
 

@@ -20,16 +20,17 @@ PICTURE = (200, 100)
 Metres3 = tuple[float, float, float]
 
 
-def box_triangles(low: Metres3, high: Metres3) -> Floats:
-    """Return the triangles (12, 3, 3) of an axis-aligned box [m]."""
-    ends = np.array([low, high], dtype=float)
+def box_triangles(bounds: tuple[Metres3, Metres3]) -> Floats:
+    """Return the triangles (12, 3, 3) of an axis-aligned box, from its lowest and highest corner
+    [m]."""
+    ends = np.array(bounds, dtype=float)
     corners = np.array([[ends[i, 0], ends[j, 1], ends[k, 2]] for i, j, k in np.ndindex(2, 2, 2)])
     return np.array([corners[[f[0], f[i], f[i + 1]]] for f in FACES for i in (1, 2)])
 
 
 def body() -> pe.Vehicle:
     """Return the vehicle: a box of 4 x 2 x 1 m."""
-    return pe.Vehicle(box_triangles(*BODY))
+    return pe.Vehicle(box_triangles(BODY))
 
 
 def lidar(

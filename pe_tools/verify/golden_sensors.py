@@ -136,7 +136,7 @@ def camera_cases() -> Sequence[GoldenCase]:
 def occlusion_cases() -> Sequence[GoldenCase]:
     """Return the cases of what hides what."""
     area = "occlusion"
-    wall = pe.Vehicle(scenes.box_triangles(*WALL))
+    wall = pe.Vehicle(scenes.box_triangles(WALL))
     level = scenes.mounted(scenes.lidar(azimuths=4), (0.0, 0.0, 1.0))
     camera = scenes.mounted(scenes.camera(), (0.0, 0.0, 1.0))
     beyond = [[6.0, 0.0, 1.0], [3.0, 0.0, 1.0]]
@@ -296,13 +296,13 @@ def _distorted() -> list[float]:
 
 
 def _glass_wall() -> pe.Vehicle:
-    triangles = scenes.box_triangles(*WALL)
+    triangles = scenes.box_triangles(WALL)
     parts = np.zeros(len(triangles), dtype=np.int32)
     return pe.Vehicle(triangles, parts, ("wall",), glass=("wall",))
 
 
 def _triangles() -> Floats:
-    return scenes.box_triangles(*scenes.BODY)
+    return scenes.box_triangles(scenes.BODY)
 
 
 def _rays() -> tuple[Floats, Floats]:

@@ -122,8 +122,9 @@ def _race(
     racing = list[tuple[Incumbent, MultiscaleDescent]]()
     before = incumbent.count
     for k in range(runners):
-        begun = (given.start, given.value) if k % 2 else (incumbent.best, incumbent.value)
-        own = Incumbent(*begun)
+        own = Incumbent(given.start, given.value)
+        if k % 2 == 0:
+            own = Incumbent(incumbent.best, incumbent.value)
         if k > 1:
             yield from survey.survey(own, first, surveyed)
         yield from to_best_corners(given, own, first)

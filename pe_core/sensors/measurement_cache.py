@@ -251,11 +251,6 @@ class VisibleGroundCache:
         """Squares (NX, NY) that each sensor of the last rig marks, by name."""
         return {name: self._unpacked(bits) for name, (_, bits) in self._visible.items()}
 
-    @property
-    def kept_bytes(self) -> int:
-        """Memory of what the sensors of the last rig mark."""
-        return sum(bits.nbytes for _, bits in self._visible.values())
-
     def marked(self, rig: Rig) -> Flags:
         """Return squares (NX, NY) that any sensor marks."""
         self._visible = {s.name: (s, self._one(s)) for s in rig}

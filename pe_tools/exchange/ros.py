@@ -62,7 +62,8 @@ class LaunchCall:
         """Return the call of a text at a place of the file."""
         end = END.search(text)
         length = len(text) if end is None else end.start()
-        return cls(*span, text[:length], text[length:])
+        first, last = span
+        return cls(first, last, text[:length], text[length:])
 
 
 @dataclass(frozen=True, slots=True)

@@ -135,7 +135,8 @@ class SuggestJob(Job):
             if name not in known:
                 raise InputError("suggest", "requirement", one_of(known, name), shown(name))
         if spot is not None:
-            study = with_blind_spot(study, spot)
+            x, y = spot
+            study = with_blind_spot(study, x, y)
             names = (BLIND_SPOT,)
         super().__init__(study)
         self._names = names

@@ -87,7 +87,7 @@ def voxel_solid(name: str, cubes: Flags, lowest: Floats, side: float) -> Solid |
     lowest corner of the grid [m], `side` the length of a cube [m]. No edge may have four faces;
     `joined` makes sure of that."""
     shape = np.array(cubes.shape) + 1
-    quads = [_quads(cubes, shape, *key) for key in SIDES]
+    quads = [_quads(cubes, shape, axis, direction) for axis, direction in SIDES]
     corners = np.concatenate(quads)
     if not len(corners):
         return None

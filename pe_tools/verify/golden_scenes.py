@@ -20,9 +20,10 @@ PICTURE = (200, 100)
 Metres3 = tuple[float, float, float]
 
 
-def box_triangles(box: tuple[Metres3, Metres3]) -> Floats:
-    """Return the triangles (12, 3, 3) of an axis-aligned box [m]."""
-    ends = np.array(box, dtype=float)  # lowest and highest corner
+def box_triangles(bounds: tuple[Metres3, Metres3]) -> Floats:
+    """Return the triangles (12, 3, 3) of an axis-aligned box, from its lowest and highest corner
+    [m]."""
+    ends = np.array(bounds, dtype=float)
     corners = np.array([[ends[i, 0], ends[j, 1], ends[k, 2]] for i, j, k in np.ndindex(2, 2, 2)])
     return np.array([corners[[f[0], f[i], f[i + 1]]] for f in FACES for i in (1, 2)])
 

@@ -157,7 +157,9 @@ class Zone:
         planes = {} if planes is None else planes
         key = self.below, self.near_side, self.eyes
         if key not in planes:
-            planes[key] = VehiclePlanes.of(vehicle, reference, *key)
+            planes[key] = VehiclePlanes.of(
+                vehicle, reference, below=self.below, near_side=self.near_side, eyes=self.eyes
+            )
         return self._on(planes[key], who)
 
     def _on(self, planes: VehiclePlanes, who: str) -> "PlacedZone":

@@ -122,9 +122,9 @@ def _race(
     racing = list[tuple[Incumbent, MultiscaleDescent]]()
     before = incumbent.count
     for k in range(runners):
-        own = Incumbent(incumbent.best, incumbent.value)
-        if k % 2:
-            own = Incumbent(given.start, given.value)
+        own = Incumbent(given.start, given.value)
+        if k % 2 == 0:
+            own = Incumbent(incumbent.best, incumbent.value)
         if k > 1:
             yield from survey.survey(own, first, surveyed)
         yield from to_best_corners(given, own, first)

@@ -205,10 +205,10 @@ def _draw_margin(plan: PlanDrawing, verdict: requirements.Verdict, bounds: PlanB
     """Draw the zone grown or shrunk by the margin, as a dashed line, with the margin's text."""
     if verdict.margin is None or abs(verdict.margin) < 0.01:
         return
-    axes = [np.linspace(low, high, CONTOUR_CELLS) for low, high in bounds]
-    places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+    xs, ys = (np.linspace(low, high, CONTOUR_CELLS) for low, high in bounds)
+    places = np.stack(np.meshgrid(xs, ys, indexing="ij"), axis=-1)
     away = verdict.samples.zone.distance(places.reshape(-1, 2)).reshape(places.shape[:2])
-    lines = [plan.points(line) for line in sight.outlines(-away, -verdict.margin, *axes)]
+    lines = [plan.points(line) for line in sight.outlines(-away, -verdict.margin, xs, ys)]
     if not lines:
         return
     plan.canvas.path(lines, fill="none", stroke=INK, stroke_width=1.0, stroke_dasharray="4 3")

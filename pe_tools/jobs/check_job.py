@@ -135,8 +135,7 @@ class SuggestJob(Job):
             if name not in known:
                 raise InputError("suggest", "requirement", one_of(known, name), shown(name))
         if spot is not None:
-            x, y = spot
-            study = with_blind_spot(study, x, y)
+            study = with_blind_spot(study, spot)
             names = (BLIND_SPOT,)
         super().__init__(study)
         self._names = names

@@ -11,6 +11,7 @@ from functools import partial
 from multiprocessing.connection import Connection
 from typing import Any
 
+from pe_core.base.lazy_threads import threads
 from pe_core.base.spawning import belong_to_parent, end_process
 
 from .messages import CANCEL, FAILED, FORGET, Request, packed, received, steps_of, unpacked
@@ -165,5 +166,6 @@ class _Server:
 def serve(requests: Connection, answers: Connection) -> None:
     """Serve the other side of two connections; the process ends when that is gone."""
     belong_to_parent()
+    threads().keep_freed_memory()
     _Server(requests, answers).serve()
     end_process()

@@ -28,6 +28,7 @@ from ..search import AXES, PAPER_FREE, SCHEDULED_METHOD, Limits, Schedule, Selec
 from ..sensors import PerceptionModel
 from .conditions import Conditions
 from .file_names import MESH
+from .requirement_file import read_requirement, write_requirement
 from .scoring_file import FusionTable, ModelFile
 from .study import Search, Study
 from .vehicle_edges import POSITION, Distance, Edge, MetresOrDistance, VehicleEdges, checked_edges
@@ -105,6 +106,7 @@ def _write_sensor(table: SensorTable) -> dict[str, Any]:
 
 
 hook(SensorTable, _read_sensor, _write_sensor, SensorForm)
+hook(Requirement, read_requirement, write_requirement, Requirement)
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from importlib import resources
 from types import MappingProxyType
 from typing import Any
 
-from ..base.codec import Node, hook, read_changed, read_fields, write_changed
+from ..base.codec import Node, read_changed, read_fields, write_changed
 from ..base.values import choice
 from ..scoring import requirements as room
 from ..scoring.requirements import Requirement
@@ -80,9 +80,6 @@ def read_requirement(node: Node) -> Requirement:
     return replace(own, original=_shipped().get(own.preset or ""))
 
 
-hook(
-    Requirement,
-    read_requirement,
-    lambda requirement: write_changed(requirement, _shipped()),
-    Requirement,
-)
+def write_requirement(requirement: Requirement) -> Any:
+    """Return the table of a requirement: of a preset, the keys that are other than its own."""
+    return write_changed(requirement, _shipped())

@@ -1,6 +1,7 @@
 """A package whose names are loaded when they are asked for leaves Python's import as it was."""
 
 import builtins
+import subprocess
 import sys
 import threading
 from types import ModuleType
@@ -9,6 +10,17 @@ import pytest
 
 from pe_core.lazy_faces import lazy_face
 from tests.limits import HANG_S
+
+ALL_HOOKS = """
+import importlib, pkgutil
+from pe_core.base.codec import HOOKS
+from pe_core.study.study_file import load_study
+known = set(HOOKS)
+import pe_core
+for module in pkgutil.walk_packages(pe_core.__path__, "pe_core."):
+    importlib.import_module(module.name)
+print(*sorted(cls.__name__ for cls in set(HOOKS) - known))
+"""
 
 
 @pytest.fixture
@@ -45,3 +57,11 @@ def test_what_fails_within_leaves_the_import_that_was(faces):
     with pytest.raises(LookupError), lazy_face(faces[0]):
         raise LookupError
     assert builtins.__import__ is before
+
+
+def test_who_reads_studies_has_loaded_all_that_reads_a_part_of_them():
+    """What reads a class is known where its module was loaded, and faces load modules late."""
+    ran = subprocess.run(
+        [sys.executable, "-c", ALL_HOOKS], capture_output=True, text=True, check=True
+    )
+    assert ran.stdout.split() == []

@@ -160,7 +160,7 @@ def _margin_line(verdict: Verdict) -> tuple[graphics.Primitives, graphics.Tag] |
     probe = start + PROBE_M * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
     distance = zone.distance(probe)
     outwards = np.array([distance[0] - distance[1], distance[2] - distance[3]])
-    length = np.hypot(*outwards)
+    length = float(np.linalg.norm(outwards))
     if not length:
         return None
     outwards = outwards / length

@@ -59,6 +59,7 @@ def read_only(array: NDArray[Any]) -> NDArray[Any]:
     return array
 
 
-def each(function: Callable[[float], float], values: Floats) -> Floats:
-    """Return a function of `math` of each value (N,): the same bits in all builds of NumPy."""
+def mapped(function: Callable[[float], float], values: Floats) -> Floats:
+    """Return what a function of Python gives for each value (N,): unlike those of NumPy it has the
+    same bits in all builds."""
     return np.array([*map(function, values.tolist())], dtype=np.float64)

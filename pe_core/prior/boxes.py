@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..base.arrays import Floats, Ints, each, read_only
+from ..base.arrays import Floats, Ints, mapped, read_only
 from ..base.errors import InputError, shown
 from ..base.notebook import ShortRepr
 from ..base.values import A_PATH, Number, numbers, vector
@@ -263,7 +263,7 @@ class _Footprints:
         self.along = boxes.length[index] / 2.0
         self.across = boxes.width[index] / 2.0
         self.up = boxes.height[index] / 2.0
-        self.cos, self.sin = (each(turn, boxes.yaw[index]) for turn in (math.cos, math.sin))
+        self.cos, self.sin = (mapped(turn, boxes.yaw[index]) for turn in (math.cos, math.sin))
         for values in (self.cos, self.sin):
             values[np.abs(values) < STRAIGHT] = 0.0
 

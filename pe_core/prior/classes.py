@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.arrays import Floats, each
+from ..base.arrays import Floats, mapped
 from ..base.errors import InputError, shown
 from ..base.values import A_NAME, LENGTH, SHARE, WEIGHT, Number, listed, real, vector
 from ..geometry.grids import PerceptionSpace
@@ -238,18 +238,16 @@ def uniform_shape(space: PerceptionSpace) -> Shape:
     return np.full((nx, ny), 1.0 / (nx * ny)), np.full(nz, 1.0 / nz)
 
 
-@np.errstate(over="ignore")  # far beyond a tiny spread
 def class_shape(cls: ObjectClass, space: PerceptionSpace) -> Shape:
     """Return the density of the voxels inside boxes of a class."""
     length, width, height = cls.size
     along = _blurred(lambda x: _exponential_mass(x, cls.decay_x), space.centers(0), length)
     across = _blurred(lambda y: _lateral_mass(y, cls), space.centers(1), width)
     ground = along[:, None] * across
-    profile = 1.0 - _normal_cdf((space.centers(2) - height) / cls.height_spread)
+    profile = 1.0 - _normal_cdf(_in_spreads(space.centers(2) - height, cls.height_spread))
     return normed(ground, profile)
 
 
-@np.errstate(over="ignore")
 def mass_in(cls: ObjectClass, space: PerceptionSpace) -> float:
     """Return the mass of a class's centres in a space, up to a constant factor of the class."""
     near, far = _exponential_mass(np.array(space.x), cls.decay_x).tolist()
@@ -268,7 +266,6 @@ def sampled_positions(
 
 
 @lru_cache(maxsize=16)
-@np.errstate(over="ignore")
 def _masses(
     cls: ObjectClass, x: tuple[float, float], y: tuple[float, float]
 ) -> tuple[Floats, Floats]:
@@ -306,9 +303,15 @@ def _blurred(mass: Callable[[Floats], Floats], centers: Floats, size: float) -> 
     return mass(centers + size / 2.0) - mass(centers - size / 2.0)
 
 
+def _in_spreads(distances: Floats, spread: float) -> Floats:
+    """Return distances in spreads; far beyond a tiny one they are infinite."""
+    with np.errstate(over="ignore"):
+        return distances / spread
+
+
 def _exponential_mass(x: Floats, scale: float) -> Floats:
     """Integrals of exp(-|x| / scale) from 0 to each x."""
-    return np.copysign(scale * -each(math.expm1, -np.abs(x) / scale), x)
+    return np.copysign(scale * -mapped(math.expm1, -_in_spreads(np.abs(x), scale)), x)
 
 
 def _lateral_mass(y: Floats, cls: ObjectClass) -> Floats:
@@ -316,11 +319,13 @@ def _lateral_mass(y: Floats, cls: ObjectClass) -> Floats:
     masses = np.zeros(len(y))
     for lane in cls.lanes:
         off = y - lane
-        laplace = 0.5 * np.copysign(-each(math.expm1, -np.abs(off) / cls.laplace_y), off)
-        normal = _normal_cdf(off / cls.gauss_y)
+        laplace = 0.5 * np.copysign(
+            -mapped(math.expm1, -_in_spreads(np.abs(off), cls.laplace_y)), off
+        )
+        normal = _normal_cdf(_in_spreads(off, cls.gauss_y))
         masses += cls.laplace_share * laplace + (1.0 - cls.laplace_share) * normal
     return masses / len(cls.lanes)
 
 
 def _normal_cdf(z: Floats) -> Floats:
-    return 0.5 * (1.0 + each(math.erf, z / math.sqrt(2.0)))
+    return 0.5 * (1.0 + mapped(math.erf, z / math.sqrt(2.0)))

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..base.arrays import Floats, Ints, each, read_only
+from ..base.arrays import Floats, Ints, mapped, read_only
 from ..base.errors import InputError, shown
 from ..base.notebook import ShortRepr
 from ..base.values import A_NAME, numbers
@@ -75,7 +75,7 @@ class Objects(ShortRepr):
     @cached_property
     def headings(self) -> Floats:
         """(N, 2) cosine and sine of the yaws, by `math`: the same bits in all builds."""
-        directions = np.stack([each(math.cos, self.yaws), each(math.sin, self.yaws)], axis=1)
+        directions = np.stack([mapped(math.cos, self.yaws), mapped(math.sin, self.yaws)], axis=1)
         directions[np.abs(directions) < STRAIGHT] = 0.0
         return read_only(directions)
 

@@ -16,7 +16,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.arrays import Flags, Floats, Ints, each
+from ..base.arrays import Flags, Floats, Ints, mapped
 from ..geometry.poses import rotate
 from ..scene.rig import Sensor, SensorModel
 from ..scene.vehicle import Vehicle
@@ -198,7 +198,7 @@ def _middles(low: float, high: float, count: int) -> Floats:
 
 
 def _circle(angles: Floats) -> tuple[Floats, Floats]:
-    return each(math.cos, angles), each(math.sin, angles)
+    return mapped(math.cos, angles), mapped(math.sin, angles)
 
 
 def field_picture_of(

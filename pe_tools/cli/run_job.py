@@ -7,6 +7,7 @@ import signal
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol, TextIO, TypeAlias
 
@@ -93,13 +94,12 @@ class Host(Protocol):
 def _page(*, is_front: bool) -> More:
     """Return the page beside the results of a search, or of a front."""
     if is_front:
-        return More(
-            [jobs.FRONT_PAGE],
-            lambda front, data, folder: shipped("page.front")(front, data, folder),
-        )
-    return More(
-        [REVIEW_PAGE], lambda outcome, data, folder: shipped("page.search")(outcome, data, folder)
-    )
+        return More([jobs.FRONT_PAGE], partial(_write_page, "page.front"))
+    return More([REVIEW_PAGE], partial(_write_page, "page.search"))
+
+
+def _write_page(writer: str, found: Any, data: Data, folder: Path) -> None:
+    shipped(writer)(found, data, folder)
 
 
 def run_study(host: Host, args: argparse.Namespace) -> Answer:

@@ -24,7 +24,7 @@ from typing import Any
 
 import numpy as np
 
-from ...base.arrays import Flags, Floats, Ints, ReadOnlyDict, each, read_only
+from ...base.arrays import Flags, Floats, Ints, ReadOnlyDict, mapped, read_only
 from ...base.notebook import ShortRepr
 from ...base.values import rounded
 from ...geometry.grids import GroundGrid, PerceptionSpace, top_heights
@@ -156,7 +156,7 @@ def _circle() -> tuple[Ints, Ints]:
     count = math.ceil(2.0 * math.pi * SECTOR_RADIUS_M / ARC_STEP_M)
     angles = 2.0 * math.pi * np.arange(count) / count
     i, j = (
-        np.floor((SECTOR_RADIUS_M * each(turn, angles) - low[0]) / cells.step)
+        np.floor((SECTOR_RADIUS_M * mapped(turn, angles) - low[0]) / cells.step)
         for turn, low in ((math.cos, cells.x0), (math.sin, cells.y0))
     )
     return i.astype(np.int64), j.astype(np.int64)

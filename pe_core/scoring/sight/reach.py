@@ -17,7 +17,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...base.arrays import Flags, Floats, Ints, each, read_only
+from ...base.arrays import Flags, Floats, Ints, mapped, read_only
 from ...base.errors import require_name
 from ...base.notebook import ShortRepr
 from ...base.values import Number, Whole
@@ -197,7 +197,7 @@ def density_of(densities: list[ClassDensity], name: str) -> ClassDensity:
 def _turned(angles: Floats, aside: Floats, distance: Floats) -> tuple[Floats, Floats]:
     """Points (x, y) (B, R, n) at a distance; `aside` is the tangent of the angle to a bearing."""
     ahead = distance / np.sqrt(1.0 + aside * aside)
-    c, s = (each(turn, angles)[:, None, None] for turn in (math.cos, math.sin))
+    c, s = (mapped(turn, angles)[:, None, None] for turn in (math.cos, math.sin))
     return ahead * (c - s * aside), ahead * (s + c * aside)
 
 

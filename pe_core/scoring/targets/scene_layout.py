@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...base.arrays import Floats, Ints, each, join_columns
+from ...base.arrays import Floats, Ints, join_columns, mapped
 from ...base.errors import InputError
 from ...geometry.grids import PerceptionSpace
 from ...prior.boxes import Boxes
@@ -114,7 +114,7 @@ def _scattered(u: Floats, mean: float, spread: float) -> Floats:
     max_spreads = min(SPREADS, mean / 2.0 / spread)
     low = NORMAL.cdf(-max_spreads)
     high = NORMAL.cdf(max_spreads)
-    return mean + spread * each(NORMAL.inv_cdf, low + u * (high - low))
+    return mean + spread * mapped(NORMAL.inv_cdf, low + u * (high - low))
 
 
 class GroundRectangles(NamedTuple):
@@ -146,8 +146,8 @@ def ground_rectangles(centers: Floats, sizes: Floats, yaws: Floats) -> GroundRec
     return GroundRectangles(
         centers[:, 0],
         centers[:, 1],
-        each(math.cos, yaws),
-        each(math.sin, yaws),
+        mapped(math.cos, yaws),
+        mapped(math.sin, yaws),
         along=sizes[:, 0] / 2.0,
         across=sizes[:, 1] / 2.0,
     )

@@ -122,8 +122,9 @@ def _race(
     racing = list[tuple[Incumbent, MultiscaleDescent]]()
     before = incumbent.count
     for k in range(runners):
-        own = Incumbent(given.start, given.value)
-        if k % 2 == 0:
+        if k % 2:
+            own = Incumbent(given.start, given.value)
+        else:
             own = Incumbent(incumbent.best, incumbent.value)
         if k > 1:
             yield from survey.survey(own, first, surveyed)
